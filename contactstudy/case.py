@@ -1,0 +1,185 @@
+"""One case: a roller, a body, a load and a friction, and the grid that suits them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy import checks, hertz
+from contactstudy.bodies import Body
+from contactstudy.errors import InvalidInputError
+from contactstudy.checks import FloatArray
+from contactstudy.grid import Grid
+from contactstudy.roller import Roller
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A roller pressed on a body, rolling and sliding along y.
+
+    Exactly one of `max_pressure` and `load` is given; the other follows from the Hertz line contact of the same
+    load per length of contact.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    roller : Roller
+        The roller.
+    max_pressure : float, optional
+        Peak pressure ``p0`` of the Hertz line contact, Pa.
+    load : float, optional
+        Normal load ``W``, N.
+    friction : float
+        Coefficient ``f``: the shear traction on the body is ``q = f p`` along +y.
+    end_distance : float, optional
+        Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
+        overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
+    coupled : bool
+        Whether the friction also displaces the surface normally and so changes the pressure.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, both or neither of pressure and load are given, or the roller misses the body.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> body = FiniteLengthSpace(length=10.2e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=10e-3), max_pressure=1.5e9)
+    >>> round(1e6 * case.hertz_half_width, 2), round(case.load, 1), round(1e3 * case.roller_start, 3)
+    (65.0, 1531.5, 0.1)
+    """
+
+    body: Body
+    roller: Roller
+    max_pressure: float | None = None
+    load: float | None = None
+    friction: float = 0.0
+    end_distance: float | None = None
+    coupled: bool = False
+
+    def __post_init__(self) -> None:
+        """Check the parameters and complete the load."""
+        checks.instance("body", self.body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+        checks.instance("roller", self.roller, Roller, "a Roller")
+        object.__setattr__(self, "friction", checks.finite("friction", self.friction))
+        if self.end_distance is not None:
+            object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
+        start, stop = self.contact_range
+        if not start < stop:
+            raise InvalidInputError(
+                "end_distance", self.roller_start, "such that the roller lies over the body",
+                f"the body spans x = {self.body.extent}",
+            )
+        if (self.max_pressure is None) == (self.load is None):
+            raise InvalidInputError(
+                "max_pressure, load", (self.max_pressure, self.load), "exactly one of the two, the other None"
+            )
+        if self.max_pressure is not None:
+            object.__setattr__(self, "max_pressure", checks.positive("max_pressure", self.max_pressure, "Pa"))
+        if self.load is not None:
+            object.__setattr__(self, "load", checks.positive("load", self.load, "N"))
+
+    @property
+    def roller_start(self) -> float:
+        """Position x of the roller's end nearer to end I, metres."""
+        if self.end_distance is not None:
+            return self.end_distance
+        low, high = self.body.extent
+        return 0.5 * (high - low - self.roller.length) if np.isfinite(high) else 0.0
+
+    @property
+    def contact_range(self) -> tuple[float, float]:
+        """First and last x where roller and body face each other, metres."""
+        low, high = self.body.extent
+        return max(low, self.roller_start), min(high, self.roller_start + self.roller.length)
+
+    @property
+    def contact_length(self) -> float:
+        """Length over which roller and body face each other, metres."""
+        start, stop = self.contact_range
+        return stop - start
+
+    @property
+    def modulus(self) -> float:
+        """Contact modulus ``E*``, Pa."""
+        return self.body.material.plane_strain_modulus
+
+    @property
+    def hertz_max_pressure(self) -> float:
+        """Peak pressure ``p0`` of the Hertz line contact of the same load per length, Pa."""
+        if self.max_pressure is not None:
+            return self.max_pressure
+        return hertz.line_max_pressure(self.normal_load / self.contact_length, self.roller.radius, self.modulus)
+
+    @property
+    def hertz_half_width(self) -> float:
+        """Half-width ``a`` of the Hertz line contact of the same load per length, metres."""
+        return hertz.line_half_width(self.hertz_max_pressure, self.roller.radius, self.modulus)
+
+    @property
+    def normal_load(self) -> float:
+        """Normal load ``W``, N."""
+        if self.load is not None:
+            return self.load
+        return self.contact_length * hertz.line_load(
+            self.hertz_max_pressure, self.roller.radius, self.modulus
+        )
+
+    def gap(self, grid: Grid) -> FloatArray:
+        """Initial gap at the cell centres of `grid`: metres, 0 at first touch, infinite beyond the roller."""
+        middle = self.roller_start + 0.5 * self.roller.length
+        return self.roller.clearance(grid.x - middle, grid.y)
+
+
+def choose_grid(
+    case: Case, *, cells_x: float = 8, cells_y: float = 16, window: float = 2.0, margin: float = 4.0
+) -> Grid:
+    """Grid that suits a case.
+
+    A finite body is tiled from end to end; where a body has no end the grid stops `margin` half-widths beyond the
+    roller. The numbers of cells are rounded up to sizes that the fast Fourier transform likes.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    cells_x, cells_y : float
+        Cells per Hertz half-width ``a`` along x and y, at least.
+    window : float
+        Half-width of the window in y, over ``a``.
+    margin : float
+        Distance over ``a`` from the roller to the grid's edge where the body goes on.
+
+    Returns
+    -------
+    Grid
+
+    Raises
+    ------
+    InvalidInputError
+        If a setting is not positive.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    >>> choose_grid(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)).shape
+    (125, 64)
+    """
+    from scipy.fft import next_fast_len
+
+    half_width = case.hertz_half_width
+    half_window = checks.positive("window", window) * half_width
+    margin_x = checks.not_negative("margin", margin) * half_width
+    low, high = case.body.extent
+    start, stop = case.roller_start, case.roller_start + case.roller.length
+    x_range = (max(low, start - margin_x) if np.isinf(low) else low, min(high, stop + margin_x) if np.isinf(high) else high)
+    counts = []
+    for span, cells in ((x_range[1] - x_range[0], checks.positive("cells_x", cells_x)),
+                        (2 * half_window, checks.positive("cells_y", cells_y))):
+        counts.append(next_fast_len(max(4, int(np.ceil(span / half_width * cells - 1e-9))), real=True))
+    return Grid(x_range, (-half_window, half_window), *counts)

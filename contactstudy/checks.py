@@ -1,0 +1,75 @@
+"""Checks of single arguments, each raising :class:`~contactstudy.errors.InvalidInputError`."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from numbers import Integral, Real
+
+import numpy as np
+import numpy.typing as npt
+
+from contactstudy.errors import InvalidInputError
+
+FloatArray = npt.NDArray[np.float64]
+
+
+def finite(name: str, value: object, unit: str = "") -> float:
+    """Return `value` as a float, or raise if it is not a finite real number."""
+    suffix = f" ({unit})" if unit else ""
+    if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(float(value)):
+        raise InvalidInputError(name, value, f"a finite number{suffix}")
+    return float(value)
+
+
+def positive(name: str, value: object, unit: str = "") -> float:
+    """Return `value` as a float, or raise if it is not a positive finite number."""
+    suffix = f" ({unit})" if unit else ""
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) < np.inf:
+        raise InvalidInputError(name, value, f"a positive finite number{suffix}")
+    return float(value)
+
+
+def not_negative(name: str, value: object, unit: str = "") -> float:
+    """Return `value` as a float, or raise if it is not a finite number >= 0."""
+    suffix = f" ({unit})" if unit else ""
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 <= float(value) < np.inf:
+        raise InvalidInputError(name, value, f"a finite number not below zero{suffix}")
+    return float(value)
+
+
+def count(name: str, value: object, least: int = 1) -> int:
+    """Return `value` as an int, or raise if it is not a whole number >= `least`."""
+    if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
+        raise InvalidInputError(name, value, f"a whole number not below {least}")
+    return int(value)
+
+
+def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: str) -> None:
+    """Raise if `value` is not an instance of `kind`; `allowed` names it for the reader."""
+    if not isinstance(value, kind):
+        raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
+
+
+def known_name(name: str, value: str, known: Iterable[str]) -> str:
+    """Return `value` if it is one of `known`, or raise with the nearest known name."""
+    names = sorted(known)
+    if value in names:
+        return value
+    nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
+    hint = f"did you mean {nearest[0]!r}?" if nearest else ""
+    raise InvalidInputError(name, value, f"one of {', '.join(names)}", hint)
+
+
+def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
+    """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
+    try:
+        array = np.atleast_1d(np.asarray(values, dtype=np.float64))
+    except (TypeError, ValueError):
+        raise InvalidInputError(name, values, f"numbers ({unit})") from None
+    if array.ndim != 1 or array.size == 0:
+        raise InvalidInputError(name, values, f"a non-empty one-dimensional sequence ({unit})")
+    bad = np.flatnonzero(~np.isfinite(array))
+    if bad.size:
+        raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", f"finite everywhere ({unit})")
+    return array

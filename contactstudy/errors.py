@@ -1,0 +1,60 @@
+"""Exceptions and warnings of the package.
+
+Every error that a user can cause derives from :class:`ContactStudyError`, so a script can tell a bad case from a
+programming mistake with one ``except`` clause.
+"""
+
+from __future__ import annotations
+
+
+class ContactStudyError(Exception):
+    """Base class of all errors raised by contactstudy."""
+
+
+class InvalidInputError(ContactStudyError, ValueError):
+    """A parameter has a value that the calculation does not allow.
+
+    Parameters
+    ----------
+    parameter : str
+        Name of the parameter as the caller wrote it.
+    value : object
+        The value that was given.
+    allowed : str
+        What is allowed, as the end of the sentence "must be ...".
+    hint : str, optional
+        What to do about it.
+
+    Examples
+    --------
+    >>> raise InvalidInputError("length", -1.0, "a positive finite number (metres)")
+    Traceback (most recent call last):
+    contactstudy.errors.InvalidInputError: length = -1.0: must be a positive finite number (metres)
+    """
+
+    def __init__(self, parameter: str, value: object, allowed: str, hint: str = "") -> None:
+        self.parameter = parameter
+        self.value = value
+        self.allowed = allowed
+        self.hint = hint
+        shown = repr(value)
+        if len(shown) > 120:
+            shown = shown[:117] + "..."
+        message = f"{parameter} = {shown}: must be {allowed}"
+        super().__init__(f"{message}; {hint}" if hint else message)
+
+    def __reduce__(self) -> tuple[type, tuple[str, object, str, str]]:
+        """Pickle through the constructor: errors cross process borders in a study."""
+        return type(self), (self.parameter, self.value, self.allowed, self.hint)
+
+
+class WindowError(ContactStudyError):
+    """The contact reaches the edge of the window in y, so the window is too narrow for the load."""
+
+
+class LoadError(ContactStudyError):
+    """The load cannot be carried by the cells that may come into contact."""
+
+
+class ConvergenceWarning(UserWarning):
+    """The contact iteration stopped before its tolerance; the result says ``converged = False``."""

@@ -1,0 +1,41 @@
+"""Hertz' line contact: the reference for every length and pressure in the package.
+
+Source: K. L. Johnson, Contact Mechanics (1985), chapter 4.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def line_half_width(max_pressure: float, radius: float, modulus: float) -> float:
+    """Half-width ``a = 2 p0 R / E*`` of the line contact with peak pressure `max_pressure`, metres.
+
+    Examples
+    --------
+    >>> round(1e6 * line_half_width(1.5e9, 5e-3, 230.77e9), 2)
+    65.0
+    """
+    return 2 * max_pressure * radius / modulus
+
+
+def line_max_pressure(load_per_length: float, radius: float, modulus: float) -> float:
+    """Peak pressure ``p0 = sqrt(q E* / (pi R))`` of the line contact under `load_per_length` (N/m), Pa.
+
+    Examples
+    --------
+    >>> round(line_max_pressure(line_load(1.5e9, 5e-3, 230.77e9), 5e-3, 230.77e9) / 1e9, 6)
+    1.5
+    """
+    return float(np.sqrt(load_per_length * modulus / (np.pi * radius)))
+
+
+def line_load(max_pressure: float, radius: float, modulus: float) -> float:
+    """Load per length ``q = pi p0**2 R / E*`` of the line contact, N/m.
+
+    Examples
+    --------
+    >>> round(line_load(1.5e9, 5e-3, 230.77e9) / 1e3, 1)
+    153.2
+    """
+    return float(np.pi * max_pressure**2 * radius / modulus)

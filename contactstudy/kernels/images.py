@@ -1,0 +1,74 @@
+"""Influence of one cell on a uniform grid: alone, or with all its mirror images in two ends.
+
+Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. The nearest image is taken as it
+stands. The others vary smoothly over one period: the next few are evaluated, and those further away replaced by their
+load spread evenly (the midpoint rule read backwards), at Chebyshev points only, and interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from contactstudy.checks import FloatArray
+
+CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
+
+NEAR_IMAGES = 6
+FAR_LIMIT = 1e4  # of the spread load, over the length; beyond it nothing counts
+CHEBYSHEV_POINTS = 24
+
+
+def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
+    """Influence of a unit load on one cell at uniform offsets `x` and `y` from its centre.
+
+    Parameters
+    ----------
+    corner : callable
+        Corner function of broadcastable offsets ``(X, Y)``; it may return leading axes.
+    x, y : array
+        Offsets from cell to observer, with spacing `dx` and `dy`.
+    dx, dy : float
+        Cell size.
+
+    Returns
+    -------
+    array (..., x, y)
+    """
+    x_edges = np.append(x - 0.5 * dx, x[-1] + 0.5 * dx)
+    y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
+    return np.diff(np.diff(corner(x_edges[:, None], y_edges[None, :]), axis=-1), axis=-2)
+
+
+def mirrored_kernel(
+    corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float
+) -> FloatArray:
+    """Influence of a unit load on one cell and on all its images at distances ``2 length`` along x.
+
+    As `cell_kernel`; offsets along x stay within ``length`` (and half a cell). A quantity that grows with distance
+    contains the constant of a load that ends at ``FAR_LIMIT * length``.
+    """
+    y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
+
+    def between(start: FloatArray, stop: FloatArray) -> FloatArray:
+        """Unit load on ``start..stop`` (relative to the observer's x), per y cell: array (..., point, y)."""
+        upper = corner(stop[:, None], y_edges[None, :])
+        return np.diff(upper - corner(start[:, None], y_edges[None, :]), axis=-1)
+
+    span = length + dx
+    points = span * chebyshev.chebpts1(CHEBYSHEV_POINTS)
+    images: FloatArray = np.zeros(())
+    for number in range(1, NEAR_IMAGES + 1):
+        for shift in (-2 * length * number, 2 * length * number):
+            images = images + between(points + shift - 0.5 * dx, points + shift + 0.5 * dx)
+    spread_from, spread_to = (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
+    spread = between(points - spread_to, points - spread_from)
+    spread = spread + between(points + spread_from, points + spread_to)
+    images = images + dx / (2 * length) * spread
+    interpolation = np.linalg.solve(
+        chebyshev.chebvander(points / span, CHEBYSHEV_POINTS - 1).T,
+        chebyshev.chebvander(x / span, CHEBYSHEV_POINTS - 1).T,
+    )
+    return cell_kernel(corner, x, y, dx, dy) + np.einsum("px,...py->...xy", interpolation, images)

@@ -1,0 +1,125 @@
+"""Uniformly loaded rectangle on a half-space: stresses below and displacement of the surface, in closed form.
+
+Every quantity is a second mixed difference, over the rectangle's corners, of a corner function of the offset
+``(X, Y, z)`` from corner to observer. The corner functions follow from the Boussinesq and Cerruti potentials
+
+    V = int int dA / r,   chi = int int ln(r + z) dA,   Theta = int int [z ln(r + z) - r] dA
+
+(A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929); K. L. Johnson, Contact Mechanics (1985), section 3.2). Terms that
+depend on one of X and Y alone cancel in the difference and are left out, which also avoids loss of digits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
+
+_TINY = 1e-300
+
+
+def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: float) -> FloatArray:
+    """``asinh(numerator / hypot(other, z))``, finite where the denominator vanishes (a corner's edge)."""
+    return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(other, z), 1e-30)))
+
+
+def normal_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+    """Corner functions of the six stresses under unit pressure, in the order xx, yy, zz, xy, xz, yz.
+
+    Parameters
+    ----------
+    x, y : array
+        Offsets from corner to observer, broadcastable to one shape.
+    z : float
+        Depth, not negative.
+    poisson : float
+        Poisson's ratio.
+
+    Returns
+    -------
+    array of shape (6, ...)
+        With ``p`` on a rectangle the stress is ``p`` times the second mixed difference of these.
+
+    Examples
+    --------
+    >>> edge = np.array([-1.0, 1.0])
+    >>> corner = normal_corner(edge[:, None], edge[None, :], 0.0, 0.3)
+    >>> (np.diff(np.diff(corner, axis=1), axis=2)[:3, 0, 0]).round(6).tolist()
+    [-0.8, -0.8, -1.0]
+    """
+    xx, yy = x * x, y * y
+    r = np.sqrt(xx + yy + z * z)
+    xy = x * y
+    v_z = -np.arctan2(xy, z * r)
+    chi_xx = np.arctan2(xy * (xx + yy), (r + z) * (r * xx + z * yy))
+    chi_yy = -v_z - chi_xx
+    along_x = 1.0 / np.maximum(r * (xx + z * z), _TINY)
+    along_y = 1.0 / np.maximum(r * (yy + z * z), _TINY)
+    v_xx, v_yy = -xy * along_x, -xy * along_y
+    free = 1 - 2 * poisson
+    corner = np.stack(
+        [
+            2 * poisson * v_z - free * chi_xx - z * v_xx,
+            2 * poisson * v_z - free * chi_yy - z * v_yy,
+            v_z + z * (v_xx + v_yy),
+            -free * np.log(np.maximum(r + z, _TINY)) - z / np.maximum(r, _TINY),
+            z * z * y * along_x,
+            z * z * x * along_y,
+        ]
+    )
+    return np.asarray(corner / (2 * np.pi))
+
+
+def tangential_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+    """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`.
+
+    Examples
+    --------
+    >>> edge = np.array([-1.0, 1.0])
+    >>> corner = tangential_corner(edge[:, None], edge[None, :], 0.0, 0.3)
+    >>> round(float(np.diff(np.diff(corner, axis=1), axis=2)[5, 0, 0]), 6)
+    -1.0
+    """
+    xx, yy = x * x, y * y
+    r = np.sqrt(xx + yy + z * z)
+    safe_r, r_z = np.maximum(r, _TINY), np.maximum(r + z, _TINY)
+    v_y = _inverse_sinh_ratio(x, y, z)
+    along_y = 1.0 / np.maximum(r * (yy + z * z), _TINY)
+    corner = np.stack(
+        [
+            2 * poisson * (v_y - x / r_z) - z * x / (safe_r * r_z),
+            2 * v_y + 2 * poisson * x / r_z + z * x / (safe_r * r_z) - z * z * x * along_y,
+            z * z * x * along_y,
+            _inverse_sinh_ratio(y, x, z) - 2 * poisson * y / r_z - z * y / (safe_r * r_z),
+            -z / safe_r,
+            -np.arctan2(x * y, z * r) + z * x * y * along_y,
+        ]
+    )
+    return np.asarray(corner / (2 * np.pi))
+
+
+def normal_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Corner function of the surface's ``2 pi G u_z / (1 - nu)`` under unit pressure (Love's rectangle).
+
+    Examples
+    --------
+    >>> edge = np.array([-0.5, 0.5])
+    >>> corner = normal_displacement_corner(edge[:, None], edge[None, :])
+    >>> round(float(np.diff(np.diff(corner, axis=0), axis=1)[0, 0]), 6)
+    3.525494
+    """
+    return np.asarray(x * _inverse_sinh_ratio(y, x, 0.0) + y * _inverse_sinh_ratio(x, y, 0.0))
+
+
+def tangential_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
+    """Corner function of the surface's ``4 pi G u_z / (1 - 2 nu)`` under unit shear traction along +y.
+
+    Examples
+    --------
+    >>> edge = np.array([-0.5, 0.5])
+    >>> ahead = tangential_displacement_corner(edge[:, None], edge[None, :] + 1.0)
+    >>> bool(np.diff(np.diff(ahead, axis=0), axis=1)[0, 0] > 0)
+    True
+    """
+    log_r = 0.5 * np.log(np.maximum(x * x + y * y, _TINY))
+    return np.asarray(x * log_r + y * np.arctan2(x, np.abs(y)) * np.sign(y))

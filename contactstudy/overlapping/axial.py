@@ -1,0 +1,121 @@
+"""Axial wavenumbers: the sum over all mirrored loads, written as a few real modes and a decaying ray.
+
+In H every load is extended evenly about both ends, so it is a sum of modes ``cos(k_n x)``, ``k_n = n pi / L``. Modes
+with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``parity = +1, -1``) never mix. The first
+few terms are summed as they stand; for the others the sum is turned into an integral along a ray that leaves the real
+axis (Abel and Plana's formula): with ``g`` analytic and real on the real axis,
+
+    sum_n g(k_n) cos(k_n x) = Re int_ray g(k) [exp(i k x) + parity exp(i k (L - x))] / (1 - parity exp(i k L)) L dk / (2 pi).
+
+The two exponentials are the contributions seen from either end, and both decay along the ray. A quarter space is the
+limit of one end only: the ray starts at ``k = 0`` and the second exponential is gone (``parity = 0``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
+from contactstudy.overlapping.quadrature import ComplexArray, Resolution, ray_nodes
+
+
+@dataclass(frozen=True, eq=False)
+class AxialModes:
+    """Axial wavenumbers of one parity.
+
+    Attributes
+    ----------
+    length : float
+        Distance between the ends, metres; infinite for a quarter space.
+    parity : int
+        +1 or -1 for loads even or odd about mid-length, 0 for one end only.
+    discrete : array
+        Wavenumbers ``k_n`` that are summed one by one, 1/m.
+    ray, weights : complex array
+        Nodes and weights of the rest, 1/m.
+    """
+
+    length: float
+    parity: int
+    discrete: FloatArray
+    ray: ComplexArray
+    weights: ComplexArray
+
+    @property
+    def wavenumbers(self) -> ComplexArray:
+        """All wavenumbers: the discrete ones, then the ray's."""
+        return np.concatenate([self.discrete.astype(np.complex128), self.ray])
+
+    @property
+    def load_weights(self) -> ComplexArray:
+        """Factor from ``int P(x) cosine(x) dx`` to the weighted spectrum of P."""
+        single = np.where(self.discrete == 0, 1.0, 2.0) / self.length
+        return np.concatenate([single, self.weights * (1 if self.parity else 2) / np.pi])
+
+    @property
+    def face_weights(self) -> ComplexArray:
+        """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of what they leave on top."""
+        single = 4 * np.where(self.discrete == 0, 1.0, 2.0) / self.length
+        return np.concatenate([single, self.weights * 4 / np.pi])
+
+    @property
+    def on_end(self) -> ComplexArray:
+        """``cosine(0)``: from weighted spectrum to the value on end I."""
+        return self.cosine(np.zeros(1))[:, 0]
+
+    def _seen_from_both_ends(self, x: FloatArray, sign: int) -> ComplexArray:
+        near = np.exp(1j * np.outer(self.ray, x))
+        if not self.parity:
+            return near
+        far = np.exp(1j * np.outer(self.ray, self.length - x))
+        closing = 1 - self.parity * np.exp(1j * self.ray * self.length)
+        return np.asarray((near + sign * self.parity * far) / closing[:, None])
+
+    def cosine(self, x: FloatArray) -> ComplexArray:
+        """What stands for ``cos(k x)`` at positions `x`: array (wavenumber, x)."""
+        return np.concatenate([np.cos(np.outer(self.discrete, x)), self._seen_from_both_ends(x, +1)])
+
+    def sine(self, x: FloatArray) -> ComplexArray:
+        """What stands for ``sin(k x)`` at positions `x`: array (wavenumber, x)."""
+        return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._seen_from_both_ends(x, -1)])
+
+    def cell_integrals(self, edges: FloatArray) -> ComplexArray:
+        """Integrals of `cosine` over the cells between `edges`: array (wavenumber, cell)."""
+        k = np.where(self.wavenumbers == 0, 1.0, self.wavenumbers)[:, None]
+        integral = np.diff(self.sine(edges), axis=1) / k
+        integral[self.wavenumbers == 0] = np.diff(edges)
+        return np.asarray(integral)
+
+
+def axial_modes(length: float, longest: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
+    """Axial modes of a body, one entry per parity.
+
+    Parameters
+    ----------
+    length : float
+        Distance between the ends, metres; infinite for a quarter space.
+    longest, shortest : float
+        Longest and shortest distance that matter, metres; they bound the ray.
+    resolution : Resolution
+        Quadrature settings.
+
+    Returns
+    -------
+    list of AxialModes
+        Even and odd for two ends; one entry for a quarter space.
+    """
+    last = resolution.reach / shortest
+    if np.isinf(length):
+        ray, weights = ray_nodes(0.5 / longest, last, resolution)
+        return [AxialModes(length, 0, np.zeros(0), ray, weights)]
+    spacing = np.pi / length
+    # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
+    start = (resolution.modes - 0.5) * spacing
+    ray, weights = ray_nodes(0.5 * spacing, last, resolution)
+    numbers = np.arange(resolution.modes)
+    return [
+        AxialModes(length, parity, spacing * numbers[numbers % 2 == remainder], start + ray, weights)
+        for parity, remainder in ((1, 0), (-1, 1))
+    ]

@@ -1,0 +1,176 @@
+"""What the free ends add to the normal displacement of the top: a symmetric operator, compressed.
+
+V leaves no normal displacement on the top, so the body sinks as H does under ``P_h = p + R``. Of this the part under
+``p`` is the mirrored half-space; the part under ``R`` is, for each wavenumber along y and each parity,
+
+    u(x) = C p,   C(x, x') = c at(x)^T (1 / scale - N)^-1 at(x'),   at(x; k_z) = (4/pi) sum M cosine(x) / k
+
+(equations.py). C is sampled at positions graded towards the ends and transformed along y to the wavenumbers of the
+zero-padded grid, once per body and grid. Far along y a finite-length body is a plate in plane stress, so C grows like
+``1 / k_y``: the displacement is stated relative to the top far away, at ``|y| = reference``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import special
+
+from contactstudy.checks import FloatArray
+from contactstudy.grid import Grid
+from contactstudy.material import Material
+from contactstudy.overlapping.axial import AxialModes, axial_modes
+from contactstudy.overlapping.equations import EquationSet, normal_on_end, tangential_on_end
+from contactstudy.overlapping.panels import cell_moments, graded_positions
+from contactstudy.overlapping.quadrature import (
+    ComplexArray,
+    Resolution,
+    graded_then_uniform_edges,
+    panel_nodes,
+)
+
+POSITIONS_PER_PANEL = 8
+
+
+@dataclass(frozen=True, eq=False)
+class EndCorrection:
+    """The ends' part of the displacement, acting on transforms along y of the zero-padded grid.
+
+    Attributes
+    ----------
+    moments : list of array (position, cell)
+        Per parity, from cells to graded positions.
+    normal : list of array (wavenumber, position, position)
+        Per parity, displacement from pressure at the graded positions.
+    tangential : list of array, or empty
+        Likewise from traction along y, without its factor i.
+    cell : float
+        Cell size along x.
+    """
+
+    moments: list[FloatArray]
+    normal: list[FloatArray]
+    tangential: list[FloatArray]
+    cell: float
+
+    def apply(self, transform: ComplexArray, tangential: bool = False) -> ComplexArray:
+        """Correction from the transform (cell, wavenumber) of pressure or traction."""
+        kernels, phase = (self.tangential, 1j) if tangential else (self.normal, 1.0)
+        correction = np.zeros_like(transform)
+        for moments, kernel in zip(self.moments, kernels, strict=True):
+            sources = (moments @ transform).T[:, :, None]
+            sunk = np.matmul(kernel, sources.view(np.float64).reshape(*sources.shape[:2], 2))
+            sunk = np.ascontiguousarray(sunk).view(np.complex128)[:, :, 0]
+            correction += moments.T @ sunk.T
+        return np.asarray(correction * (phase / self.cell))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        return sum(array.nbytes for array in (*self.moments, *self.normal, *self.tangential))
+
+
+def _sampled(
+    modes: AxialModes, lateral: FloatArray, positions: FloatArray, material: Material, shortest: float,
+    resolution: Resolution, tangential: bool,
+) -> Iterator[tuple[FloatArray, FloatArray | None]]:
+    """Correction between the graded positions, for each lateral wavenumber in turn."""
+    sources = modes.load_weights[:, None] * modes.cosine(positions)
+    factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
+    for wavenumber in lateral:
+        system = EquationSet.build(modes, float(wavenumber), material.poisson, shortest, resolution)
+        from_pressure = system.from_pressure(sources)
+        normal = factor * from_pressure.T @ system.solve(from_pressure)
+        if tangential:
+            yield normal, factor * from_pressure.T @ system.solve(system.from_traction(sources))
+        else:
+            yield normal, None
+
+
+def build_end_correction(
+    length: float, material: Material, grid: Grid, *, reference: float, tangential: bool,
+    resolution: Resolution,
+) -> EndCorrection:
+    """Correction for a body with ends at 0 and `length` (infinite: one end) on a grid that begins at ``x = 0``.
+
+    Parameters
+    ----------
+    length : float
+        Distance between the ends, metres.
+    material : Material
+        Elastic constants.
+    grid : Grid
+        Cells; ``x_range[0]`` is 0.
+    reference : float
+        Distance along y at which the displacement of a finite-length body is zero, metres.
+    tangential : bool
+        Whether to build the part that comes from traction along y, too.
+    resolution : Resolution
+        Quadrature settings.
+    """
+    span = grid.x_range[1]
+    window = 2 * grid.dy * grid.cells_y
+    shortest = 0.5 * grid.dx
+    scale = min(length, 4 * max(span, window))
+    lateral_last = max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
+    first = 1e-2 / scale
+    # The nodes of a panel follow the phase of the widest offset, half a window.
+    panel = 0.45 * resolution.lateral_order * 2 / (0.5 * window)
+    lateral, weights = panel_nodes(graded_then_uniform_edges(first, panel, lateral_last), resolution.lateral_order)
+    if np.isfinite(length):  # the first panel is integrated in closed form
+        lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.lateral_order :]])
+        weights = weights[resolution.lateral_order :]
+    to_grid = _lateral_transforms(lateral, weights, grid, first, reference if np.isfinite(length) else None)
+    half = 0.5 * length if np.isfinite(length) else span
+    edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)
+    cell_edges = np.linspace(0.0, span, grid.cells_x + 1)
+    one_side = cell_moments(edges, positions, cell_edges)
+    moments, normal, shear = [], [], []
+    for modes in axial_modes(length, 2 * max(scale, span), shortest, resolution):
+        shape = (lateral.size, positions.size, positions.size)
+        from_pressure = np.empty(shape)
+        from_traction = np.empty(shape if tangential else (0,))
+        for i, (p, q) in enumerate(_sampled(modes, lateral, positions, material, shortest, resolution, tangential)):
+            from_pressure[i] = p
+            if q is not None:
+                from_traction[i] = q
+        moments.append(one_side + modes.parity * one_side[:, ::-1] if modes.parity else one_side)
+        normal.append(np.tensordot(to_grid[0], from_pressure, axes=1))
+        if tangential:
+            shear.append(np.tensordot(to_grid[1], from_traction, axes=1))
+    return EndCorrection(moments, normal, shear, grid.dx)
+
+
+def _lateral_transforms(
+    lateral: FloatArray, weights: FloatArray, grid: Grid, first: float, reference: float | None
+) -> tuple[FloatArray, FloatArray]:
+    """Matrices from samples over the wavenumber along y to the zero-padded grid's transform.
+
+    Returns the one for even kernels and the one for odd kernels: arrays (grid wavenumber, sample). With a `reference`
+    the first two samples are at `first` and half of it, and stand for ``c / k + d`` on the interval below `first`,
+    of which the integral is taken in closed form, relative to ``|y| = reference``.
+    """
+    offsets = grid.dy * np.arange(grid.cells_y + 1)
+    phase = np.outer(offsets, lateral)
+    averaged = np.zeros(lateral.size)
+    averaged[lateral.size - weights.size :] = weights / np.pi * grid.dy
+    averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
+    cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
+    if reference is not None:
+        cut = first * reference
+        argument = np.maximum(first * offsets, 1e-30)
+        pole = -(np.euler_gamma + np.log(argument) - special.sici(argument)[1])
+        pole += np.euler_gamma + np.log(cut) + special.exp1(cut)
+        # c = first (C(first/2) - C(first)), d = 2 C(first) - C(first/2)
+        cosine[:, 0] += grid.dy / np.pi * (2 * first - first * pole)
+        cosine[:, 1] += grid.dy / np.pi * (first * pole - first)
+    size = grid.cells_y
+    turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
+    twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
+    ends = np.full(size + 1, 2.0)
+    ends[0] = ends[-1] = 1.0
+    # An odd kernel -sin(k y) has the transform 2i sum sin sin; with its factor i taken outside, +2 sum sin sin.
+    ends_odd = np.where(ends == 1.0, 0.0, 2.0)
+    return (turns * ends) @ cosine, (twists * ends_odd) @ sine

@@ -1,0 +1,174 @@
+"""The equation set of the overlapping, for one wavenumber along y: face loads from top loads.
+
+With the weighted spectra of axial.py, ``D = k_x**2 + k_y**2 + k_z**2`` and the coupling core
+
+    M(k_x, k_z) = k_x**2 k_z**2 / D**2 + nu k_y**2 / D
+
+a top load ``P`` leaves on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and a
+face load ``S`` leaves on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
+``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` tells the slab from a half-space. The ends are free when
+
+    S = (4/pi) sum (M / k) (P + R),    R = int (4 M T / kappa) S dk_z,
+
+a linear system for ``S`` at the depth nodes whose matrix is symmetric after scaling (reciprocity). It is the equation
+set of Hetenyi's and Keer's alternating scheme, solved at once.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import linalg
+
+from contactstudy.checks import FloatArray
+from contactstudy.overlapping.axial import AxialModes
+from contactstudy.overlapping.quadrature import (
+    ComplexArray,
+    Resolution,
+    growing_edges,
+    panel_nodes,
+    ray_nodes,
+)
+
+
+def coupling_core(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float) -> ComplexArray:
+    """Core ``M(k_x, k_z)``: array (depth, axial)."""
+    axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
+    inverse = 1.0 / (axial2 + depth2 + lateral**2)
+    return np.asarray((axial2 * depth2 * inverse + poisson * lateral**2) * inverse)
+
+
+def normal_on_end(
+    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+) -> ComplexArray:
+    """Face load that frees the end from a unit top pressure: array (depth, axial)."""
+    k = np.sqrt(axial * axial + lateral**2)
+    return np.asarray(coupling_core(axial, depth, lateral, poisson) * (4 / np.pi / k))
+
+
+def tangential_on_end(
+    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+) -> ComplexArray:
+    """Face load that frees the end from a unit top traction along y, without its factor i: array (depth, axial)."""
+    axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
+    k2 = axial2 + lateral**2
+    inverse = 1.0 / (k2 + depth2)
+    bracket = 2 * poisson * lateral**2 * inverse - axial2 * (k2 - depth2) * inverse**2
+    return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
+
+
+def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -> tuple[ComplexArray, ComplexArray]:
+    """Factors ``T`` and ``tau`` that tell a slab from a half-space, for which they are 1 and 0.
+
+    With ``t = kappa length / 2``: ``T = 2 sinh(t)**2 / (sinh(2t) + 2t)`` and ``tau = t (coth(t) - 1)`` for even parity,
+    ``T = 2 cosh(t)**2 / (sinh(2t) - 2t)`` and ``tau = t (tanh(t) - 1)`` for odd.
+    """
+    if not parity:
+        return np.ones(kappa.shape, np.complex128), np.zeros(kappa.shape, np.complex128)
+    doubled = np.asarray(kappa * length, dtype=np.complex128)
+    decay = np.exp(-doubled)
+    denominator = 1 - decay**2 + parity * 2 * doubled * decay
+    if parity < 0:  # bending: sinh(2t) - 2t would cancel
+        square = doubled**2
+        series = 1 + square / 20 * (1 + square / 42 * (1 + square / 72 * (1 + square / 110)))
+        denominator = np.where(np.abs(doubled) < 0.5, decay * doubled**3 / 3 * series, denominator)
+    factor = (1 - parity * decay) ** 2 / denominator
+    return factor, parity * doubled * decay / (1 - parity * decay)
+
+
+@dataclass(frozen=True, eq=False)
+class EquationSet:
+    """The equation set for one wavenumber along y and one parity, factorised.
+
+    Attributes
+    ----------
+    modes : AxialModes
+        Axial wavenumbers.
+    lateral : float
+        Wavenumber ``k_y``, 1/m.
+    poisson : float
+        Poisson's ratio.
+    depth : array
+        Depth wavenumbers ``k_z``, 1/m.
+    scale : array
+        ``T dk_z / kappa`` at the depth nodes.
+    """
+
+    modes: AxialModes
+    lateral: float
+    poisson: float
+    depth: FloatArray
+    scale: FloatArray
+    _core: ComplexArray
+    _factor: tuple[FloatArray, FloatArray]
+
+    @classmethod
+    def build(
+        cls, modes: AxialModes, lateral: float, poisson: float, shortest: float, resolution: Resolution
+    ) -> EquationSet:
+        """Assemble and factorise; `shortest` is the smallest distance from a loaded corner that matters."""
+        last = max(resolution.reach / shortest, 4 * lateral)
+        depth, weights = panel_nodes(growing_edges(0.5 * lateral, last, resolution.ratio), resolution.order)
+        kappa = np.sqrt(depth**2 + lateral**2)
+        scale = np.real(slab_factors(kappa, modes.length, modes.parity)[0]) * weights / kappa
+        axial = modes.wavenumbers
+        core = coupling_core(axial, depth, lateral, poisson)
+        k = np.sqrt(axial**2 + lateral**2)
+        left = core * (4 / np.pi / k * modes.on_end * modes.face_weights)
+        mutual = left.real @ core.real.T - left.imag @ core.imag.T
+        return cls(modes, lateral, poisson, depth, scale, core, linalg.lu_factor(np.diag(1 / scale) - mutual))
+
+    def solve(self, source: FloatArray) -> FloatArray:
+        """Scaled face loads ``scale * S`` from what the top load alone asks for at the depth nodes."""
+        return np.asarray(linalg.lu_solve(self._factor, source))
+
+    def from_pressure(self, spectrum: ComplexArray) -> FloatArray:
+        """Face loads that a pressure of weighted `spectrum` (wavenumber, ...) alone asks for."""
+        k = np.sqrt(self.modes.wavenumbers**2 + self.lateral**2)
+        return np.real((self._core * (4 / np.pi / k)) @ spectrum)
+
+    def from_traction(self, spectrum: ComplexArray) -> FloatArray:
+        """Likewise for a traction along y, without its factor i."""
+        operator = tangential_on_end(self.modes.wavenumbers, self.depth, self.lateral, self.poisson)
+        return np.real(operator @ spectrum)
+
+    def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
+        """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
+        shape = (-1,) + (1,) * (scaled_face_load.ndim - 1)
+        return np.asarray(self.modes.face_weights.reshape(shape) * (self._core.T @ scaled_face_load))
+
+    def on_ray(
+        self, pressure: ComplexArray, traction: ComplexArray, equivalent: ComplexArray, shortest: float, resolution: Resolution
+    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+        """Face loads as an analytic function, on a ray of depth wavenumbers.
+
+        Parameters
+        ----------
+        pressure, traction : complex array (wavenumber, column)
+            Weighted spectra of the top's pressure and of its traction along y (without the factor i).
+        equivalent : complex array (wavenumber, column)
+            Result of `on_top`.
+        shortest : float
+            Smallest distance from a loaded corner that matters, metres.
+        resolution : Resolution
+            Quadrature settings.
+
+        Returns
+        -------
+        nodes, weights : complex array
+            Depth wavenumbers and their weights.
+        face_load : complex array (node, column)
+            ``S`` there.
+        """
+        last = max(resolution.reach / shortest, 4 * self.lateral)
+        depth, weights = ray_nodes(0.5 * self.lateral, last, resolution)
+        axial = self.modes.wavenumbers
+        total = pressure + self.modes.on_end[:, None] * equivalent
+        # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
+        face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
+        for k, normal, tangential in ((axial, total, traction), (axial.conj(), total.conj(), traction.conj())):
+            face_load += 0.5 * normal_on_end(k, depth, self.lateral, self.poisson) @ normal
+            if np.any(tangential):
+                face_load += 0.5 * tangential_on_end(k, depth, self.lateral, self.poisson) @ tangential
+        return depth, weights, face_load

@@ -1,0 +1,100 @@
+"""Gauss-Legendre quadrature on growing panels, on the real axis or along a ray in the complex plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from contactstudy.checks import FloatArray
+
+ComplexArray = npt.NDArray[np.complex128]
+
+
+@lru_cache(maxsize=32)
+def _gauss(order: int) -> tuple[FloatArray, FloatArray]:
+    nodes, weights = np.polynomial.legendre.leggauss(order)
+    return nodes, weights
+
+
+def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of composite Gauss-Legendre quadrature on the panels between `edges`.
+
+    Examples
+    --------
+    >>> nodes, weights = panel_nodes(np.array([0.0, 1.0, 3.0]), 4)
+    >>> round(float(weights @ nodes**5), 6)
+    121.5
+    """
+    nodes, weights = _gauss(order)
+    half = 0.5 * np.diff(edges)[:, None]
+    middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
+    return (middle + half * nodes).ravel(), (half * weights).ravel()
+
+
+def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
+    """Panel edges ``0, first, ratio first, ratio**2 first, ...`` up to at least `last`.
+
+    Examples
+    --------
+    >>> growing_edges(1.0, 7.0).tolist()
+    [0.0, 1.0, 2.0, 4.0, 8.0]
+    """
+    panels = max(1, int(np.ceil(np.log(last / first) / np.log(ratio))) + 1)
+    return np.concatenate([[0.0], first * ratio ** np.arange(panels)])
+
+
+@dataclass(frozen=True)
+class Resolution:
+    """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 1e-5 of a load.
+
+    Parameters
+    ----------
+    order : int
+        Gauss nodes per panel.
+    ratio : float
+        Growth of the panels.
+    angle : float
+        Angle of the rays to the real axis, radians. Axial and depth wavenumbers are turned by the same angle; twice
+        the angle must stay well below pi/2, where ``k_x**2 + k_y**2 + k_z**2`` would vanish.
+    reach : float
+        Largest axial and depth wavenumber, times the smallest distance from a loaded corner.
+    modes : int
+        Axial modes that are summed one by one.
+    lateral_order : int
+        Gauss nodes per panel of the wavenumber along y.
+    lateral_reach : float
+        Largest wavenumber along y, times the smallest distance from a loaded corner.
+    """
+
+    order: int = 8
+    ratio: float = 3.0
+    angle: float = np.pi / 6
+    reach: float = 200.0
+    modes: int = 8
+    lateral_order: int = 12
+    lateral_reach: float = 12.0
+
+
+def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
+    """Nodes and weights along the ray from 0 at the resolution's angle, panels growing from `first` to `last`."""
+    nodes, weights = panel_nodes(growing_edges(first, last, resolution.ratio), resolution.order)
+    turn = np.exp(1j * resolution.angle)
+    return nodes * turn, weights * turn
+
+
+def graded_then_uniform_edges(first: float, width: float, last: float) -> FloatArray:
+    """Panel edges that double from `first` until the panels are `width` wide, then go on uniformly to `last`.
+
+    Examples
+    --------
+    >>> graded_then_uniform_edges(1.0, 2.0, 8.0).tolist()
+    [0.0, 1.0, 2.0, 4.0, 6.0, 8.0]
+    """
+    edges = [0.0, first]
+    while edges[-1] < width and edges[-1] < last:
+        edges.append(min(2 * edges[-1], edges[-1] + width))
+    rest = max(0, int(np.ceil((last - edges[-1]) / width - 1e-12)))
+    return np.concatenate([edges, edges[-1] + width * np.arange(1, rest + 1)])

@@ -1,0 +1,71 @@
+"""The roller that is pressed into the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles import Cylinder, Profile
+
+
+@dataclass(frozen=True, kw_only=True)
+class Roller:
+    """A rigid roller with its axis along x.
+
+    Parameters
+    ----------
+    radius : float
+        Radius at mid-length (``Ra``), metres.
+    length : float
+        Length ``L_c`` from end to end, metres.
+    profile : Profile
+        How the generatrix departs from the cylinder.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, or the profile does not fit the length.
+
+    Examples
+    --------
+    >>> roller = Roller(radius=5e-3, length=10e-3, profile=Cylinder(fillet_radius=0.2e-3))
+    >>> roller.clearance(np.array([0.0]), np.array([0.0, 1e-4])).tolist()
+    [[0.0, 1e-06]]
+    """
+
+    radius: float
+    length: float
+    profile: Profile = field(default_factory=Cylinder)
+
+    def __post_init__(self) -> None:
+        """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
+        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
+        object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
+        checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
+        drop = self.profile.drop(np.array([0.0, 0.25 * self.length]), self.length)
+        if drop.shape != (2,) or not np.all(drop >= 0):
+            raise InvalidInputError("profile", self.profile, "a profile with a drop not below zero")
+
+    def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Height of the roller over the plane that its cylinder touches.
+
+        The circle is taken as the parabola ``y**2 / (2 radius)``, as in Hertz' theory.
+
+        Parameters
+        ----------
+        x, y : array
+            Distances from the roller's mid-length and from its centre line, metres.
+
+        Returns
+        -------
+        array of shape (x.size, y.size)
+            Metres; infinite beyond the roller's ends, where it cannot touch.
+        """
+        inside = np.abs(x) <= self.length / 2
+        drop = np.full(x.shape, np.inf)
+        drop[inside] = self.profile.drop(x[inside], self.length)
+        return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * self.radius))

@@ -1,0 +1,207 @@
+"""Normal displacement of the top of a body under pressure and traction: the operator of every contact solution."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from threading import local
+
+import numpy as np
+import xarray as xr
+from scipy import fft
+
+from contactstudy import checks
+from contactstudy.bodies import Body
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.grid import Grid
+from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_spectrum
+from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, cell_kernel, mirrored_kernel
+from contactstudy.kernels.patch import normal_displacement_corner, tangential_displacement_corner
+from contactstudy.labelled import labelled_cells
+from contactstudy.overlapping.displacement import EndCorrection, build_end_correction
+from contactstudy.overlapping.quadrature import Resolution
+
+REFERENCE_LENGTHS = 10.0
+"""A finite-length body's displacement is relative to its top at ``|y|`` = this many lengths."""
+
+
+class SurfaceOperator:
+    """Displacement of the top from pressure and from traction along y, for one body and one grid.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    grid : Grid
+        Cells; on a body with ends they begin at ``x = 0`` and span it.
+    tangential : bool
+        Whether the displacement from traction is needed.
+    resolution : Resolution
+        Quadrature settings of the free ends' part.
+
+    Raises
+    ------
+    InvalidInputError
+        If the grid does not fit the body.
+    """
+
+    def __init__(self, body: Body, grid: Grid, *, tangential: bool, resolution: Resolution) -> None:
+        check_span(body, grid)
+        self.body, self.grid, self.tangential = body, grid, tangential
+        low, high = body.extent
+        mirrored = np.isfinite(low)
+        padded = grid.cells_x if np.isfinite(high) else 2 * grid.cells_x
+        self._transform = GridTransform(*grid.shape, padded, mirrored=bool(mirrored))
+        x = grid.dx * np.arange(padded + 1 if mirrored else grid.cells_x + 1)
+        y = grid.dy * np.arange(grid.cells_y + 1)
+        material = body.material
+        factor = (1 - material.poisson) / (2 * np.pi * material.shear_modulus)
+        self._normal = factor * self._spectrum(even_spectrum(self._kernel(normal_displacement_corner, x, y)))
+        self._shear = np.zeros(0)
+        if tangential:
+            factor = (1 - 2 * material.poisson) / (4 * np.pi * material.shear_modulus)
+            kernel = self._kernel(tangential_displacement_corner, x, y)
+            self._shear = factor * self._spectrum(odd_spectrum(kernel))
+        self._ends: EndCorrection | None = None
+        if mirrored:
+            self._ends = build_end_correction(
+                high, material, grid, reference=self.reference, tangential=tangential, resolution=resolution
+            )
+
+    @property
+    def reference(self) -> float:
+        """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
+        low, high = self.body.extent
+        return REFERENCE_LENGTHS * (high - low)
+
+    def _kernel(self, corner: CornerFunction, x: FloatArray, y: FloatArray) -> FloatArray:
+        grid = self.grid
+        length = self.body.extent[1]
+        if np.isinf(length):
+            return cell_kernel(corner, x, y, grid.dx, grid.dy)
+        kernel = mirrored_kernel(corner, x, y, grid.dx, grid.dy, length)
+        if corner is normal_displacement_corner:
+            # The images make a line load along x; its logarithm is set to zero at the reference.
+            kernel -= grid.cell_area / length * np.log(2 * FAR_LIMIT * length / self.reference)
+        return kernel
+
+    def _spectrum(self, lateral: FloatArray) -> FloatArray:
+        """Spectrum along x of a kernel even in x, given at offsets from 0 on."""
+        spectrum = fft.dct(lateral, type=1, axis=0)
+        if np.isfinite(self.body.extent[0]):
+            return np.asarray(spectrum[:-1])
+        return np.concatenate([spectrum, spectrum[-2:0:-1]])
+
+    def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
+        """Displacement (m) of the cell centres under `pressure` and, if given, `traction` (Pa): array (x, y)."""
+        displacement = self._apply(pressure, self._normal, tangential=False)
+        if traction is not None:
+            displacement += self._apply(traction, self._shear, tangential=True)
+        return displacement
+
+    def _apply(self, load: FloatArray, spectrum: FloatArray, *, tangential: bool) -> FloatArray:
+        lateral = self._transform.lateral(load)
+        correction = self._ends.apply(lateral, tangential) if self._ends is not None else None
+        full = self._transform.along()
+        full *= spectrum
+        if tangential:
+            full *= 1j
+        return self._transform.back(correction)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        held = self._normal.nbytes + self._shear.nbytes + self._transform.nbytes
+        return held + (self._ends.nbytes if self._ends is not None else 0)
+
+
+def check_span(body: Body, grid: Grid) -> None:
+    """Raise unless the grid covers the body's x from its end (or from end to end)."""
+    low, high = body.extent
+    start, stop = grid.x_range
+    tolerance = 1e-3 * grid.dx
+    if np.isfinite(low) and abs(start - low) > tolerance:
+        raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
+    if np.isfinite(high) and abs(stop - high) > tolerance:
+        raise InvalidInputError("x", f"cells up to {stop:g} m", f"cells that end at the free end, {high:g} m")
+
+
+class OperatorCache:
+    """Surface operators, kept while they are used and together take less than a bound.
+
+    Operators own their buffers, so each thread keeps its own.
+
+    Parameters
+    ----------
+    limit : int
+        Bytes that the kept operators may take together.
+    """
+
+    def __init__(self, limit: int = 2**30) -> None:
+        self.limit = limit
+        self._kept = local()
+
+    def get(self, body: Body, grid: Grid, *, tangential: bool, resolution: Resolution) -> SurfaceOperator:
+        """Return the operator for body and grid, building it if it is not at hand."""
+        kept: OrderedDict[object, SurfaceOperator] = self._kept.__dict__.setdefault("operators", OrderedDict())
+        key = (body, grid, resolution)
+        operator = kept.get(key)
+        if operator is None or (tangential and not operator.tangential):
+            operator = SurfaceOperator(body, grid, tangential=tangential, resolution=resolution)
+            kept[key] = operator
+        kept.move_to_end(key)
+        while len(kept) > 1 and sum(item.nbytes for item in kept.values()) > self.limit:
+            kept.popitem(last=False)
+        return operator
+
+
+OPERATORS = OperatorCache()
+
+
+def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0.0) -> xr.DataArray:
+    """Normal displacement of the top under a prescribed pressure and the friction that goes with it.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    pressure : DataArray (x, y)
+        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+    friction : float
+        Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
+
+    Returns
+    -------
+    DataArray (x, y)
+        `displacement_z` in metres, positive into the body. A finite-length space has no absolute displacement: its
+        value is relative to the top far away, at the distance along y stated in the attribute ``reference_distance``.
+
+    Raises
+    ------
+    InvalidInputError
+        If the pressure is not a DataArray of finite numbers on a uniform grid that fits the body.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from contactstudy import HalfSpace, Material
+    >>> centres = np.linspace(-0.95, 0.95, 20)
+    >>> pressure = xr.DataArray(np.ones((20, 20)), coords={"x": centres, "y": centres}, dims=("x", "y"))
+    >>> sunk = surface_displacement(HalfSpace(material=Material(1.0, 0.0)), pressure)
+    >>> round(float(sunk.max()), 2)
+    2.24
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    values, grid = labelled_cells("pressure", pressure)
+    friction = checks.finite("friction", friction)
+    operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
+    displacement = operator(values, friction * values if friction else None)
+    attributes = {"units": "m", "long_name": "normal displacement of the top, into the body"}
+    if np.isfinite(operator.reference):
+        attributes["reference_distance"] = operator.reference
+        attributes["reference"] = "zero at |y| = reference_distance (m) on the top"
+    return xr.DataArray(
+        displacement, coords={"x": pressure["x"], "y": pressure["y"]}, dims=("x", "y"),
+        name="displacement_z", attrs=attributes,
+    )
