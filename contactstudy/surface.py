@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from functools import cached_property
 from threading import local
 
 import numpy as np
@@ -107,6 +108,20 @@ class SurfaceOperator:
         if tangential:
             full *= 1j
         return self._transform.back(correction)
+
+    def precondition(self, gap: FloatArray) -> FloatArray:
+        """Roughly the pressure that sinks the cells by `gap`: the inverse of the mirrored half-space's spectrum."""
+        self._transform.lateral(gap)
+        full = self._transform.along()
+        full *= self._inverse
+        return self._transform.back()
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        # The constant's own entry depends on the reference only; the next one stands in for it.
+        spectrum = self._normal.copy()
+        spectrum[0, 0] = max(spectrum[0, 1], spectrum[1, 0])
+        return np.asarray(1.0 / np.maximum(spectrum, 1e-3 * spectrum.min(where=spectrum > 0, initial=np.inf)))
 
     @property
     def nbytes(self) -> int:

@@ -2,7 +2,8 @@
 
 Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. The nearest image is taken as it
 stands. The others vary smoothly over one period: the next few are evaluated, and those further away replaced by their
-load spread evenly (the midpoint rule read backwards), at Chebyshev points only, and interpolated.
+load spread evenly (the midpoint rule with its first correction, read backwards), at Chebyshev points only, and
+interpolated.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ from contactstudy.checks import FloatArray
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
-NEAR_IMAGES = 6
-FAR_LIMIT = 1e4  # of the spread load, over the length; beyond it nothing counts
+NEAR_IMAGES = 4
+FAR_LIMIT = 1e6  # of the spread load, over the length; beyond it nothing counts
 CHEBYSHEV_POINTS = 24
 
 
@@ -59,14 +60,19 @@ def mirrored_kernel(
 
     span = length + dx
     points = span * chebyshev.chebpts1(CHEBYSHEV_POINTS)
-    images: FloatArray = np.zeros(())
+    period, spread_from, spread_to = 2 * length, (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
+
+    def pair(distance: float) -> FloatArray:
+        """Images at `distance` on either side."""
+        left, right = points - distance, points + distance
+        return between(left - 0.5 * dx, left + 0.5 * dx) + between(right - 0.5 * dx, right + 0.5 * dx)
+
+    spread = between(points - spread_to, points - spread_from) + between(points + spread_from, points + spread_to)
+    step = 0.1 * length
+    slope = (pair(spread_from + step) - pair(spread_from - step)) / (2 * step)
+    images = dx / period * spread + period / 24 * slope
     for number in range(1, NEAR_IMAGES + 1):
-        for shift in (-2 * length * number, 2 * length * number):
-            images = images + between(points + shift - 0.5 * dx, points + shift + 0.5 * dx)
-    spread_from, spread_to = (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
-    spread = between(points - spread_to, points - spread_from)
-    spread = spread + between(points + spread_from, points + spread_to)
-    images = images + dx / (2 * length) * spread
+        images = images + pair(period * number)
     interpolation = np.linalg.solve(
         chebyshev.chebvander(points / span, CHEBYSHEV_POINTS - 1).T,
         chebyshev.chebvander(x / span, CHEBYSHEV_POINTS - 1).T,

@@ -35,6 +35,8 @@ class AxialModes:
         Wavenumbers ``k_n`` that are summed one by one, 1/m.
     ray, weights : complex array
         Nodes and weights of the rest, 1/m.
+    reach : float
+        Distance from the end beyond which nothing counts at these wavenumbers, metres; infinite with two ends.
     """
 
     length: float
@@ -42,6 +44,7 @@ class AxialModes:
     discrete: FloatArray
     ray: ComplexArray
     weights: ComplexArray
+    reach: float = np.inf
 
     @property
     def wavenumbers(self) -> ComplexArray:
@@ -68,7 +71,7 @@ class AxialModes:
     def _seen_from_both_ends(self, x: FloatArray, sign: int) -> ComplexArray:
         near = np.exp(1j * np.outer(self.ray, x))
         if not self.parity:
-            return near
+            return np.asarray(np.where(x > self.reach, 0.0, near))
         far = np.exp(1j * np.outer(self.ray, self.length - x))
         closing = 1 - self.parity * np.exp(1j * self.ray * self.length)
         return np.asarray((near + sign * self.parity * far) / closing[:, None])
@@ -83,33 +86,44 @@ class AxialModes:
 
     def cell_integrals(self, edges: FloatArray) -> ComplexArray:
         """Integrals of `cosine` over the cells between `edges`: array (wavenumber, cell)."""
+        edges = np.minimum(edges, self.reach)
         k = np.where(self.wavenumbers == 0, 1.0, self.wavenumbers)[:, None]
         integral = np.diff(self.sine(edges), axis=1) / k
         integral[self.wavenumbers == 0] = np.diff(edges)
         return np.asarray(integral)
 
 
-def axial_modes(length: float, longest: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
-    """Axial modes of a body, one entry per parity.
+# exp(-18) = 1.5e-8: beyond this many decay lengths from the corner a wavenumber along y adds nothing.
+DECAY_LENGTHS = 18.0
+# exp(-30) = 1e-13: beyond this many decay lengths the two ends of a body know nothing of each other.
+SEPARATE_ENDS = 30.0
+
+
+def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
+    """Axial modes of a body for wavenumbers along y from `lateral` on.
 
     Parameters
     ----------
     length : float
         Distance between the ends, metres; infinite for a quarter space.
-    longest, shortest : float
-        Longest and shortest distance that matter, metres; they bound the ray.
+    lateral : float
+        Smallest wavenumber along y that they serve, 1/m.
+    shortest : float
+        Shortest distance that matters, metres; it bounds the ray.
     resolution : Resolution
         Quadrature settings.
 
     Returns
     -------
     list of AxialModes
-        Even and odd for two ends; one entry for a quarter space.
+        Even and odd for two ends; one entry, with infinite length and parity 0, for a quarter space and for ends too
+        far apart to know of each other, each of which is then a quarter space.
     """
-    last = resolution.reach / shortest
-    if np.isinf(length):
-        ray, weights = ray_nodes(0.5 / longest, last, resolution)
-        return [AxialModes(length, 0, np.zeros(0), ray, weights)]
+    last = max(resolution.reach / shortest, 4 * lateral)
+    if lateral * length > SEPARATE_ENDS:
+        reach = DECAY_LENGTHS / lateral
+        ray, weights = ray_nodes(0.5 / reach, last, resolution)
+        return [AxialModes(np.inf, 0, np.zeros(0), ray, weights, reach)]
     spacing = np.pi / length
     # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
     start = (resolution.modes - 0.5) * spacing

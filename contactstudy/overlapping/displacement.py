@@ -12,11 +12,11 @@ zero-padded grid, once per body and grid. Far along y a finite-length body is a 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy import special
+from threadpoolctl import threadpool_limits
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
@@ -32,6 +32,8 @@ from contactstudy.overlapping.quadrature import (
 )
 
 POSITIONS_PER_PANEL = 8
+# Wavenumbers along y that share their axial ones.
+BATCH = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,22 +75,20 @@ class EndCorrection:
 
 
 def _sampled(
-    modes: AxialModes, lateral: FloatArray, positions: FloatArray, material: Material, shortest: float,
+    modes: AxialModes, wavenumber: float, positions: FloatArray, material: Material, shortest: float,
     resolution: Resolution, tangential: bool,
-) -> Iterator[tuple[FloatArray, FloatArray | None]]:
-    """Correction between the graded positions, for each lateral wavenumber in turn."""
+) -> list[FloatArray]:
+    """Correction between the graded positions at one wavenumber: from pressure and, if asked, from traction."""
     sources = modes.load_weights[:, None] * modes.cosine(positions)
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
-    for wavenumber in lateral:
-        system = EquationSet.build(modes, float(wavenumber), material.poisson, shortest, resolution)
-        from_pressure = system.from_pressure(sources)
-        normal = factor * from_pressure.T @ system.solve(from_pressure)
-        if tangential:
-            yield normal, factor * from_pressure.T @ system.solve(system.from_traction(sources))
-        else:
-            yield normal, None
+    system = EquationSet.build(modes, wavenumber, material.poisson, shortest, resolution)
+    from_pressure = system.from_pressure(sources)
+    columns = [from_pressure, system.from_traction(sources)] if tangential else [from_pressure]
+    return [factor * from_pressure.T @ system.solve(column) for column in columns]
 
 
+# The systems are too small for BLAS to share among threads: it would spend its time waiting.
+@threadpool_limits.wrap(limits=1, user_api="blas")
 def build_end_correction(
     length: float, material: Material, grid: Grid, *, reference: float, tangential: bool,
     resolution: Resolution,
@@ -117,7 +117,7 @@ def build_end_correction(
     lateral_last = max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
     first = 1e-2 / scale
     # The nodes of a panel follow the phase of the widest offset, half a window.
-    panel = 0.45 * resolution.lateral_order * 2 / (0.5 * window)
+    panel = 1.6 * resolution.lateral_order / (0.5 * window)
     lateral, weights = panel_nodes(graded_then_uniform_edges(first, panel, lateral_last), resolution.lateral_order)
     if np.isfinite(length):  # the first panel is integrated in closed form
         lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.lateral_order :]])
@@ -127,20 +127,24 @@ def build_end_correction(
     edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)
     cell_edges = np.linspace(0.0, span, grid.cells_x + 1)
     one_side = cell_moments(edges, positions, cell_edges)
-    moments, normal, shear = [], [], []
-    for modes in axial_modes(length, 2 * max(scale, span), shortest, resolution):
-        shape = (lateral.size, positions.size, positions.size)
-        from_pressure = np.empty(shape)
-        from_traction = np.empty(shape if tangential else (0,))
-        for i, (p, q) in enumerate(_sampled(modes, lateral, positions, material, shortest, resolution, tangential)):
-            from_pressure[i] = p
-            if q is not None:
-                from_traction[i] = q
-        moments.append(one_side + modes.parity * one_side[:, ::-1] if modes.parity else one_side)
-        normal.append(np.tensordot(to_grid[0], from_pressure, axes=1))
-        if tangential:
-            shear.append(np.tensordot(to_grid[1], from_traction, axes=1))
-    return EndCorrection(moments, normal, shear, grid.dx)
+    parities = (1, -1) if np.isfinite(length) else (0,)
+    samples = np.empty((len(parities), 1 + tangential, lateral.size, positions.size, positions.size))
+    modes = axial_modes(length, float(lateral.min()), shortest, resolution)
+    for i, wavenumber in enumerate(lateral):
+        if i % BATCH == 0 and i > 0:
+            modes = axial_modes(length, float(lateral[i:].min()), shortest, resolution)
+        for parity, mode in zip(parities, modes, strict=False):
+            sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, tangential)
+            if mode.parity == parity:
+                samples[abs(parity - 1) // 2 if parity else 0, :, i] = sampled
+            else:  # ends that know nothing of each other: both parities see half of either quarter space
+                samples[:, :, i] = 0.5 * np.array(sampled)
+    moments = [one_side + parity * one_side[:, ::-1] if parity else one_side for parity in parities]
+    spread = [
+        [np.tensordot(transform, samples[p, kind], axes=1) for p in range(len(parities))]
+        for kind, transform in enumerate(to_grid[: 1 + tangential])
+    ]
+    return EndCorrection(moments, spread[0], spread[1] if tangential else [], grid.dx)
 
 
 def _lateral_transforms(

@@ -74,8 +74,8 @@ class Resolution:
     angle: float = np.pi / 6
     reach: float = 200.0
     modes: int = 8
-    lateral_order: int = 12
-    lateral_reach: float = 12.0
+    lateral_order: int = 16
+    lateral_reach: float = 10.0
 
 
 def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:

@@ -1,0 +1,289 @@
+"""Stresses of the equivalent loads: what the free ends add to the mirrored half-space.
+
+For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their rays,
+where every factor decays with the distance from the loaded corner; the stresses are sums of separable terms
+``f(k, x) g(k, z)``, taken as matrix products. Only points within reach of a corner take part at a high wavenumber.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from contactstudy.checks import FloatArray
+from contactstudy.grid import Grid
+from contactstudy.overlapping.axial import DECAY_LENGTHS, AxialModes, axial_modes
+from contactstudy.overlapping.equations import EquationSet, slab_factors
+from contactstudy.overlapping.quadrature import (
+    ComplexArray,
+    Resolution,
+    graded_then_uniform_edges,
+    panel_nodes,
+)
+
+# Wavenumbers that share one set of points and one product along y.
+BATCH = 24
+# Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
+# there, of which only the sum is finite.
+CORNER_OFFSET = 1e-2
+# Order of the components: xx, yy, zz, xy, xz, yz.
+EVEN_IN_Y, ODD_IN_Y = [0, 1, 2, 4], [3, 5]
+
+
+@dataclass(frozen=True, eq=False)
+class LateralAmplitudes:
+    """Top loads as amplitudes along x for each wavenumber along y.
+
+    Attributes
+    ----------
+    pressure, traction : array (cell, q, 2)
+        Amplitudes of the parts that make stresses even in y follow ``cos(k_y y)`` and ``sin(k_y y)``.
+    """
+
+    pressure: FloatArray
+    traction: FloatArray
+
+
+def lateral_amplitudes(
+    pressure: FloatArray, friction: float, grid: Grid, wavenumbers: FloatArray
+) -> LateralAmplitudes:
+    """Amplitudes of cell-wise uniform `pressure` (x, y) and of the traction that friction makes of it."""
+    width = grid.dy * np.sinc(wavenumbers * grid.dy / (2 * np.pi))
+    cosine = pressure @ (np.cos(np.outer(grid.y, wavenumbers)) * width)
+    sine = pressure @ (np.sin(np.outer(grid.y, wavenumbers)) * width)
+    # Kernels of a traction carry a factor i against those of a pressure, which turns cosine into sine.
+    return LateralAmplitudes(
+        np.stack([cosine, sine], axis=-1),
+        friction * np.stack([sine, -cosine], axis=-1),
+    )
+
+
+def lateral_nodes(
+    length: float, grid: Grid, reach: float, shortest: float, resolution: Resolution
+) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of the integral over the wavenumber along y.
+
+    `reach` is the largest distance along y between load and point: the panels are as wide as its phase lets the
+    Gauss nodes follow.
+    """
+    scale = min(length, 4 * max(grid.x_range[1], reach))
+    panel = 1.8 * resolution.lateral_order / reach
+    edges = graded_then_uniform_edges(1e-2 / scale, panel, resolution.lateral_reach / shortest)
+    return panel_nodes(edges, resolution.lateral_order)
+
+
+def end_stress(
+    length: float,
+    poisson: float,
+    pressure: FloatArray,
+    friction: float,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    resolution: Resolution,
+) -> FloatArray:
+    """Stresses that the free ends add to the half-space with all mirrored loads.
+
+    Parameters
+    ----------
+    length : float
+        Distance between the ends, metres; infinite for one end.
+    poisson : float
+        Poisson's ratio.
+    pressure : array (cell_x, cell_y)
+        Pressure on the cells of `grid`, Pa.
+    friction : float
+        Coefficient of the traction along +y.
+    grid : Grid
+        Cells, from ``x = 0``.
+    x, y, z : array
+        Points, as a tensor product, inside the body, metres.
+    resolution : Resolution
+        Quadrature settings.
+
+    Returns
+    -------
+    array (6, x, y, z)
+        xx, yy, zz, xy, xz, yz in Pa.
+    """
+    offset = CORNER_OFFSET * min(grid.dx, grid.dy)
+    arguments = (length, poisson, pressure, friction, grid)
+    with threadpool_limits(1, user_api="blas"):  # the products are too small to share among threads
+        result = _away_from_corner(*arguments, x, y, z, offset, resolution)
+        rows, columns = np.flatnonzero(np.minimum(x, length - x) < offset), np.flatnonzero(z < offset)
+        if rows.size and columns.size:
+            at_corner = _away_from_corner(*arguments, x[rows], y, np.array([offset]), offset, resolution)
+            result[np.ix_(range(6), rows, range(y.size), columns)] = at_corner
+    return result
+
+
+def _away_from_corner(
+    length: float,
+    poisson: float,
+    pressure: FloatArray,
+    friction: float,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    offset: float,
+    resolution: Resolution,
+) -> FloatArray:
+    from_end = np.minimum(x, length - x)
+    distance = np.hypot(from_end[:, None], z[None, :])
+    shortest = max(float(distance.min()), offset)
+    # Along y the load is known to the cell only; finer than a part of a cell there is nothing to resolve.
+    lateral_shortest = max(shortest, 0.25 * min(grid.dx, grid.dy))
+    loaded = np.abs(grid.y[pressure.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
+    lateral, weights = lateral_nodes(length, grid, loaded + np.abs(y).max(), lateral_shortest, resolution)
+    loads = lateral_amplitudes(pressure, friction, grid, lateral)
+    cosine, sine = (function(np.outer(lateral, y)) * (weights / np.pi)[:, None] for function in (np.cos, np.sin))
+    synthesis_even = np.stack([cosine, sine], axis=1)
+    synthesis_odd = np.stack([-sine, cosine], axis=1)
+    result = np.zeros((6, x.size, z.size, y.size))
+    for start in range(0, lateral.size, BATCH):
+        batch = slice(start, min(start + BATCH, lateral.size))
+        near = lateral[start] * distance < DECAY_LENGTHS
+        rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
+        if not rows.size:
+            break
+        views = [
+            view
+            for modes in axial_modes(length, float(lateral[start]), shortest, resolution)
+            for view in _views(modes, length, loads, batch, grid, x[rows])
+        ]
+        fields = np.zeros((6, rows.size, columns.size, lateral[batch].size, 2))
+        for number, wavenumber in enumerate(lateral[batch]):
+            system = None
+            for view in views:
+                if system is None or system.modes is not view.modes:
+                    system = EquationSet.build(view.modes, float(wavenumber), poisson, shortest, resolution)
+                fields[..., number, :] += _harmonic_stress(system, view, number, z[columns], shortest, resolution)
+        for components, synthesis in ((EVEN_IN_Y, synthesis_even), (ODD_IN_Y, synthesis_odd)):
+            flat = fields[components].reshape(-1, 2 * fields.shape[3])
+            values = flat @ synthesis[batch].reshape(-1, y.size)
+            target = np.ix_(components, rows, columns, range(y.size))
+            result[target] += values.reshape(len(components), rows.size, columns.size, y.size)
+    return np.ascontiguousarray(result.transpose(0, 1, 3, 2))
+
+
+@dataclass(frozen=True, eq=False)
+class _View:
+    """Loads and points as one set of axial modes sees them; from end II when `flipped`."""
+
+    modes: AxialModes
+    pressure: ComplexArray
+    traction: ComplexArray
+    x: FloatArray
+    cosine: ComplexArray
+    sine: ComplexArray
+    flipped: bool
+
+
+def _views(
+    modes: AxialModes, length: float, loads: LateralAmplitudes, batch: slice, grid: Grid, x: FloatArray
+) -> list[_View]:
+    edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
+    integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
+    # Ends that know nothing of each other are two quarter spaces, the second seen from its own end.
+    sides = (False, True) if np.isfinite(length) and not modes.parity else (False,)
+    views = []
+    for flipped in sides:
+        facing = integrals[:, ::-1] if flipped else integrals
+        spectra = [np.tensordot(facing, part[:, batch], axes=1) for part in (loads.pressure, loads.traction)]
+        distance = length - x if flipped else x
+        views.append(_View(modes, *spectra, distance, modes.cosine(distance), modes.sine(distance), flipped))
+    return views
+
+
+def _harmonic_stress(
+    system: EquationSet, view: _View, number: int, z: FloatArray, shortest: float, resolution: Resolution
+) -> FloatArray:
+    """Amplitudes of the six stresses for the batch's wavenumber `number`: array (6, x, z, 2)."""
+    pressure, traction = view.pressure[:, number], view.traction[:, number]
+    source = system.from_pressure(pressure)
+    if np.any(traction):
+        source = source + system.from_traction(traction)
+    equivalent = system.on_top(system.solve(source))
+    depth, weights, face_load = system.on_ray(pressure, traction, equivalent, shortest, resolution)
+    stress = _below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
+    stress += _beside_face_load(system, depth, weights[:, None] * face_load, view.x, z)
+    if view.flipped:
+        stress[[3, 4]] *= -1.0
+    return stress
+
+
+def _real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
+    """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
+    flat_left = left.reshape(-1, left.shape[-1])
+    flat_right = right.reshape(right.shape[0], -1)
+    product = np.hstack([flat_left.real, -flat_left.imag]) @ np.vstack([flat_right.real, flat_right.imag])
+    return np.asarray(product.reshape(*left.shape[:-1], *right.shape[1:]))
+
+
+def _below_equivalent_load(
+    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+) -> FloatArray:
+    """Stresses of H under the equivalent load: array (6, x, z, 2). Half-space harmonics, pressure column."""
+    nu, lateral = system.poisson, system.lateral
+    axial = system.modes.wavenumbers
+    k = np.sqrt(axial**2 + lateral**2)
+    c2, s2 = (axial / k) ** 2, (lateral / k) ** 2
+    decay = np.exp(-np.outer(k, z))
+    ramp = decay * z
+    zero = np.zeros_like(k)
+    even = [  # xx, yy, zz, yz, each as (constant, factor of z)
+        (-(c2 + 2 * nu * s2), c2 * k),
+        (-(s2 + 2 * nu * c2), s2 * k),
+        (zero - 1, -k),
+        (zero, zero + lateral),
+    ]
+    odd = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
+    result = np.empty((6, cosine.shape[1], z.size, 2))
+    for functions, terms, components in ((cosine, even, [0, 1, 2, 5]), (sine, odd, [3, 4])):
+        along_z = np.stack([a[:, None] * decay + b[:, None] * ramp for a, b in terms], axis=1)
+        right = along_z[..., None] * equivalent[:, None, None, :]
+        result[components] = _real_product(functions.T, right).transpose(1, 0, 2, 3)
+    return result
+
+
+def _beside_face_load(
+    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Stresses of V under the face loads on its two ends: array (6, x, z, 2).
+
+    The slab's harmonics, written as two half-space harmonics that start from either end; with ``X = kappa`` times the
+    distance from the end, ``tau`` and ``T`` of `slab_factors`, and ``Phi = 1 - 2 nu - tau - X``, each end gives
+    ``T exp(-X) / (1 - parity exp(-kappa L))`` times the terms below.
+    """
+    nu, lateral, modes = system.poisson, system.lateral, system.modes
+    kappa = np.sqrt(depth**2 + lateral**2)
+    factor, tau = slab_factors(kappa, modes.length, modes.parity)
+    amplitude = factor.copy()
+    if modes.parity:
+        amplitude /= 1 - modes.parity * np.exp(-kappa * modes.length)
+    waves = np.exp(1j * np.outer(depth, z))
+    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    cosine_z: ComplexArray = np.zeros((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
+    sine_z: ComplexArray = np.zeros((2, x.size, depth.size), np.complex128)  # yz, xz
+    ends = [(x, 1, 1)]
+    if modes.parity:
+        ends.append((modes.length - x, modes.parity, -modes.parity))
+    for distance, even, odd in ends:
+        scaled = np.outer(distance, kappa)
+        decay = np.exp(-scaled)
+        potential = (1 - 2 * nu - tau - scaled) * decay
+        shear = (tau + scaled) * decay / kappa
+        cosine_z[0] += even * (1 + tau + scaled) * decay
+        cosine_z[1] += even * ((lateral / kappa) ** 2 * potential + 2 * nu * decay)
+        cosine_z[2] += even * ((depth / kappa) ** 2 * potential + 2 * nu * decay)
+        cosine_z[3] -= odd * lateral * shear
+        sine_z[0] += even * lateral * depth / kappa**2 * potential
+        sine_z[1] += odd * depth * shear
+    result = np.empty((6, x.size, z.size, 2))
+    result[[0, 1, 2, 3]] = _real_product(cosine_z, right)
+    result[[5, 4]] = _real_product(-1j * sine_z, right)
+    return result
