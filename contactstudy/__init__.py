@@ -1,7 +1,87 @@
-"""Rolling-sliding contact of a roller on an elastic body with free end faces."""
+"""Rolling-sliding contact of a roller on an elastic body with free end faces.
 
-from contactstudy.bodies import FiniteLengthSpace, HalfSpace
-from contactstudy.case import Case, choose_grid
-from contactstudy.grid import Grid
-from contactstudy.material import Material
-from contactstudy.roller import Roller
+Names are imported when they are first used, so that ``import contactstudy`` stays fast.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from contactstudy import profiles
+    from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace
+    from contactstudy.case import Case, choose_grid
+    from contactstudy.contact import solve_contact
+    from contactstudy.errors import (
+        ContactStudyError,
+        ConvergenceWarning,
+        InvalidInputError,
+        WindowError,
+    )
+    from contactstudy.grid import Grid
+    from contactstudy.invariants import von_mises
+    from contactstudy.material import Material
+    from contactstudy.roller import Roller
+    from contactstudy.solve import solve
+    from contactstudy.stress import stress_field
+    from contactstudy.surface import surface_displacement
+
+_HOME = {
+    "Body": "bodies",
+    "Case": "case",
+    "ContactStudyError": "errors",
+    "ConvergenceWarning": "errors",
+    "FiniteLengthSpace": "bodies",
+    "Grid": "grid",
+    "HalfSpace": "bodies",
+    "InvalidInputError": "errors",
+    "Material": "material",
+    "Roller": "roller",
+    "WindowError": "errors",
+    "choose_grid": "case",
+    "profiles": "",
+    "solve": "solve",
+    "solve_contact": "contact",
+    "stress_field": "stress",
+    "surface_displacement": "surface",
+    "von_mises": "invariants",
+}
+
+__all__ = [
+    "Body",
+    "Case",
+    "ContactStudyError",
+    "ConvergenceWarning",
+    "FiniteLengthSpace",
+    "Grid",
+    "HalfSpace",
+    "InvalidInputError",
+    "Material",
+    "Roller",
+    "WindowError",
+    "choose_grid",
+    "profiles",
+    "solve",
+    "solve_contact",
+    "stress_field",
+    "surface_displacement",
+    "von_mises",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name from its module on first use."""
+    if name not in _HOME:
+        raise AttributeError(f"module 'contactstudy' has no attribute {name!r}")
+    home = _HOME[name]
+    if not home:
+        return import_module(f"contactstudy.{name}")
+    value = getattr(import_module(f"contactstudy.{home}"), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    """Public names, for completion."""
+    return list(__all__)

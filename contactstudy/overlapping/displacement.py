@@ -27,8 +27,7 @@ from contactstudy.overlapping.panels import cell_moments, graded_positions
 from contactstudy.overlapping.quadrature import (
     ComplexArray,
     Resolution,
-    graded_then_uniform_edges,
-    panel_nodes,
+    lateral_nodes,
 )
 
 POSITIONS_PER_PANEL = 8
@@ -116,12 +115,10 @@ def build_end_correction(
     scale = min(length, 4 * max(span, window))
     lateral_last = max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
     first = 1e-2 / scale
-    # The nodes of a panel follow the phase of the widest offset, half a window.
-    panel = 1.6 * resolution.lateral_order / (0.5 * window)
-    lateral, weights = panel_nodes(graded_then_uniform_edges(first, panel, lateral_last), resolution.lateral_order)
+    lateral, weights = lateral_nodes(first, 0.5 * window, lateral_last, resolution)
     if np.isfinite(length):  # the first panel is integrated in closed form
-        lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.lateral_order :]])
-        weights = weights[resolution.lateral_order :]
+        lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.order :]])
+        weights = weights[resolution.order :]
     to_grid = _lateral_transforms(lateral, weights, grid, first, reference if np.isfinite(length) else None)
     half = 0.5 * length if np.isfinite(length) else span
     edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)

@@ -19,8 +19,7 @@ from contactstudy.overlapping.equations import EquationSet, slab_factors
 from contactstudy.overlapping.quadrature import (
     ComplexArray,
     Resolution,
-    graded_then_uniform_edges,
-    panel_nodes,
+    lateral_nodes,
 )
 
 # Wavenumbers that share one set of points and one product along y.
@@ -58,20 +57,6 @@ def lateral_amplitudes(
         np.stack([cosine, sine], axis=-1),
         friction * np.stack([sine, -cosine], axis=-1),
     )
-
-
-def lateral_nodes(
-    length: float, grid: Grid, reach: float, shortest: float, resolution: Resolution
-) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of the integral over the wavenumber along y.
-
-    `reach` is the largest distance along y between load and point: the panels are as wide as its phase lets the
-    Gauss nodes follow.
-    """
-    scale = min(length, 4 * max(grid.x_range[1], reach))
-    panel = 1.8 * resolution.lateral_order / reach
-    edges = graded_then_uniform_edges(1e-2 / scale, panel, resolution.lateral_reach / shortest)
-    return panel_nodes(edges, resolution.lateral_order)
 
 
 def end_stress(
@@ -135,10 +120,15 @@ def _away_from_corner(
     from_end = np.minimum(x, length - x)
     distance = np.hypot(from_end[:, None], z[None, :])
     shortest = max(float(distance.min()), offset)
-    # Along y the load is known to the cell only; finer than a part of a cell there is nothing to resolve.
-    lateral_shortest = max(shortest, 0.25 * min(grid.dx, grid.dy))
     loaded = np.abs(grid.y[pressure.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
-    lateral, weights = lateral_nodes(length, grid, loaded + np.abs(y).max(), lateral_shortest, resolution)
+    reach = loaded + np.abs(y).max()
+    lateral, weights = lateral_nodes(
+        1e-2 / min(length, 4 * max(grid.x_range[1], reach)),
+        reach,
+        # Along y the load is known to the cell only; finer than half a cell there is nothing to resolve.
+        resolution.lateral_reach / max(shortest, 0.5 * min(grid.dx, grid.dy)),
+        resolution,
+    )
     loads = lateral_amplitudes(pressure, friction, grid, lateral)
     cosine, sine = (function(np.outer(lateral, y)) * (weights / np.pi)[:, None] for function in (np.cos, np.sin))
     synthesis_even = np.stack([cosine, sine], axis=1)

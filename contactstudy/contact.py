@@ -1,0 +1,216 @@
+"""Contact of a rigid shape with a body: pressure and gap under a prescribed load, with their certificate."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+import xarray as xr
+from threadpoolctl import threadpool_limits
+
+from contactstudy import checks
+from contactstudy.bodies import Body
+from contactstudy.checks import FloatArray
+from contactstudy.conjugate_gradients import ContactIterate, solve_complementarity
+from contactstudy.dataset import describe
+from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
+from contactstudy.labelled import labelled_cells
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.surface import OPERATORS, SurfaceOperator
+
+# A gap counts as open when it exceeds this many tolerances of the displacement's variation.
+OPEN_TOLERANCES = 10.0
+COUPLED_ROUNDS = 60
+
+
+def solve_contact(
+    body: Body,
+    gap: xr.DataArray,
+    load: float,
+    friction: float = 0.0,
+    coupled: bool = False,
+    *,
+    tolerance: float = 1e-6,
+    max_iterations: int = 500,
+) -> xr.Dataset:
+    """Press a rigid shape on a body.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    gap : DataArray (x, y)
+        Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite where there is nothing
+        to touch. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
+        around the contact.
+    load : float
+        Normal load, N.
+    friction : float
+        Coefficient ``f``; the shear traction on the body is ``f`` times the pressure along +y.
+    coupled : bool
+        Whether the friction also displaces the surface normally, which changes pressure and contact (it cannot when
+        Poisson's ratio is 1/2).
+    tolerance : float
+        Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
+        of the pressure, over its sum.
+    max_iterations : int
+        Bound on the iterations.
+
+    Returns
+    -------
+    Dataset
+        `pressure`, `shear_traction`, `gap`, `displacement_z` (x, y); `load`, `approach`, `iterations`, `converged`;
+        and the certificate, recomputed from the pressure alone: `load_error`, `penetration_error`,
+        `open_pressure_error`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind or out of range, or the grid does not fit the body.
+    WindowError
+        If the contact reaches an edge of the grid where the body goes on.
+
+    Warns
+    -----
+    ConvergenceWarning
+        If the iteration stopped before its tolerance; `converged` is then False.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from contactstudy import HalfSpace, Material
+    >>> centres = np.linspace(-1.5, 1.5, 65)
+    >>> gap = xr.DataArray(
+    ...     0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
+    ... )
+    >>> contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, load=4 / 3)
+    >>> bool(contact.converged), round(float(contact.pressure.max()), 2)
+    (True, 0.64)
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    clearance, grid = labelled_cells("gap", gap, infinite=True)
+    load = checks.positive("load", load, "N")
+    friction = checks.finite("friction", friction)
+    checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
+    tolerance = checks.positive("tolerance", tolerance)
+    max_iterations = checks.count("max_iterations", max_iterations)
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
+    bends = bool(coupled) and friction != 0
+    total = load / grid.cell_area
+    with threadpool_limits(1, user_api="blas"):  # the products are too small to share among threads
+        operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
+        solve = _solve_coupled if bends else _solve_normal
+        iterate = solve(operator, clearance, total, friction, tolerance, max_iterations)
+        pressure = iterate.pressure
+        traction = friction * pressure
+        displacement = operator(pressure, traction if bends else None)
+    _check_window(body, pressure, np.isfinite(clearance))
+    if not iterate.converged:
+        warnings.warn(
+            f"the contact iteration stopped after {iterate.applications} operator applications without reaching "
+            f"tolerance = {tolerance:g}; raise max_iterations (now {max_iterations}) or coarsen the grid",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+    height = clearance + displacement
+    approach = float((pressure * np.where(pressure > 0, height, 0.0)).sum() / pressure.sum())
+    opening = height - approach
+    variation = float(np.ptp(displacement))
+    touching = pressure > 0
+    violation = max(float(np.abs(opening[touching]).max()), float(-opening.min()))
+    at_open_gap = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
+    dims = ("x", "y")
+    scalars: dict[str, float | int | bool] = {
+        "load": load,
+        "approach": approach,
+        "iterations": iterate.applications,
+        "converged": iterate.converged,
+        "load_error": float(pressure.sum() * grid.cell_area / load - 1),
+        "penetration_error": violation / variation,
+        "open_pressure_error": float(at_open_gap.max(initial=0.0) / pressure.max()),
+    }
+    fields = {
+        "pressure": pressure,
+        "shear_traction": traction,
+        "gap": np.where(np.isfinite(opening), opening, np.inf),
+        "displacement_z": displacement,
+    }
+    result = xr.Dataset(
+        {name: (dims, values) for name, values in fields.items()} | scalars,
+        coords={"x": gap["x"].values, "y": gap["y"].values},
+    )
+    if np.isfinite(operator.reference):
+        result["displacement_z"].attrs["reference_distance"] = operator.reference
+        result["displacement_z"].attrs["reference"] = "zero at |y| = reference_distance (m) on the top"
+    return describe(result, "contact of a rigid shape with an elastic body")
+
+
+def _first_guess(gap: FloatArray) -> FloatArray:
+    """Pressure that follows the gap over the lower part of the cells that can touch."""
+    possible = np.isfinite(gap)
+    level = np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
+    guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
+    return np.asarray(guess if guess.any() else possible.astype(np.float64))
+
+
+def _solve_normal(
+    operator: SurfaceOperator,
+    gap: FloatArray,
+    total: float,
+    friction: float,
+    tolerance: float,
+    max_iterations: int,
+    start: FloatArray | None = None,
+) -> ContactIterate:
+    """Contact without the displacement from friction."""
+    return solve_complementarity(
+        operator,
+        operator.precondition,
+        gap,
+        total,
+        _first_guess(gap) if start is None else start,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+    )
+
+
+def _solve_coupled(
+    operator: SurfaceOperator,
+    gap: FloatArray,
+    total: float,
+    friction: float,
+    tolerance: float,
+    max_iterations: int,
+) -> ContactIterate:
+    """Contact with the displacement from friction: the traction of one round shapes the gap of the next.
+
+    The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``, so a few are enough.
+    """
+    iterate = _solve_normal(operator, gap, total, friction, tolerance, max_iterations)
+    applications = iterate.applications
+    for _ in range(COUPLED_ROUNDS):
+        bent = operator(np.zeros_like(gap), friction * iterate.pressure)
+        previous = iterate.pressure
+        iterate = _solve_normal(operator, gap + bent, total, friction, tolerance, max_iterations, previous)
+        applications += iterate.applications + 1
+        change = float(np.abs(iterate.pressure - previous).sum() / total)
+        if change <= 3 * tolerance or not iterate.converged:
+            return ContactIterate(iterate.pressure, iterate.approach, applications, iterate.converged)
+    return ContactIterate(iterate.pressure, iterate.approach, applications, False)
+
+
+def _check_window(body: Body, pressure: FloatArray, possible: np.ndarray) -> None:
+    """Raise if the contact reaches an edge of the grid that is not an end of the body."""
+    low, high = body.extent
+    edges = {"y_min": pressure[:, 0], "y_max": pressure[:, -1]}
+    if np.isinf(low):
+        edges["x_min"] = pressure[0]
+    if np.isinf(high):
+        edges["x_max"] = pressure[-1]
+    for name, values in edges.items():
+        if values.any():
+            raise WindowError(
+                f"the contact reaches the grid's edge {name} (pressure {values.max():.3g} Pa there): the window is too "
+                f"narrow for the load; widen it along {name[0]} or lower the load"
+            )

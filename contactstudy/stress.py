@@ -1,0 +1,155 @@
+"""Stresses in a body under a prescribed pressure on its top."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.bodies import Body
+from contactstudy.checks import FloatArray
+from contactstudy.dataset import STRESSES, describe
+from contactstudy.errors import InvalidInputError
+from contactstudy.grid import Grid
+from contactstudy.invariants import von_mises
+from contactstudy.kernels.stress import half_space_stress
+from contactstudy.labelled import labelled_cells
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.stress import end_stress
+from contactstudy.surface import check_span
+
+Positions = Sequence[float] | npt.ArrayLike
+
+
+def stress_field(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = 0.0,
+    x: Positions | None = None,
+    y: Positions | None = None,
+    z: Positions = (0.0,),
+) -> xr.Dataset:
+    """Stresses at the tensor product of any x, y and z.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    pressure : DataArray (x, y)
+        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+    friction : float
+        Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
+    x, y : sequence of float, optional
+        Positions in metres, inside the body and in any order; default: the pressure's own.
+    z : sequence of float
+        Depths in metres, not negative.
+
+    Returns
+    -------
+    Dataset
+        `sigma_xx`, `sigma_yy`, `sigma_zz`, `tau_xy`, `tau_xz`, `tau_yz` and `von_mises` (x, y, z) in Pa, positive in
+        tension. What is known exactly is returned exactly: free ends carry no traction, the top carries the load.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind, a position lies outside the body, or the grid does not fit it.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> centres = 0.125 + 0.25 * np.arange(8)
+    >>> pressure = xr.DataArray(np.ones((8, 8)), coords={"x": centres, "y": centres - 1.0}, dims=("x", "y"))
+    >>> body = FiniteLengthSpace(length=2.0, material=Material(1.0, 0.3))
+    >>> stress = stress_field(body, pressure, x=[0.0, 1.0], y=[0.0], z=[0.5])
+    >>> float(stress.sigma_xx[0, 0, 0]), round(float(stress.sigma_zz[1, 0, 0]), 3)
+    (0.0, -0.959)
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    values, grid = labelled_cells("pressure", pressure)
+    check_span(body, grid)
+    friction = checks.finite("friction", friction)
+    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", x), grid)
+    at_y = grid.y if y is None else checks.coordinates("y", y)
+    at_z = checks.coordinates("z", z)
+    if (at_z < 0).any():
+        raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
+    stresses = raw_stress(body, values, friction, grid, at_x, at_y, at_z)
+    _impose_free_ends(body, stresses, at_x)
+    fields = xr.Dataset(
+        {name: (("x", "y", "z"), stresses[i]) for i, name in enumerate(STRESSES)},
+        coords={
+            "x": pressure["x"].values if x is None else at_x,
+            "y": pressure["y"].values if y is None else at_y,
+            "z": at_z,
+        },
+    )
+    fields["von_mises"] = von_mises(fields)
+    return describe(fields, "stresses under a prescribed pressure")
+
+
+def raw_stress(
+    body: Body, pressure: FloatArray, friction: float, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Stresses (6, x, y, z) as computed: nothing is imposed on the free ends."""
+    stresses = half_space_stress(
+        pressure, friction, body.material.poisson, grid, x, y, z, extent=body.extent
+    )
+    low, high = body.extent
+    if np.isfinite(low) and pressure.any():
+        from_ends = end_stress(high, body.material.poisson, pressure, friction, grid, x, y, z, Resolution())
+        # The two auxiliary bodies leave no traction on the top, by construction.
+        from_ends[np.ix_([2, 4, 5], range(x.size), range(y.size), np.flatnonzero(z == 0))] = 0.0
+        stresses += from_ends
+    return stresses
+
+
+def end_traction_residual(
+    body: Body, pressure: FloatArray, friction: float, grid: Grid, y: FloatArray, z: FloatArray
+) -> float:
+    """Largest traction that the solution leaves on the free ends, over the peak pressure.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    pressure : array (x, y)
+        Pressure on the cells of `grid`, Pa.
+    friction : float
+        Coefficient of the traction along +y.
+    grid : Grid
+        Cells.
+    y, z : array
+        Where to look on the end faces, metres.
+
+    Returns
+    -------
+    float
+        0 for a body without ends.
+    """
+    ends = np.array([end for end in body.extent if np.isfinite(end)])
+    if not ends.size or not pressure.any():
+        return 0.0
+    traction = raw_stress(body, pressure, friction, grid, ends, y, z)[[0, 3, 4]]
+    return float(np.sqrt((traction**2).sum(axis=0)).max() / pressure.max())
+
+
+def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
+    """Positions clipped by rounding errors to the body; raise for any outside."""
+    low, high = body.extent
+    rounding = 1e-9 * grid.dx
+    outside = (x < low - rounding) | (x > high + rounding)
+    if outside.any():
+        raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
+    return np.clip(x, low, high)
+
+
+def _impose_free_ends(body: Body, stresses: FloatArray, x: FloatArray) -> None:
+    """Set what is known exactly on the end faces."""
+    on_end = np.isin(x, body.extent)
+    stresses[np.ix_([0, 3, 4], np.flatnonzero(on_end), range(stresses.shape[2]), range(stresses.shape[3]))] = 0.0

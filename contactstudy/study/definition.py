@@ -1,0 +1,201 @@
+"""A study as its author writes it: in Python or in a TOML file, with the same meaning."""
+
+from __future__ import annotations
+
+import json
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.errors import InvalidInputError
+from contactstudy.study.cube import Axis
+from contactstudy.study.errors import StudyFileError
+from contactstudy.study.parameters import PARAMETERS, checked
+from contactstudy.study.plan import LEVELS, Plan, label, make_plan
+
+KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
+"""Keys of a study file; each is also an argument of :class:`Study`."""
+
+
+def _listed(name: str, values: object) -> list[Any]:
+    """Values of a swept parameter as a list that is not empty."""
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
+        raise InvalidInputError(name, values, "a list of values")
+    if not values:
+        raise InvalidInputError(name, values, "a list of at least one value")
+    return list(values)
+
+
+def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
+    """A table, or a list of tables, as a list of tables."""
+    entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
+    if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
+        raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
+    return entries
+
+
+@dataclass(frozen=True)
+class Study:
+    """A parametric study: which cases to solve, and what to keep of each.
+
+    Parameters
+    ----------
+    name : str
+        Letters, digits, ``_ - .``; the default folder is named after it.
+    base : mapping
+        Parameters that all cases share, see :data:`contactstudy.study.parameters.PARAMETERS`.
+    sweep : mapping of lists
+        Parameters that are combined each with each; every one becomes a dimension.
+    zip : mapping of lists, or list of such mappings
+        Parameters that change together: lists of equal length; every mapping becomes one dimension.
+    cases : list of mappings
+        Explicit cases, each on top of `base`, beside the product.
+    exclude : list of mappings
+        Combinations to leave out: a case is out if every named parameter has the value, or one of the values, given.
+        A profile is named by its label.
+    level : {"summary", "surface", "fields"}
+        What is kept of each case: scalars; also pressure, gap, ...; also stresses.
+    description : str
+        For the reader.
+
+    Raises
+    ------
+    InvalidInputError
+        If a key is unknown (with the nearest known one), or a value is of a wrong type. Combinations that are
+        impossible are no error: :meth:`plan` lists them as skipped, with the reason.
+
+    Examples
+    --------
+    >>> study = Study(
+    ...     name="ends",
+    ...     base={"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 1e-3, "max_pressure": 1.5e9},
+    ...     sweep={"e_over_a": [0, 1, 2], "friction": [0.0, 0.1]},
+    ...     exclude=[{"e_over_a": [1, 2], "friction": 0.1}],
+    ... )
+    >>> [case.name for case in study.plan().cases]
+    ['e_over_a=0 friction=0', 'e_over_a=0 friction=0.1', 'e_over_a=1 friction=0', 'e_over_a=2 friction=0']
+    """
+
+    name: str
+    base: Mapping[str, Any] = field(default_factory=dict)
+    sweep: Mapping[str, Any] = field(default_factory=dict)
+    zip: Any = ()
+    cases: Sequence[Mapping[str, Any]] = ()
+    exclude: Sequence[Mapping[str, Any]] = ()
+    level: str = "fields"
+    description: str = ""
+
+    def __post_init__(self) -> None:
+        """Check names and types, and bring every value into one form."""
+        if not isinstance(self.name, str) or not re.fullmatch(r"[A-Za-z0-9][\w.-]*", self.name):
+            raise InvalidInputError("name", self.name, "a word of letters, digits and _ - .")
+        checks.instance("level", self.level, str, "text")
+        checks.known_name("level", self.level, LEVELS)
+        checks.instance("description", self.description, str, "text")
+        for key in ("base", "sweep"):
+            checks.instance(key, getattr(self, key), Mapping, "a table of parameters")
+        set_ = object.__setattr__
+        set_(self, "base", checked(self.base, "base"))
+        set_(self, "sweep", {name: self._swept("sweep", name, values) for name, values in self.sweep.items()})
+        zipped = []
+        for group in _tables("zip", self.zip):
+            columns = {name: self._swept("zip", name, values) for name, values in group.items()}
+            lengths = {name: len(column) for name, column in columns.items()}
+            if len(set(lengths.values())) > 1:
+                raise InvalidInputError("zip", lengths, "lists of equal length")
+            zipped.append(columns)
+        set_(self, "zip", tuple(group for group in zipped if group))
+        set_(self, "cases", tuple(checked(case, "cases") for case in _tables("cases", self.cases)))
+        set_(self, "exclude", tuple(self._rule(rule) for rule in _tables("exclude", self.exclude)))
+        names = [*self.sweep, *(name for group in self.zip for name in group)]
+        for name in names:
+            if names.count(name) > 1:
+                raise InvalidInputError("zip", name, "a parameter that is not swept or zipped already")
+
+    @staticmethod
+    def _swept(where: str, name: str, values: object) -> list[Any]:
+        checks.known_name(where, str(name), PARAMETERS)
+        column = [PARAMETERS[name].check(name, value) for value in _listed(f"{where}.{name}", values)]
+        labels = [label(name, value) for value in column]
+        for position, entry in enumerate(labels):
+            if where == "sweep" and entry in labels[:position]:
+                raise InvalidInputError(f"{where}.{name}", entry, "a list of different values", "it appears twice")
+        return column
+
+    @staticmethod
+    def _rule(rule: Mapping[str, Any]) -> dict[str, list[Any]]:
+        if not rule:
+            raise InvalidInputError("exclude", rule, "a table with at least one parameter")
+        wanted: dict[str, list[Any]] = {}
+        for name, values in rule.items():
+            checks.known_name("exclude", str(name), PARAMETERS)
+            several = values if isinstance(values, (list, tuple)) else [values]
+            wanted[name] = [
+                value
+                if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
+                else label(name, PARAMETERS[name].check(name, value))
+                for value in several
+            ]
+        return wanted
+
+    @classmethod
+    def from_toml(cls, path: str | Path) -> Study:
+        """Read a study file.
+
+        Parameters
+        ----------
+        path : str or Path
+            TOML file with the keys :data:`KEYS`; `name` defaults to the file's name.
+
+        Raises
+        ------
+        StudyFileError
+            If the file cannot be read or is not TOML.
+        InvalidInputError
+            If a key is unknown or a value is of a wrong type.
+        """
+        path = Path(path)
+        try:
+            content = tomllib.loads(path.read_text(encoding="utf-8"))
+        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            raise StudyFileError(f"study file {path}: {error}") from error
+        return cls.from_mapping({"name": path.stem} | content)
+
+    @classmethod
+    def from_mapping(cls, content: Mapping[str, Any]) -> Study:
+        """Study from a mapping with the keys :data:`KEYS`."""
+        for key in content:
+            checks.known_name("key of the study file", str(key), KEYS)
+        return cls(**content)
+
+    def to_json(self) -> str:
+        """Everything the study says, as JSON that :meth:`from_mapping` reads back after ``json.loads``."""
+        return json.dumps({key: getattr(self, key) for key in KEYS}, indent=1)
+
+    def plan(self) -> Plan:
+        """Cases of the study, in order; solves nothing.
+
+        Returns
+        -------
+        Plan
+        """
+        axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
+        for group in self.zip:
+            rows = zip(*group.values(), strict=True)
+            axes.append(Axis(tuple(dict(zip(group, row, strict=True)) for row in rows)))
+        rules = tuple({**rule} for rule in self.exclude)
+        return make_plan(self.name, self.level, self._complete(), tuple(axes), tuple(self.cases), rules)
+
+    def _complete(self) -> dict[str, Any]:
+        """Base with the defaults that exclusions may name."""
+        named = {name for rule in self.exclude for name in rule}
+        defaults = {name: PARAMETERS[name].default for name in named if PARAMETERS[name].default is not None}
+        return {**defaults, **self.base}

@@ -1,0 +1,233 @@
+"""The folder of a study: its files, what each case's state is, and the manifest as a cache of that.
+
+::
+
+    FOLDER/study.json            the study
+    FOLDER/cases/<id>.nc         one finished case
+    FOLDER/cases/<id>.failed     one failed case, as JSON
+    FOLDER/set-aside/            damaged or foreign files
+    FOLDER/manifest.json         cache of the above; may be deleted at any time
+    FOLDER/run.log, run.lock     log of all runs; who runs now
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from contactstudy.dataset import package_version
+from contactstudy.study.definition import Study
+from contactstudy.study.errors import StoreError, StudyFileError
+from contactstudy.study.plan import LEVELS, Plan
+from contactstudy.study.store import read_header, remove_dead_parts, write_text
+
+ID_DIGITS = 16
+"""Digits of the identity in a file's name; the file holds all 64."""
+MANIFEST_SCHEMA = 1
+
+
+@dataclass(frozen=True)
+class Entry:
+    """State of one case.
+
+    Parameters
+    ----------
+    status : {"ok", "failed", "skipped", "stale", "missing"}
+        Stale: solved by another version of the package, or kept at a lower level than asked for now.
+    reason : str
+        Why it is not ok.
+    path : str
+        The file, relative to the folder; empty if there is none.
+    scalars : dict
+        Summary values.
+    run : dict
+        Versions, time, seconds and level.
+    usable : bool
+        Whether the file has what was asked for (a stale case of another version has).
+    """
+
+    status: str
+    reason: str = ""
+    path: str = ""
+    scalars: dict[str, float] = field(default_factory=dict)
+    run: dict[str, Any] = field(default_factory=dict)
+    usable: bool = False
+
+
+class Folder:
+    """A study's folder.
+
+    Parameters
+    ----------
+    path : str or Path
+        The folder; need not exist yet.
+    """
+
+    def __init__(self, path: str | Path) -> None:
+        self.path = Path(path).resolve()
+        self.cases = self.path / "cases"
+        self._cache: dict[str, Any] | None = None
+
+    def create(self) -> None:
+        """Make the folder, or raise :class:`StoreError`."""
+        try:
+            self.cases.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise StoreError(f"cannot make {self.cases}: {error.strerror or error}") from error
+
+    def case_path(self, identity: str) -> Path:
+        """File of a finished case."""
+        return self.cases / f"{identity[:ID_DIGITS]}.nc"
+
+    def failure_path(self, identity: str) -> Path:
+        """File of a failed case."""
+        return self.cases / f"{identity[:ID_DIGITS]}.failed"
+
+    def write_study(self, study: Study) -> None:
+        """Keep the study's definition; a folder belongs to one study, which may grow."""
+        existing = self.path / "study.json"
+        if existing.exists():
+            name = self.read_study().name
+            if name != study.name:
+                raise StoreError(f"{self.path} holds the study {name!r}, not {study.name!r}: choose another folder")
+        write_text(existing, study.to_json())
+
+    def read_study(self) -> Study:
+        """The study's definition.
+
+        Raises
+        ------
+        StudyFileError
+            If the folder holds none.
+        """
+        path = self.path / "study.json"
+        try:
+            content = json.loads(path.read_text(encoding="utf-8"))
+        except (OSError, ValueError) as error:
+            raise StudyFileError(f"{self.path} is not the folder of a study: {path}: {error}") from error
+        return Study.from_mapping(content)
+
+    def write_failure(self, identity: str, parameters: dict[str, Any], kind: str, message: str) -> None:
+        """Record why a case failed."""
+        content = {"id": identity, "parameters": parameters, "type": kind, "message": message,
+                   "version": package_version()}
+        write_text(self.failure_path(identity), json.dumps(content, indent=1))
+
+    def clean(self) -> int:
+        """Remove what dead processes left unfinished; return how many files."""
+        return sum(remove_dead_parts(folder) for folder in (self.path, self.cases))
+
+    def set_aside(self, path: Path) -> Path:
+        """Move a damaged or foreign file out of the way; return where it is now."""
+        folder = self.path / "set-aside"
+        try:
+            folder.mkdir(exist_ok=True)
+            target, number = folder / path.name, 1
+            while target.exists():
+                number += 1
+                target = folder / f"{path.stem}-{number}{path.suffix}"
+            os.replace(path, target)
+        except OSError as error:
+            raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
+        return target
+
+    def _manifest(self) -> dict[str, Any]:
+        """The cache: file name to size, time of change and header; empty if it is not readable."""
+        if self._cache is None:
+            try:
+                content = json.loads((self.path / "manifest.json").read_text(encoding="utf-8"))
+                known = content["schema"] == MANIFEST_SCHEMA and isinstance(content["files"], dict)
+                self._cache = content["files"] if known else {}
+            except (OSError, ValueError, KeyError, TypeError):
+                self._cache = {}
+        assert self._cache is not None
+        return self._cache
+
+    def save_manifest(self) -> None:
+        """Write the cache."""
+        write_text(self.path / "manifest.json", json.dumps({"schema": MANIFEST_SCHEMA, "files": self._manifest()}))
+
+    def remember(self, path: Path, identity: str, run: dict[str, Any], scalars: dict[str, float]) -> None:
+        """Enter a file, just written or checked, in the cache."""
+        state = path.stat()
+        self._manifest()[path.name] = {
+            "size": state.st_size, "changed": state.st_mtime_ns, "id": identity, "run": run, "scalars": scalars,
+        }
+
+    def _checked(self, path: Path, identity: str) -> dict[str, Any]:
+        """Cache entry of a file, read and verified anew if the file has changed since.
+
+        Raises
+        ------
+        StoreError
+            If the file is damaged or foreign.
+        """
+        state = path.stat()
+        known = self._manifest().get(path.name)
+        if not known or (known.get("size"), known.get("changed")) != (state.st_size, state.st_mtime_ns):
+            self._manifest().pop(path.name, None)
+            header = read_header(path, verify=True)
+            self.remember(path, header.id, header.run, header.scalars)
+            known = self._manifest()[path.name]
+        if known["id"] != identity:
+            raise StoreError(f"{path} holds another case, {known['id'][:ID_DIGITS]}")
+        return dict(known)
+
+    def state(self, identity: str, level: str) -> tuple[Entry, str]:
+        """State of a case that can be solved, and what is wrong with its file (empty if nothing)."""
+        path, problem = self.case_path(identity), ""
+        try:
+            known = self._checked(path, identity)
+        except FileNotFoundError:
+            known = None
+        except StoreError as error:
+            known, problem = None, str(error)
+        if known is not None:
+            name, run = f"cases/{path.name}", known["run"]
+            if LEVELS.index(run.get("level", "summary")) < LEVELS.index(level):
+                reason = f"keeps {run.get('level')}, not {level}"
+                return Entry("stale", reason, name, known["scalars"], run), ""
+            if run.get("contactstudy") != package_version():
+                reason = f"solved by version {run.get('contactstudy')}"
+                return Entry("stale", reason, name, known["scalars"], run, usable=True), ""
+            return Entry("ok", "", name, known["scalars"], run, usable=True), ""
+        try:
+            failure = json.loads(self.failure_path(identity).read_text(encoding="utf-8"))
+            return Entry("failed", f"{failure['type']}: {failure['message']}"), problem
+        except FileNotFoundError:
+            return Entry("missing", problem), problem
+        except (OSError, ValueError, KeyError, TypeError) as error:
+            return Entry("missing", f"unreadable failure record: {error}"), problem
+
+    def entries(self, plan: Plan) -> list[Entry]:
+        """State of every case of a plan, in its order; reads only."""
+        found: dict[str, Entry] = {}
+        result = []
+        for case in plan.cases:
+            if case.reason:
+                result.append(Entry("skipped", case.reason))
+                continue
+            if case.id not in found:
+                found[case.id] = self.state(case.id, plan.level)[0]
+            result.append(found[case.id])
+        return result
+
+    def foreign_files(self) -> list[tuple[Path, str]]:
+        """Files among the cases that are no case of this package, each with what is wrong."""
+        wrong = []
+        for path in sorted(self.cases.glob("*")):
+            known = self._manifest().get(path.name)
+            if path.suffix == ".failed" or ".part-" in path.name or path.is_dir():
+                continue
+            try:
+                identity = known["id"] if known else read_header(path).id
+                if self.case_path(identity) != path:
+                    wrong.append((path, f"{path} holds the case {identity[:ID_DIGITS]} under a wrong name"))
+                else:
+                    self._checked(path, identity)
+            except StoreError as error:
+                wrong.append((path, str(error)))
+        return wrong

@@ -1,0 +1,169 @@
+"""From a study to the list of its cases, in a stable order."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from contactstudy.errors import ContactStudyError
+from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
+from contactstudy.study.identity import case_id
+from contactstudy.study.kinds import profile_label
+from contactstudy.study.parameters import without_defaults
+from contactstudy.study.setup import build_setup
+
+Level = str
+LEVELS: tuple[Level, ...] = ("summary", "surface", "fields")
+"""What a file keeps: scalars; also everything on (x, y); also the stresses."""
+
+BYTES_PER_CELL, BYTES_PER_POINT = 4 * 8, 7 * 4
+
+
+@dataclass(frozen=True)
+class PlannedCase:
+    """One case of a study before it is solved.
+
+    Parameters
+    ----------
+    id : str
+        Identity, see :func:`~contactstudy.study.identity.case_id`.
+    parameters : dict
+        Checked parameters without defaults.
+    name : str
+        Swept parameters in words, for messages.
+    position : tuple of int
+        Place in the study's Dataset.
+    reason : str
+        Why the case is skipped; empty if it can be solved.
+    operator : str
+        Equal for cases that share the solver's preparation.
+    cells, points : int
+        Sizes of grid and stress field.
+    """
+
+    id: str
+    parameters: dict[str, Any]
+    name: str
+    position: tuple[int, ...]
+    reason: str = ""
+    operator: str = ""
+    cells: int = 0
+    points: int = 0
+
+    def size(self, level: Level) -> int:
+        """Bytes of the case's file before compression."""
+        fields = BYTES_PER_POINT * self.points if level == "fields" else 0
+        return 20_000 + (BYTES_PER_CELL * self.cells if level != "summary" else 0) + fields
+
+    @property
+    def cost(self) -> float:
+        """Expected effort in arbitrary units: about forty convolutions on the grid, and the stresses."""
+        return 40.0 * self.cells + self.points
+
+
+@dataclass(frozen=True)
+class Plan:
+    """The cases of a study, in order, and where each lies among its dimensions.
+
+    Parameters
+    ----------
+    name : str
+        Name of the study.
+    level : {"summary", "surface", "fields"}
+        What is kept.
+    cases : tuple of PlannedCase
+        Every case that is not excluded, skipped ones included.
+    cube : Cube
+        Dimensions and labels.
+    """
+
+    name: str
+    level: Level
+    cases: tuple[PlannedCase, ...]
+    cube: Cube
+
+    @property
+    def skipped(self) -> tuple[PlannedCase, ...]:
+        """Cases that cannot be solved, each with its reason."""
+        return tuple(case for case in self.cases if case.reason)
+
+    @property
+    def unique(self) -> tuple[PlannedCase, ...]:
+        """Cases to solve, each once, even if the study names it twice."""
+        return tuple({case.id: case for case in self.cases if not case.reason}.values())
+
+    @property
+    def size(self) -> int:
+        """Bytes of all files before compression: an upper bound."""
+        return sum(case.size(self.level) for case in self.unique)
+
+
+def label(name: str, value: Any) -> Any:
+    """Value of a parameter as it stands on a dimension."""
+    if name == "profile":
+        return profile_label(value)
+    if isinstance(value, list):
+        return f"{len(value)} points {value[0]:g} to {value[-1]:g}"
+    return value
+
+
+def in_words(values: Mapping[str, Any]) -> str:
+    """Parameters as ``name=value`` words."""
+    shown = {name: label(name, value) for name, value in values.items()}
+    return " ".join(
+        f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}" for name, value in shown.items()
+    )
+
+
+def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]]) -> bool:
+    """Whether every entry of some rule matches."""
+    return any(all(label(name, values.get(name)) in allowed for name, allowed in rule.items()) for rule in rules)
+
+
+def make_plan(
+    name: str,
+    level: Level,
+    base: Mapping[str, Any],
+    axes: tuple[Axis, ...],
+    cases: tuple[Mapping[str, Any], ...],
+    exclude: tuple[Mapping[str, list[Any]], ...],
+) -> Plan:
+    """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
+
+    All values are checked already; rules of `exclude` hold lists of labels.
+    """
+    chosen: list[tuple[dict[str, Any], dict[str, Any], tuple[int, ...]]] = []
+    if axes or not cases:
+        for position in itertools.product(*(range(len(axis.entries)) for axis in axes)):
+            swept: dict[str, Any] = {}
+            for axis, index in zip(axes, position, strict=True):
+                swept |= axis.entries[index]
+            chosen.append(({**base, **swept}, swept, position))
+    product = len(chosen)
+    chosen += [({**base, **case}, dict(case), ()) for case in cases]
+    kept = [entry for entry in chosen if not _excluded(entry[0], exclude)]
+    if cases:
+        cube, positions = cube_of_cases([entry[0] for entry in kept], label)
+    else:
+        cube = cube_of_axes(axes, label)
+        positions = [entry[2] if cube.dims != ("case",) or axes else (0,) for entry in kept]
+    assert product or cases
+    planned = [
+        _planned(values, in_words(swept), position)
+        for (values, swept, _), position in zip(kept, positions, strict=True)
+    ]
+    return Plan(name, level, tuple(planned), cube)
+
+
+def _planned(values: dict[str, Any], words: str, position: tuple[int, ...]) -> PlannedCase:
+    parameters = without_defaults(values)
+    identity = case_id(parameters)
+    words = words or "the only case"
+    try:
+        setup = build_setup(parameters)
+    except ContactStudyError as error:
+        return PlannedCase(identity, parameters, words, position, reason=str(error))
+    cells = setup.grid.cells_x * setup.grid.cells_y
+    return PlannedCase(identity, parameters, words, position, "", setup.operator, cells, setup.points)

@@ -1,0 +1,259 @@
+"""All netCDF input and output of the study layer: one file per case, whole or not there at all.
+
+The netCDF library is not safe to use from several threads, so everything here runs under one lock of the process,
+and dask is told not to add threads or locks of its own.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import re
+import socket
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from threading import RLock
+from typing import Any, NamedTuple
+
+import dask
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from contactstudy.study.errors import StoreError
+from contactstudy.study.identity import case_id
+
+NETCDF_LOCK = RLock()
+PART = re.compile(r"(?P<name>.+)\.part-(?P<host>.+)-(?P<pid>\d+)")
+CASE_ATTRIBUTE = "contactstudy_case"
+ID_ATTRIBUTE = "contactstudy_case_id"
+RUN_ATTRIBUTE = "contactstudy_run"
+
+
+class Header(NamedTuple):
+    """What a file says about itself, and its scalars."""
+
+    id: str
+    parameters: dict[str, Any]
+    run: dict[str, Any]
+    scalars: dict[str, float]
+
+
+def process_name() -> str:
+    """Host and process, as in the names of unfinished files."""
+    return f"{socket.gethostname()}-{os.getpid()}"
+
+
+def alive(pid: int) -> bool:
+    """Whether a process with this number runs on this host."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except OSError:
+        return True
+    return True
+
+
+@contextlib.contextmanager
+def _netcdf(path: Path, doing: str) -> Iterator[None]:
+    """One netCDF operation at a time; failures of disk and file as :class:`StoreError`."""
+    try:
+        with NETCDF_LOCK, dask.config.set(scheduler="synchronous"):
+            yield
+    except (OSError, RuntimeError, ValueError, KeyError, IndexError, AttributeError) as error:
+        raise StoreError(f"cannot {doing} {path}: {error}") from error
+
+
+def write_atomically(path: Path, write: Any) -> None:
+    """Call ``write(part)`` for a file beside `path`, flush it to disk and give it the name `path`.
+
+    Raises
+    ------
+    StoreError
+        If the disk is full, permission is missing, ...; a file that was there before stays as it was.
+    """
+    part = path.with_name(f"{path.name}.part-{process_name()}")
+    try:
+        write(part)
+        with open(part, "rb+") as handle:
+            os.fsync(handle.fileno())
+        os.replace(part, path)
+    except OSError as error:
+        raise StoreError(f"cannot write {path}: {error.strerror or error}") from error
+    finally:
+        with contextlib.suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file atomically."""
+    write_atomically(path, lambda part: part.write_text(text, encoding="utf-8"))
+
+
+def kept_variables(dataset: xr.Dataset, level: str) -> list[str]:
+    """Names of the variables that a level keeps: scalars, those without depth, or all."""
+    kept = []
+    for name, variable in dataset.data_vars.items():
+        depth = any(str(dim).startswith("z") for dim in variable.dims)
+        if variable.ndim == 0 or level == "fields" or (level == "surface" and not depth):
+            kept.append(str(name))
+    return kept
+
+
+def _attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
+    """Attributes that netCDF can hold; others as JSON."""
+    return {
+        str(name): value if isinstance(value, (str, int, float, np.number)) and not isinstance(value, bool)
+        else json.dumps(value, default=str)
+        for name, value in attributes.items()
+    }
+
+
+def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> None:
+    """Write the file of one case.
+
+    Fields are kept in single precision, everything else in double; the compression is one that every reader of
+    netCDF-4 knows, and a checksum stands beside every chunk.
+
+    Parameters
+    ----------
+    path : Path
+        The file; it appears complete or not at all.
+    dataset : Dataset
+        Result of the solver with the summary added.
+    level : str
+        What to keep.
+    header : Header
+        Identity, parameters and circumstances, which let the case be repeated from the file alone.
+
+    Raises
+    ------
+    StoreError
+        If it cannot be written.
+    """
+    kept = dataset[kept_variables(dataset, level)].copy()
+    unused = [name for name in kept.coords if not set(kept[name].dims) <= {d for v in kept.data_vars.values() for d in v.dims}]
+    kept = kept.drop_vars(unused)
+    encoding: dict[str, dict[str, Any]] = {}
+    for name, variable in kept.variables.items():
+        variable.attrs = _attributes(variable.attrs)
+        variable.encoding = {}
+        if variable.dtype == bool:
+            kept[name] = variable.astype(np.int8)
+        depth = any(str(dim).startswith("z") for dim in variable.dims)
+        if variable.ndim >= 2:
+            encoding[str(name)] = {
+                "zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True,
+                "dtype": "float32" if depth else "float64", "_FillValue": np.nan,
+                "chunksizes": variable.shape,
+            }
+        elif variable.dtype.kind == "f":
+            encoding[str(name)] = {"_FillValue": None}
+    kept.attrs = _attributes(dataset.attrs) | {
+        ID_ATTRIBUTE: header.id,
+        CASE_ATTRIBUTE: json.dumps(header.parameters),
+        RUN_ATTRIBUTE: json.dumps({**header.run, "level": level}),
+        "history": f"{header.run.get('time', '')} written by contactstudy",
+    }
+
+    def write(part: Path) -> None:
+        with _netcdf(path, "write"):
+            kept.to_netcdf(part, engine="netcdf4", encoding=encoding)
+
+    write_atomically(path, write)
+
+
+def read_header(path: Path, *, verify: bool = False) -> Header:
+    """What a case's file says about itself.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    verify : bool
+        Also read every value, so that the checksums are compared.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged or not of this package.
+    """
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        if ID_ATTRIBUTE not in dataset.attrs or CASE_ATTRIBUTE not in dataset.attrs:
+            raise StoreError(f"{path} is not a case of a contactstudy study")
+        if verify:
+            dataset.load()
+        parameters = json.loads(dataset.attrs[CASE_ATTRIBUTE])
+        header = Header(
+            dataset.attrs[ID_ATTRIBUTE],
+            parameters,
+            json.loads(dataset.attrs.get(RUN_ATTRIBUTE, "{}")),
+            {str(name): float(variable) for name, variable in dataset.data_vars.items() if variable.ndim == 0},
+        )
+    if case_id(parameters) != header.id:
+        raise StoreError(f"{path}: its parameters do not belong to its identity {header.id[:16]}")
+    return header
+
+
+def load_case(path: Path) -> xr.Dataset:
+    """Everything in a case's file, in memory.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged.
+    """
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        return dataset.load()
+
+
+def load_variable(path: Path, name: str) -> npt.NDArray[Any]:
+    """Values of one variable of a case's file.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged or has no such variable.
+    """
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        return np.asarray(dataset[name].values)
+
+
+def read_structure(path: Path) -> tuple[dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]], xr.Dataset]:
+    """Dimensions, type and attributes of each variable that is not a scalar, and the coordinates, in memory."""
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        variables = {
+            str(name): (tuple(map(str, variable.dims)), variable.dtype, dict(variable.attrs))
+            for name, variable in dataset.data_vars.items()
+            if variable.ndim
+        }
+        return variables, dataset[[]].load()
+
+
+def scalar_attributes(path: Path) -> dict[str, dict[str, Any]]:
+    """Attributes of each scalar variable of a case's file."""
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        return {str(name): dict(entry.attrs) for name, entry in dataset.data_vars.items() if entry.ndim == 0}
+
+
+def write_dataset(path: Path, dataset: xr.Dataset) -> None:
+    """Write any Dataset, such as a merged summary, atomically."""
+
+    def write(part: Path) -> None:
+        with _netcdf(path, "write"):
+            dataset.to_netcdf(part, engine="netcdf4")
+
+    write_atomically(path, write)
+
+
+def remove_dead_parts(folder: Path) -> int:
+    """Remove unfinished files of processes of this host that are gone; return how many."""
+    removed = 0
+    for part in folder.glob("*.part-*"):
+        match = PART.fullmatch(part.name)
+        if match and match["host"] == socket.gethostname() and not alive(int(match["pid"])):
+            part.unlink(missing_ok=True)
+            removed += 1
+    return removed

@@ -1,0 +1,167 @@
+"""What a worker does: solve one case, write its file, hand back a small record."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+import time
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from contactstudy.dataset import package_version
+from contactstudy.errors import ContactStudyError
+from contactstudy.study.errors import StoreError
+from contactstudy.study.folder import Folder
+from contactstudy.study.setup import build_setup
+from contactstudy.study.store import Header, write_case
+from contactstudy.summary import summarize
+
+Solver = Callable[..., xr.Dataset]
+"""What solves a case: called as :func:`contactstudy.solve`."""
+
+
+@dataclass(frozen=True)
+class Job:
+    """One case to solve: all that a worker needs to know.
+
+    Parameters
+    ----------
+    id, name : str
+        Identity, and swept parameters in words.
+    parameters : dict
+        Checked parameters without defaults.
+    folder : str
+        The study's folder, which every worker can reach.
+    level : str
+        What to keep.
+    operator : str
+        Equal for jobs that share the solver's preparation.
+    cost : float
+        Expected effort.
+    circumstances : dict
+        Goes into the file: versions, commit, study.
+    """
+
+    id: str
+    name: str
+    parameters: dict[str, Any]
+    folder: str
+    level: str
+    operator: str = ""
+    cost: float = 1.0
+    circumstances: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Record:
+    """What became of a job: `status` is "ok" or "failed"; `error` and `message` say why it failed."""
+
+    id: str
+    status: str
+    seconds: float
+    path: str = ""
+    error: str = ""
+    message: str = ""
+    scalars: dict[str, float] = field(default_factory=dict)
+    run: dict[str, Any] = field(default_factory=dict)
+
+
+@cache
+def circumstances() -> dict[str, Any]:
+    """Versions and commit with which cases are solved, for the files."""
+    found: dict[str, Any] = {"contactstudy": package_version(), "python": platform.python_version()}
+    for package in ("numpy", "scipy", "xarray", "netCDF4", "pyfftw"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "unknown"
+    here = Path(__file__)
+    try:
+        # Only a checkout that tracks this very file is the package's own repository.
+        tracked = ["git", "-C", str(here.parent), "ls-files", "--error-unmatch", here.name]
+        subprocess.run(tracked, capture_output=True, check=True, timeout=10)
+        commit = subprocess.run(
+            ["git", "-C", str(here.parent), "describe", "--always", "--dirty", "--abbrev=40"],
+            capture_output=True, check=True, timeout=10, text=True,
+        )
+        found["commit"] = commit.stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        pass
+    return found
+
+
+def single_threaded() -> None:
+    """Keep the transforms of this process to one thread: the cores are shared out by cases."""
+    os.environ.update({name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")})
+    import pyfftw
+
+    pyfftw.config.NUM_THREADS = 1
+
+
+def default_solver() -> Solver:
+    """The package's own solver."""
+    from contactstudy.solve import solve
+
+    return solve
+
+
+def perform(job: Job, solver: Solver | None = None) -> Record:
+    """Solve a case, write its file and return the record.
+
+    Parameters
+    ----------
+    job : Job
+        The case.
+    solver : callable, optional
+        Called as :func:`contactstudy.solve`, which is the default.
+
+    Returns
+    -------
+    Record
+        With status "failed" if the case raised an error of the package; other errors are errors of the program
+        and pass through.
+
+    Raises
+    ------
+    StoreError
+        If the file cannot be written.
+    """
+    single_threaded()
+    folder = Folder(job.folder)
+    began = time.perf_counter()
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            setup = build_setup(job.parameters)
+            dataset = (solver or default_solver())(
+                setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z,
+                stresses=setup.stresses, tolerance=setup.tolerance,
+            )
+            scalars = summarize(dataset)
+    except StoreError:
+        raise
+    except ContactStudyError as error:
+        return Record(job.id, "failed", time.perf_counter() - began, error=type(error).__name__, message=str(error))
+    seconds = time.perf_counter() - began
+    scalars["seconds"] = xr.DataArray(seconds, attrs={"units": "s", "long_name": "time of solving"})
+    run = {
+        **job.circumstances,
+        "time": datetime.now(UTC).isoformat(timespec="seconds"),
+        "settings": {"tolerance": setup.tolerance, "cells": setup.grid.shape},
+        "warnings": sorted({str(warning.message) for warning in caught}),
+        "seconds": seconds,
+        "level": job.level,
+    }
+    path = folder.case_path(job.id)
+    scalar_values = {str(name): float(value) for name, value in scalars.data_vars.items()}
+    write_case(path, dataset.assign(scalars.data_vars), job.level, Header(job.id, job.parameters, run, scalar_values))
+    return Record(job.id, "ok", seconds, str(path), scalars=scalar_values, run=run)
