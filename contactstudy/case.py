@@ -8,8 +8,8 @@ import numpy as np
 
 from contactstudy import checks, hertz
 from contactstudy.bodies import Body
-from contactstudy.errors import InvalidInputError
 from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.roller import Roller
 
@@ -49,7 +49,7 @@ class Case:
     >>> from contactstudy import FiniteLengthSpace, Material
     >>> body = FiniteLengthSpace(length=10.2e-3, material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=10e-3), max_pressure=1.5e9)
-    >>> round(1e6 * case.hertz_half_width, 2), round(case.load, 1), round(1e3 * case.roller_start, 3)
+    >>> round(1e6 * case.hertz_half_width, 2), round(case.normal_load, 1), round(1e3 * case.roller_start, 3)
     (65.0, 1531.5, 0.1)
     """
 
@@ -71,7 +71,9 @@ class Case:
         start, stop = self.contact_range
         if not start < stop:
             raise InvalidInputError(
-                "end_distance", self.roller_start, "such that the roller lies over the body",
+                "end_distance",
+                self.roller_start,
+                "such that the roller lies over the body",
                 f"the body spans x = {self.body.extent}",
             )
         if (self.max_pressure is None) == (self.load is None):
@@ -125,12 +127,10 @@ class Case:
         """Normal load ``W``, N."""
         if self.load is not None:
             return self.load
-        return self.contact_length * hertz.line_load(
-            self.hertz_max_pressure, self.roller.radius, self.modulus
-        )
+        return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:
-        """Initial gap at the cell centres of `grid`: metres, 0 at first touch, infinite beyond the roller."""
+        """Return the gap before deformation at the cell centres of `grid`, metres; infinite beyond the roller."""
         middle = self.roller_start + 0.5 * self.roller.length
         return self.roller.clearance(grid.x - middle, grid.y)
 
@@ -177,9 +177,14 @@ def choose_grid(
     margin_x = checks.not_negative("margin", margin) * half_width
     low, high = case.body.extent
     start, stop = case.roller_start, case.roller_start + case.roller.length
-    x_range = (max(low, start - margin_x) if np.isinf(low) else low, min(high, stop + margin_x) if np.isinf(high) else high)
+    x_range = (
+        max(low, start - margin_x) if np.isinf(low) else low,
+        min(high, stop + margin_x) if np.isinf(high) else high,
+    )
     counts = []
-    for span, cells in ((x_range[1] - x_range[0], checks.positive("cells_x", cells_x)),
-                        (2 * half_window, checks.positive("cells_y", cells_y))):
+    for span, cells in (
+        (x_range[1] - x_range[0], checks.positive("cells_x", cells_x)),
+        (2 * half_window, checks.positive("cells_y", cells_y)),
+    ):
         counts.append(next_fast_len(max(4, int(np.ceil(span / half_width * cells - 1e-9))), real=True))
     return Grid(x_range, (-half_window, half_window), *counts)

@@ -6,7 +6,6 @@ import warnings
 
 import numpy as np
 import xarray as xr
-from threadpoolctl import threadpool_limits
 
 from contactstudy import checks
 from contactstudy.bodies import Body
@@ -17,6 +16,7 @@ from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowErr
 from contactstudy.labelled import labelled_cells
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.surface import OPERATORS, SurfaceOperator
+from contactstudy.threads import one_blas_thread
 
 # A gap counts as open when it exceeds this many tolerances of the displacement's variation.
 OPEN_TOLERANCES = 10.0
@@ -98,7 +98,7 @@ def solve_contact(
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     bends = bool(coupled) and friction != 0
     total = load / grid.cell_area
-    with threadpool_limits(1, user_api="blas"):  # the products are too small to share among threads
+    with one_blas_thread():
         operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
         solve = _solve_coupled if bends else _solve_normal
         iterate = solve(operator, clearance, total, friction, tolerance, max_iterations)

@@ -46,7 +46,9 @@ VARIABLES = {
     "iterations": Variable(SCALAR, "1", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "resultant of the pressure minus the load, over the load"),
-    "penetration_error": Variable(SCALAR, "1", "largest gap or overlap under pressure, over the approach scale a**2/(2R)"),
+    "penetration_error": Variable(
+        SCALAR, "1", "largest gap or overlap under pressure, over the approach scale a**2/(2R)"
+    ),
     "open_pressure_error": Variable(SCALAR, "1", "largest pressure where the gap is open, over the peak pressure"),
     "end_traction_residual": Variable(SCALAR, "1", "largest traction left on the free ends, over the peak pressure"),
 }
@@ -65,7 +67,7 @@ def describe(dataset: xr.Dataset, title: str) -> xr.Dataset:
 
     Examples
     --------
-    >>> describe(xr.Dataset({"load": 1.0}), "a load").load.attrs["units"]
+    >>> describe(xr.Dataset({"load": 1.0}), "a load")["load"].attrs["units"]
     'N'
     """
     described = dataset.copy()

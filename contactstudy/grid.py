@@ -67,9 +67,7 @@ class Grid:
             error = np.abs(np.diff(centres) - step) / step
             if error.max() > SPACING_TOLERANCE:
                 at = int(error.argmax())
-                raise InvalidInputError(
-                    name, f"{centres[at]:g}, {centres[at + 1]:g}", "uniformly spaced cell centres"
-                )
+                raise InvalidInputError(name, f"{centres[at]:g}, {centres[at + 1]:g}", "uniformly spaced cell centres")
             ranges.append((float(centres[0] - step / 2), float(centres[-1] + step / 2), centres.size))
         (x0, x1, nx), (y0, y1, ny) = ranges
         return cls((x0, x1), (y0, y1), nx, ny)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 
 from contactstudy.dataset import STRESSES, VARIABLES
@@ -39,6 +38,6 @@ def von_mises(stress: xr.Dataset) -> xr.DataArray:
         raise InvalidInputError("stress", sorted(map(str, stress.data_vars)), f"a Dataset with {', '.join(missing)}")
     xx, yy, zz, xy, xz, yz = (stress[name] for name in STRESSES)
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    result = np.sqrt(squared).rename("von_mises")
+    result: xr.DataArray = (squared**0.5).rename("von_mises")
     result.attrs = {"units": "Pa", "long_name": VARIABLES["von_mises"].long_name}
     return result

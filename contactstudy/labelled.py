@@ -45,7 +45,9 @@ def labelled_cells(name: str, array: xr.DataArray, *, infinite: bool = False) ->
     if bad.any():
         i, j = np.argwhere(bad)[0]
         raise InvalidInputError(
-            name, f"{values[i, j]} at x = {grid.x[i]:g}, y = {grid.y[j]:g}", "finite everywhere",
+            name,
+            f"{values[i, j]} at x = {grid.x[i]:g}, y = {grid.y[j]:g}",
+            "finite everywhere",
             f"{bad.sum()} values are not",
         )
     return values, grid

@@ -52,17 +52,13 @@ class Cylinder:
 
     def __post_init__(self) -> None:
         """Check the radius."""
-        object.__setattr__(
-            self, "fillet_radius", checks.not_negative("fillet_radius", self.fillet_radius, "metres")
-        )
+        object.__setattr__(self, "fillet_radius", checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
         radius = self.fillet_radius
         if radius > length / 2:
-            raise InvalidInputError(
-                "fillet_radius", radius, f"at most half the roller's length, {length / 2:g} m"
-            )
+            raise InvalidInputError("fillet_radius", radius, f"at most half the roller's length, {length / 2:g} m")
         inside = np.clip(np.abs(x) - (length / 2 - radius), 0.0, radius)
         return np.asarray(radius - np.sqrt(radius**2 - inside**2))
 
@@ -106,9 +102,7 @@ class Lundberg:
         object.__setattr__(self, "delta", checks.not_negative("delta", self.delta))
 
     @classmethod
-    def for_pressure(
-        cls, max_pressure: float, *, radius: float, modulus: float, delta: float = 1.0
-    ) -> Lundberg:
+    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float, delta: float = 1.0) -> Lundberg:
         """Profile whose design load gives the Hertz pressure `max_pressure` (Pa).
 
         Parameters

@@ -163,5 +163,9 @@ def summarize(dataset: xr.Dataset) -> xr.Dataset:
     (7, 2.0)
     """
     own = dataset[[name for name, variable in dataset.data_vars.items() if variable.ndim == 0]]
-    return xr.merge([own.reset_coords(drop=True), pressure_summary(dataset), stress_summary(dataset)], join="exact",
-                    compat="no_conflicts", combine_attrs="drop")
+    return xr.merge(
+        [own.reset_coords(drop=True), pressure_summary(dataset), stress_summary(dataset)],
+        join="exact",
+        compat="no_conflicts",
+        combine_attrs="drop",
+    )

@@ -21,6 +21,7 @@ from contactstudy.kernels.patch import normal_displacement_corner, tangential_di
 from contactstudy.labelled import labelled_cells
 from contactstudy.overlapping.displacement import EndCorrection, build_end_correction
 from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.threads import one_blas_thread
 
 REFERENCE_LENGTHS = 10.0
 """A finite-length body's displacement is relative to its top at ``|y|`` = this many lengths."""
@@ -53,8 +54,8 @@ class SurfaceOperator:
         mirrored = np.isfinite(low)
         padded = grid.cells_x if np.isfinite(high) else 2 * grid.cells_x
         self._transform = GridTransform(*grid.shape, padded, mirrored=bool(mirrored))
-        x = grid.dx * np.arange(padded + 1 if mirrored else grid.cells_x + 1)
-        y = grid.dy * np.arange(grid.cells_y + 1)
+        x: FloatArray = grid.dx * np.arange(padded + 1.0 if mirrored else grid.cells_x + 1.0)
+        y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
         material = body.material
         factor = (1 - material.poisson) / (2 * np.pi * material.shear_modulus)
         self._normal = factor * self._spectrum(even_spectrum(self._kernel(normal_displacement_corner, x, y)))
@@ -65,9 +66,10 @@ class SurfaceOperator:
             self._shear = factor * self._spectrum(odd_spectrum(kernel))
         self._ends: EndCorrection | None = None
         if mirrored:
-            self._ends = build_end_correction(
-                high, material, grid, reference=self.reference, tangential=tangential, resolution=resolution
-            )
+            with one_blas_thread():
+                self._ends = build_end_correction(
+                    high, material, grid, reference=self.reference, tangential=tangential, resolution=resolution
+                )
 
     @property
     def reference(self) -> float:
@@ -174,7 +176,7 @@ OPERATORS = OperatorCache()
 
 
 def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0.0) -> xr.DataArray:
-    """Normal displacement of the top under a prescribed pressure and the friction that goes with it.
+    """Compute how a prescribed pressure, and the friction that goes with it, sink the top of a body.
 
     Parameters
     ----------
@@ -211,12 +213,16 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     values, grid = labelled_cells("pressure", pressure)
     friction = checks.finite("friction", friction)
     operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
-    displacement = operator(values, friction * values if friction else None)
-    attributes = {"units": "m", "long_name": "normal displacement of the top, into the body"}
+    with one_blas_thread():
+        displacement = operator(values, friction * values if friction else None)
+    attributes: dict[str, str | float] = {"units": "m", "long_name": "normal displacement of the top, into the body"}
     if np.isfinite(operator.reference):
         attributes["reference_distance"] = operator.reference
         attributes["reference"] = "zero at |y| = reference_distance (m) on the top"
     return xr.DataArray(
-        displacement, coords={"x": pressure["x"], "y": pressure["y"]}, dims=("x", "y"),
-        name="displacement_z", attrs=attributes,
+        displacement,
+        coords={"x": pressure["x"], "y": pressure["y"]},
+        dims=("x", "y"),
+        name="displacement_z",
+        attrs=attributes,
     )

@@ -60,9 +60,7 @@ class GridTransform:
             self._scale = 1.0 / (2 * padded_x * 2 * cells_y)
         else:
             self._along = pyfftw.FFTW(self._lateral, self._lateral, axes=(0,), **options)
-            self._back = pyfftw.FFTW(
-                self._lateral, self._lateral, axes=(0,), direction="FFTW_BACKWARD", **options
-            )
+            self._back = pyfftw.FFTW(self._lateral, self._lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
             self._scale = 1.0 / (padded_x * 2 * cells_y)
         self._real[:] = 0.0
 

@@ -54,7 +54,7 @@ def mirrored_kernel(
     y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
 
     def between(start: FloatArray, stop: FloatArray) -> FloatArray:
-        """Unit load on ``start..stop`` (relative to the observer's x), per y cell: array (..., point, y)."""
+        """Influence of a unit load on ``start..stop`` (relative to the observer), per y cell: (..., point, y)."""
         upper = corner(stop[:, None], y_edges[None, :])
         return np.diff(upper - corner(start[:, None], y_edges[None, :]), axis=-1)
 
@@ -77,4 +77,6 @@ def mirrored_kernel(
         chebyshev.chebvander(points / span, CHEBYSHEV_POINTS - 1).T,
         chebyshev.chebvander(x / span, CHEBYSHEV_POINTS - 1).T,
     )
-    return cell_kernel(corner, x, y, dx, dy) + np.einsum("px,...py->...xy", interpolation, images)
+    kernel = cell_kernel(corner, x, y, dx, dy)
+    kernel += np.moveaxis(np.tensordot(images, interpolation, axes=(-2, 0)), -1, -2)
+    return kernel

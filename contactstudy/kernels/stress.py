@@ -98,7 +98,7 @@ def half_space_stress(
     for rows in aligned_points(x, float(start), grid.dx):
         for column in columns:
             values = _aligned_stress(load, friction, poisson, grid, rows, column, z, extent[1] if periodic else np.inf)
-            result[np.ix_(range(6), rows.points, column.points, range(z.size))] = values
+            result[:, rows.points[:, None], column.points] = values
     return result
 
 
@@ -123,7 +123,10 @@ def _aligned_stress(
         x_from = int(rows.cells.min()) - count_x + 1
         size_x = int(rows.cells.max()) - x_from + 1
     x = grid.dx * np.arange(x_from, x_from + size_x) + rows.offset
-    shape = (size_x if np.isfinite(length) else fft.next_fast_len(size_x, real=True), fft.next_fast_len(y.size, real=True))
+    shape = (
+        size_x if np.isfinite(length) else fft.next_fast_len(size_x, real=True),
+        fft.next_fast_len(y.size, real=True),
+    )
     spectrum = fft.rfft2(load, shape)
     at_x = (rows.cells - x_from) % shape[0]
     at_y = column.cells - y_from

@@ -5,7 +5,8 @@ with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``p
 few terms are summed as they stand; for the others the sum is turned into an integral along a ray that leaves the real
 axis (Abel and Plana's formula): with ``g`` analytic and real on the real axis,
 
-    sum_n g(k_n) cos(k_n x) = Re int_ray g(k) [exp(i k x) + parity exp(i k (L - x))] / (1 - parity exp(i k L)) L dk / (2 pi).
+    sum_n g(k_n) cos(k_n x) = Re int_ray g(k) e(k) L dk / (2 pi),
+    e(k) = [exp(i k x) + parity exp(i k (L - x))] / (1 - parity exp(i k L)).
 
 The two exponentials are the contributions seen from either end, and both decay along the ray. A quarter space is the
 limit of one end only: the ray starts at ``k = 0`` and the second exponential is gone (``parity = 0``).
@@ -77,11 +78,11 @@ class AxialModes:
         return np.asarray((near + sign * self.parity * far) / closing[:, None])
 
     def cosine(self, x: FloatArray) -> ComplexArray:
-        """What stands for ``cos(k x)`` at positions `x`: array (wavenumber, x)."""
+        """Return what stands for ``cos(k x)`` at positions `x`: array (wavenumber, x)."""
         return np.concatenate([np.cos(np.outer(self.discrete, x)), self._seen_from_both_ends(x, +1)])
 
     def sine(self, x: FloatArray) -> ComplexArray:
-        """What stands for ``sin(k x)`` at positions `x`: array (wavenumber, x)."""
+        """Return what stands for ``sin(k x)`` at positions `x`: array (wavenumber, x)."""
         return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._seen_from_both_ends(x, -1)])
 
     def cell_integrals(self, edges: FloatArray) -> ComplexArray:

@@ -16,21 +16,19 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy import special
-from threadpoolctl import threadpool_limits
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
 from contactstudy.material import Material
 from contactstudy.overlapping.axial import AxialModes, axial_modes
-from contactstudy.overlapping.equations import EquationSet, normal_on_end, tangential_on_end
-from contactstudy.overlapping.panels import cell_moments, graded_positions
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
 from contactstudy.overlapping.quadrature import (
     ComplexArray,
     Resolution,
     lateral_nodes,
 )
 
-POSITIONS_PER_PANEL = 8
 # Wavenumbers along y that share their axial ones.
 BATCH = 16
 
@@ -74,8 +72,13 @@ class EndCorrection:
 
 
 def _sampled(
-    modes: AxialModes, wavenumber: float, positions: FloatArray, material: Material, shortest: float,
-    resolution: Resolution, tangential: bool,
+    modes: AxialModes,
+    wavenumber: float,
+    positions: FloatArray,
+    material: Material,
+    shortest: float,
+    resolution: Resolution,
+    tangential: bool,
 ) -> list[FloatArray]:
     """Correction between the graded positions at one wavenumber: from pressure and, if asked, from traction."""
     sources = modes.load_weights[:, None] * modes.cosine(positions)
@@ -86,10 +89,13 @@ def _sampled(
     return [factor * from_pressure.T @ system.solve(column) for column in columns]
 
 
-# The systems are too small for BLAS to share among threads: it would spend its time waiting.
-@threadpool_limits.wrap(limits=1, user_api="blas")
 def build_end_correction(
-    length: float, material: Material, grid: Grid, *, reference: float, tangential: bool,
+    length: float,
+    material: Material,
+    grid: Grid,
+    *,
+    reference: float,
+    tangential: bool,
     resolution: Resolution,
 ) -> EndCorrection:
     """Correction for a body with ends at 0 and `length` (infinite: one end) on a grid that begins at ``x = 0``.

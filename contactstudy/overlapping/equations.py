@@ -4,9 +4,10 @@ With the weighted spectra of axial.py, ``D = k_x**2 + k_y**2 + k_z**2`` and the 
 
     M(k_x, k_z) = k_x**2 k_z**2 / D**2 + nu k_y**2 / D
 
-a top load ``P`` leaves on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and a
-face load ``S`` leaves on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
-``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` tells the slab from a half-space. The ends are free when
+a top load ``P`` leaves on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and
+a face load ``S`` leaves on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
+``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` tells the slab from a half-space. The ends are
+free when
 
     S = (4/pi) sum (M / k) (P + R),    R = int (4 M T / kappa) S dk_z,
 
@@ -32,7 +33,9 @@ from contactstudy.overlapping.quadrature import (
 )
 
 
-def coupling_core(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float) -> ComplexArray:
+def coupling_core(
+    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+) -> ComplexArray:
     """Core ``M(k_x, k_z)``: array (depth, axial)."""
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     inverse = 1.0 / (axial2 + depth2 + lateral**2)
@@ -139,7 +142,12 @@ class EquationSet:
         return np.asarray(self.modes.face_weights.reshape(shape) * (self._core.T @ scaled_face_load))
 
     def on_ray(
-        self, pressure: ComplexArray, traction: ComplexArray, equivalent: ComplexArray, shortest: float, resolution: Resolution
+        self,
+        pressure: ComplexArray,
+        traction: ComplexArray,
+        equivalent: ComplexArray,
+        shortest: float,
+        resolution: Resolution,
     ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
         """Face loads as an analytic function, on a ray of depth wavenumbers.
 
@@ -167,7 +175,10 @@ class EquationSet:
         total = pressure + self.modes.on_end[:, None] * equivalent
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
-        for k, normal, tangential in ((axial, total, traction), (axial.conj(), total.conj(), traction.conj())):
+        for k, normal, tangential in (
+            (axial, total, traction),
+            (axial.conj(), total.conj(), traction.conj()),
+        ):
             face_load += 0.5 * normal_on_end(k, depth, self.lateral, self.poisson) @ normal
             if np.any(tangential):
                 face_load += 0.5 * tangential_on_end(k, depth, self.lateral, self.poisson) @ tangential

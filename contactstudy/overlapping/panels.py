@@ -12,6 +12,8 @@ import numpy as np
 from contactstudy.checks import FloatArray
 from contactstudy.overlapping.quadrature import growing_edges, panel_nodes
 
+POSITIONS_PER_PANEL = 8
+
 
 def graded_positions(reach: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
     """Edges of panels from 0 to `reach` that double from `finest`, and `order` Gauss positions in each.
@@ -63,3 +65,59 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
             lagrange = np.prod((points[here, None] - others) / (nodes[i] - others), axis=1)
             np.add.at(moments[number * order + i], cell[here], weights[here] * lagrange)
     return moments
+
+
+def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[FloatArray, FloatArray] | None:
+    """Few positions graded towards the ends, and the matrix that interpolates from them to many positions `x`.
+
+    Parameters
+    ----------
+    x : array
+        Positions from 0 to `length`; those on an end are kept as they are.
+    length : float
+        Distance between the ends; infinite for one end.
+    order : int
+        Positions per panel.
+
+    Returns
+    -------
+    positions, matrix : array (p,), array (x, p)
+        Or None if there would be no fewer positions than `x` has.
+
+    Examples
+    --------
+    >>> x = np.linspace(0.0, 1.0, 401)
+    >>> positions, matrix = graded_interpolation(x, 1.0, 8)
+    >>> bool(positions.size < 200 and np.abs(matrix @ (positions + 0.01) ** -2.0 - (x + 0.01) ** -2.0).max() < 1e-3)
+    True
+    """
+    half = 0.5 * length if np.isfinite(length) else float(x.max())
+    near_first = x <= half
+    from_end = np.where(near_first, x, length - x)
+    inside = from_end > 0
+    if not inside.any():
+        return None
+    finest = float(from_end[inside].min())
+    if not half > finest:
+        return None
+    panels = max(1, int(np.ceil(np.log2(half / finest))))
+    edges = finest * (half / finest) ** (np.arange(panels + 1) / panels)
+    positions = panel_nodes(edges, order)[0]
+    count = positions.size
+    sides = 2 if np.isfinite(length) else 1
+    kept = np.flatnonzero(~inside)
+    if sides * count + kept.size >= x.size:
+        return None
+    matrix = np.zeros((x.size, sides * count + kept.size))
+    panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
+    for i in np.flatnonzero(inside):
+        first = panel[i] * order
+        nodes = positions[first : first + order]
+        offsets = from_end[i] - nodes
+        column = first if near_first[i] else count + first
+        for j in range(order):
+            others = np.arange(order) != j
+            matrix[i, column + j] = np.prod(offsets[others] / (nodes[j] - nodes[others]))
+    matrix[kept, sides * count + np.arange(kept.size)] = 1.0
+    parts = [positions, length - positions] if sides == 2 else [positions]
+    return np.concatenate([*parts, x[kept]]), matrix

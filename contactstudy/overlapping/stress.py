@@ -1,7 +1,7 @@
 """Stresses of the equivalent loads: what the free ends add to the mirrored half-space.
 
-For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their rays,
-where every factor decays with the distance from the loaded corner; the stresses are sums of separable terms
+For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
+rays, where every factor decays with the distance from the loaded corner; the stresses are sums of separable terms
 ``f(k, x) g(k, z)``, taken as matrix products. Only points within reach of a corner take part at a high wavenumber.
 """
 
@@ -10,17 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import DECAY_LENGTHS, AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet, slab_factors
+from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.overlapping.quadrature import (
     ComplexArray,
     Resolution,
     lateral_nodes,
 )
+from contactstudy.threads import one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
 BATCH = 24
@@ -45,9 +46,7 @@ class LateralAmplitudes:
     traction: FloatArray
 
 
-def lateral_amplitudes(
-    pressure: FloatArray, friction: float, grid: Grid, wavenumbers: FloatArray
-) -> LateralAmplitudes:
+def lateral_amplitudes(pressure: FloatArray, friction: float, grid: Grid, wavenumbers: FloatArray) -> LateralAmplitudes:
     """Amplitudes of cell-wise uniform `pressure` (x, y) and of the traction that friction makes of it."""
     width = grid.dy * np.sinc(wavenumbers * grid.dy / (2 * np.pi))
     cosine = pressure @ (np.cos(np.outer(grid.y, wavenumbers)) * width)
@@ -94,14 +93,19 @@ def end_stress(
     array (6, x, y, z)
         xx, yy, zz, xy, xz, yz in Pa.
     """
+    fewer = graded_interpolation(x, length, POSITIONS_PER_PANEL)
+    if fewer is not None:
+        positions, interpolation = fewer
+        coarse = end_stress(length, poisson, pressure, friction, grid, positions, y, z, resolution)
+        return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 1)), 0, 1))
     offset = CORNER_OFFSET * min(grid.dx, grid.dy)
     arguments = (length, poisson, pressure, friction, grid)
-    with threadpool_limits(1, user_api="blas"):  # the products are too small to share among threads
+    with one_blas_thread():
         result = _away_from_corner(*arguments, x, y, z, offset, resolution)
         rows, columns = np.flatnonzero(np.minimum(x, length - x) < offset), np.flatnonzero(z < offset)
         if rows.size and columns.size:
             at_corner = _away_from_corner(*arguments, x[rows], y, np.array([offset]), offset, resolution)
-            result[np.ix_(range(6), rows, range(y.size), columns)] = at_corner
+            result[:, rows[:, None], :, columns[None, :]] = at_corner[..., 0].transpose(1, 0, 2)[:, None]
     return result
 
 
@@ -155,8 +159,8 @@ def _away_from_corner(
         for components, synthesis in ((EVEN_IN_Y, synthesis_even), (ODD_IN_Y, synthesis_odd)):
             flat = fields[components].reshape(-1, 2 * fields.shape[3])
             values = flat @ synthesis[batch].reshape(-1, y.size)
-            target = np.ix_(components, rows, columns, range(y.size))
-            result[target] += values.reshape(len(components), rows.size, columns.size, y.size)
+            for component, part in zip(components, values.reshape(-1, rows.size, columns.size, y.size), strict=True):
+                result[component, rows[:, None], columns] += part
     return np.ascontiguousarray(result.transpose(0, 1, 3, 2))
 
 
@@ -183,9 +187,11 @@ def _views(
     views = []
     for flipped in sides:
         facing = integrals[:, ::-1] if flipped else integrals
-        spectra = [np.tensordot(facing, part[:, batch], axes=1) for part in (loads.pressure, loads.traction)]
+        pressure = np.tensordot(facing, loads.pressure[:, batch], axes=1)
+        traction = np.tensordot(facing, loads.traction[:, batch], axes=1)
         distance = length - x if flipped else x
-        views.append(_View(modes, *spectra, distance, modes.cosine(distance), modes.sine(distance), flipped))
+        cosine, sine = modes.cosine(distance), modes.sine(distance)
+        views.append(_View(modes, pressure, traction, distance, cosine, sine, flipped))
     return views
 
 

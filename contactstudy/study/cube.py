@@ -82,7 +82,7 @@ def cube_of_cases(
     The dimensions are the parameters that differ, if that does not leave too much of the cube empty; else one
     dimension `case` with the parameters as coordinates.
     """
-    names = [name for name in dict.fromkeys(name for case in cases for name in case)]
+    names = list(dict.fromkeys(name for case in cases for name in case))
     rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
     columns = {name: _unique([row[name] for row in rows]) for name in names}
     varying = {name: column for name, column in columns.items() if len(column) > 1}

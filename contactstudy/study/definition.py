@@ -35,7 +35,7 @@ def _listed(name: str, values: object) -> list[Any]:
 
 
 def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
-    """A table, or a list of tables, as a list of tables."""
+    """Return a table, or a list of tables, as a list of tables."""
     entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
         raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
@@ -195,7 +195,7 @@ class Study:
         return make_plan(self.name, self.level, self._complete(), tuple(axes), tuple(self.cases), rules)
 
     def _complete(self) -> dict[str, Any]:
-        """Base with the defaults that exclusions may name."""
+        """Return the base with the defaults that exclusions may name."""
         named = {name for rule in self.exclude for name in rule}
         defaults = {name: PARAMETERS[name].default for name in named if PARAMETERS[name].default is not None}
         return {**defaults, **self.base}

@@ -43,6 +43,11 @@ class Dispatcher:
         """Jobs not yet handed out."""
         return sum(map(len, self._free)) + sum(map(len, self._taken.values()))
 
+    @property
+    def owners(self) -> set[str]:
+        """Workers that have a group."""
+        return set(self._taken)
+
     def next_job(self, worker: str) -> Job | None:
         """Return the next job for `worker`, or None if all are handed out."""
         own = self._taken.get(worker)

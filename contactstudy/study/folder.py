@@ -96,7 +96,7 @@ class Folder:
         write_text(existing, study.to_json())
 
     def read_study(self) -> Study:
-        """The study's definition.
+        """Return the study's definition.
 
         Raises
         ------
@@ -135,7 +135,7 @@ class Folder:
         return target
 
     def _manifest(self) -> dict[str, Any]:
-        """The cache: file name to size, time of change and header; empty if it is not readable."""
+        """Return the cache: file name to size, time of change and header; empty if it is not readable."""
         if self._cache is None:
             try:
                 content = json.loads((self.path / "manifest.json").read_text(encoding="utf-8"))

@@ -53,8 +53,8 @@ def _points(name: str, value: object) -> list[float]:
         missing = {"start", "stop", "count"} - set(value)
         if missing:
             raise InvalidInputError(name, dict(value), "a list, or a table with start, stop and count")
-        ends = [checks.finite(f"{name}.{key}", value[key]) for key in ("start", "stop")]
-        points = np.linspace(*ends, checks.count(f"{name}.count", value["count"]))
+        start, stop = (checks.finite(f"{name}.{key}", value[key]) for key in ("start", "stop"))
+        points = np.linspace(start, stop, checks.count(f"{name}.count", value["count"]))
     else:
         points = checks.coordinates(name, value, "half-widths a")
     return [rounded(float(point)) for point in points]

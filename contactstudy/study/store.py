@@ -47,13 +47,9 @@ def process_name() -> str:
 
 def alive(pid: int) -> bool:
     """Whether a process with this number runs on this host."""
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
+    import psutil
+
+    return bool(psutil.pid_exists(pid))
 
 
 @contextlib.contextmanager
@@ -134,8 +130,8 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
         If it cannot be written.
     """
     kept = dataset[kept_variables(dataset, level)].copy()
-    unused = [name for name in kept.coords if not set(kept[name].dims) <= {d for v in kept.data_vars.values() for d in v.dims}]
-    kept = kept.drop_vars(unused)
+    used = {dim for variable in kept.data_vars.values() for dim in variable.dims}
+    kept = kept.drop_vars([name for name in kept.coords if not set(kept[name].dims) <= used])
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in kept.variables.items():
         variable.attrs = _attributes(variable.attrs)
@@ -166,7 +162,7 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
 
 
 def read_header(path: Path, *, verify: bool = False) -> Header:
-    """What a case's file says about itself.
+    """Read what a case's file says about itself.
 
     Parameters
     ----------
@@ -229,7 +225,8 @@ def read_structure(path: Path) -> tuple[dict[str, tuple[tuple[str, ...], np.dtyp
             for name, variable in dataset.data_vars.items()
             if variable.ndim
         }
-        return variables, dataset[[]].load()
+        numbered = {dim: np.arange(size) for dim, size in dataset.sizes.items() if dim not in dataset.coords}
+        return variables, dataset.assign_coords(numbered).drop_vars(list(dataset.data_vars)).load()
 
 
 def scalar_attributes(path: Path) -> dict[str, dict[str, Any]]:

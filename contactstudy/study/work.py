@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import os
+import contextlib
 import platform
 import subprocess
 import time
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache
@@ -99,16 +99,25 @@ def circumstances() -> dict[str, Any]:
     return found
 
 
-def single_threaded() -> None:
-    """Keep the transforms of this process to one thread: the cores are shared out by cases."""
-    os.environ.update({name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")})
-    import pyfftw
+@contextlib.contextmanager
+def single_threaded() -> Iterator[None]:
+    """Keep linear algebra and transforms to one thread: the cores are shared out by cases.
 
-    pyfftw.config.NUM_THREADS = 1
+    It also makes results the same in every process, because the order of sums does not depend on the threads.
+    """
+    import pyfftw
+    from threadpoolctl import threadpool_limits
+
+    previous, pyfftw.config.NUM_THREADS = pyfftw.config.NUM_THREADS, 1
+    try:
+        with threadpool_limits(limits=1):
+            yield
+    finally:
+        pyfftw.config.NUM_THREADS = previous
 
 
 def default_solver() -> Solver:
-    """The package's own solver."""
+    """Return the package's own solver."""
     from contactstudy.solve import solve
 
     return solve
@@ -135,11 +144,10 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     StoreError
         If the file cannot be written.
     """
-    single_threaded()
     folder = Folder(job.folder)
     began = time.perf_counter()
     try:
-        with warnings.catch_warnings(record=True) as caught:
+        with single_threaded(), warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             setup = build_setup(job.parameters)
             dataset = (solver or default_solver())(

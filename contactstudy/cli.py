@@ -1,0 +1,278 @@
+"""The command ``contactstudy``."""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from collections import Counter
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from contactstudy.study.folder import Entry
+    from contactstudy.study.plan import Plan
+    from contactstudy.study.run import RunReport
+    from contactstudy.study.work import Solver
+
+ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
+SHOWN = 20
+"""Longest list of cases on the screen; ``--all`` shows every one."""
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="contactstudy",
+        description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
+        epilog="Exit codes: 0 all cases ok, 1 some failed or are not done, 2 wrong usage or input, "
+        "130 after Ctrl-C, 143 after SIGTERM.",
+    )
+    parser.add_argument("--version", action="store_true", help="show the version and end")
+    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
+
+    def command(name: str, text: str, *, takes_study: bool) -> argparse.ArgumentParser:
+        added = commands.add_parser(name, help=text, description=text)
+        if takes_study:
+            added.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML)")
+            added.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        else:
+            added.add_argument("folder", metavar="FOLDER", type=Path, help="results of a study")
+        return added
+
+    def parallel(added: argparse.ArgumentParser) -> None:
+        added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        added.add_argument("--no-figure", action="store_true", help="draw no figure")
+
+    parallel(command("run", "Solve the cases of a study that are not solved yet.", takes_study=True))
+    plan = command("plan", "Say what a run would do; solve nothing.", takes_study=True)
+    status = command("status", "Say what is done, failed, stale or missing.", takes_study=False)
+    for added in (plan, status):
+        added.add_argument("--all", action="store_true", help="list every case")
+    added = command("collect", "Merge the summaries of all cases into one netCDF file.", takes_study=False)
+    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    parallel(command("rerun", "Solve failed, stale and missing cases again.", takes_study=False))
+    added = command("export", "Write the summaries of all cases as a table (CSV).", takes_study=False)
+    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.csv; - for the screen")
+    return parser
+
+
+def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None) -> int:
+    """Run the command line and return the exit code.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        Default: those of the process.
+    solver : callable, optional
+        Called instead of :func:`contactstudy.solve`.
+
+    Examples
+    --------
+    >>> main(["plan", "no_such_study.toml"])
+    2
+    """
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if options.version:
+        from contactstudy.dataset import package_version
+
+        print(f"contactstudy {package_version()}")
+        return ALL_OK
+    if options.command is None:
+        parser.print_help()
+        return USAGE
+    from contactstudy.errors import ContactStudyError
+
+    try:
+        actions = {
+            "run": _run, "rerun": _rerun, "plan": _plan, "status": _status, "collect": _collect, "export": _export,
+        }
+        return actions[options.command](options, solver)
+    except ContactStudyError as error:
+        print(f"contactstudy: {error}", file=sys.stderr)
+        return USAGE
+    except KeyboardInterrupt as interrupt:
+        print("contactstudy: interrupted; finished cases are kept, the same command goes on", file=sys.stderr)
+        terminated = type(interrupt).__name__ == "Terminated"
+        return 128 + (signal.SIGTERM if terminated else signal.SIGINT)
+
+
+def _run(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import Study, run_study
+
+    study = Study.from_toml(options.study)
+    report = run_study(study, options.out, workers=options.workers, scheduler=options.scheduler, solver=solver)
+    return _report(report, figure=not options.no_figure)
+
+
+def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import rerun_study
+
+    report = rerun_study(options.folder, workers=options.workers, scheduler=options.scheduler, solver=solver)
+    return _report(report, figure=not options.no_figure)
+
+
+def _report(report: RunReport, *, figure: bool) -> int:
+    """Say what a run did and wrote."""
+    counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
+    print(f"{len(report.plan.cases)} cases: {counts}; {report.solved} solved now")
+    for case, entry in report.failures[:SHOWN]:
+        print(f"  failed: {case.name}: {entry.reason}")
+    if report.failures:
+        print(f"  details in {_shown(report.folder / 'run.log')}")
+        print(f"  again with: contactstudy rerun {_shown(report.folder)}")
+    for case in report.plan.skipped[:SHOWN]:
+        print(f"  skipped: {case.name}: {case.reason}")
+    for case in report.not_converged[:SHOWN]:
+        print(f"  not converged, do not rely on it: {case.name}")
+    files = report.files
+    if files:
+        size = sum(path.stat().st_size for path in files)
+        print(f"wrote {len(files)} netCDF files, {_bytes(size)}, in {_shown(files[0].parent)}")
+        print(f"wrote {_shown(_write_summary(report.folder))}")
+        drawn = _draw(report.folder) if figure else None
+        if drawn is not None:
+            print(f"wrote {_shown(drawn)}")
+    stale = [entry for entry in report.entries if entry.status == "stale"]
+    if stale:
+        print(f"{len(stale)} stale ({stale[0].reason}); again with: contactstudy rerun {_shown(report.folder)}")
+    return ALL_OK if not report.failures else SOME_FAILED
+
+
+def _shown(path: Path) -> str:
+    """Path relative to the current folder where that is shorter."""
+    try:
+        return str(path.relative_to(Path.cwd()))
+    except ValueError:
+        return str(path)
+
+
+def _bytes(size: float) -> str:
+    for unit in ("bytes", "kB", "MB"):
+        if size < 1000:
+            return f"{size:.3g} {unit}"
+        size /= 1000
+    return f"{size:.3g} GB"
+
+
+def _write_summary(folder: Path, target: Path | None = None) -> Path:
+    from contactstudy.study import collect
+    from contactstudy.study.store import write_dataset
+
+    path = target if target is not None else folder / "summary.nc"
+    write_dataset(path, collect(folder))
+    return path
+
+
+def _draw(folder: Path) -> Path | None:
+    """Draw the study's figure if it is a study of e/a, without a screen."""
+    from contactstudy.study import open_study
+
+    dataset = open_study(folder)
+    if "e_over_a" not in dataset.dims or "pressure" not in dataset:
+        return None
+    import matplotlib
+
+    from contactstudy.plots import plot_edge_effect
+
+    previous = matplotlib.get_backend()
+    matplotlib.use("Agg")
+    try:
+        figure = plot_edge_effect(dataset)
+        path = folder / "edge_effect.png"
+        figure.savefig(path, dpi=150)
+        from matplotlib import pyplot
+
+        pyplot.close(figure)
+    finally:
+        matplotlib.use(previous)
+    return path
+
+
+def _list(plan: Plan, entries: list[Entry], *, everything: bool) -> None:
+    """Print counts, and the cases that need attention."""
+    for status, count in Counter(entry.status for entry in entries).items():
+        print(f"  {count} {status}")
+    listed = [
+        (case, entry) for case, entry in zip(plan.cases, entries, strict=True) if everything or entry.reason
+    ]
+    for case, entry in listed if everything else listed[:SHOWN]:
+        print(f"  {entry.status}: {case.id[:16]} {case.name}" + (f": {entry.reason}" if entry.reason else ""))
+    if not everything and len(listed) > SHOWN:
+        print(f"  ... and {len(listed) - SHOWN} more (--all)")
+
+
+def _forecast(plan: Plan, entries: list[Entry]) -> None:
+    """Bytes and time that the cases to come will take."""
+    from contactstudy.study.progress import duration
+
+    pairs = list(zip(plan.cases, entries, strict=True))
+    done = {case.id: (case.cost, entry.scalars["seconds"]) for case, entry in pairs if "seconds" in entry.scalars}
+    todo = {case.id: case for case, entry in pairs if entry.status == "missing"}
+    duplicates = len(plan.cases) - len(plan.skipped) - len(plan.unique)
+    if duplicates:
+        print(f"  {duplicates} duplicates, solved once")
+    print(f"files: at most {_bytes(plan.size)} at level {plan.level}")
+    if todo and done:
+        speed = sum(seconds for _, seconds in done.values()) / sum(cost for cost, _ in done.values())
+        seconds = speed * sum(case.cost for case in todo.values())
+        print(f"time: about {duration(seconds)} of one core for {len(todo)} cases")
+    elif todo:
+        print(f"time: known when the first of {len(todo)} cases is solved")
+
+
+def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import Study
+    from contactstudy.study.folder import Folder
+
+    study = Study.from_toml(options.study)
+    plan = study.plan()
+    folder = Folder(options.out if options.out is not None else Path("results") / study.name)
+    entries = folder.entries(plan)
+    shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
+    print(f"study {study.name}: {len(plan.cases)} cases ({shape}), results in {_shown(folder.path)}")
+    _list(plan, entries, everything=options.all)
+    _forecast(plan, entries)
+    return ALL_OK
+
+
+def _status(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study.folder import Folder
+    from contactstudy.study.lock import read_lock
+
+    folder = Folder(options.folder)
+    study = folder.read_study()
+    plan = study.plan()
+    entries = folder.entries(plan)
+    print(f"study {study.name}: {len(plan.cases)} cases, results in {_shown(folder.path)}")
+    holder = read_lock(folder.path)
+    if holder is not None:
+        print(f"locked by process {holder.get('process')} on {holder.get('host')} since {holder.get('time')}")
+    _list(plan, entries, everything=options.all)
+    _forecast(plan, entries)
+    return ALL_OK if all(entry.status in ("ok", "skipped") for entry in entries) else SOME_FAILED
+
+
+def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
+    print(f"wrote {_shown(_write_summary(options.folder.resolve(), options.out))}")
+    return ALL_OK
+
+
+def _export(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import collect
+    from contactstudy.study.store import write_text
+
+    table = collect(options.folder).to_dataframe().to_csv()
+    if options.out is not None and str(options.out) == "-":
+        print(table, end="")
+        return ALL_OK
+    path = options.out if options.out is not None else options.folder / "summary.csv"
+    write_text(path, table)
+    print(f"wrote {_shown(path.resolve())}")
+    return ALL_OK
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,200 @@
+"""Contact against closed forms, symmetry, equilibrium, and what only a free end does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import (
+    ConvergenceWarning,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    WindowError,
+    solve_contact,
+)
+from tests import references as ref
+from tests.conftest import LINE_LOAD
+
+
+def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
+    centres = window * (2 * (np.arange(cells) + 0.5) / cells - 1)
+    return xr.DataArray(
+        0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
+    )
+
+
+@pytest.mark.parametrize("cells", [64, 65, 128])
+def test_sphere_has_hertz_peak_pressure_radius_and_approach(half_space: HalfSpace, cells: int) -> None:
+    radius, peak, approach = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
+    contact = solve_contact(half_space, sphere_gap(cells), load=4 / 3)
+    assert float(contact["pressure"].max()) == pytest.approx(peak, rel=5e-3)
+    assert float(contact["approach"]) == pytest.approx(approach, rel=1e-3)
+    area = float((contact["pressure"] > 0).sum()) * (3 / cells) ** 2
+    assert np.sqrt(area / np.pi) == pytest.approx(radius, rel=2e-2)
+    x, y = contact["x"].values[:, None], contact["y"].values
+    exact = peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0))
+    inside = x**2 + y**2 < 0.9**2
+    assert np.abs(contact["pressure"].values - exact)[inside].max() < 1e-2 * peak
+
+
+def test_long_cylinder_on_a_half_space_is_a_line_contact_at_mid_length(half_space: HalfSpace, cylinder_gap) -> None:
+    length = 60.0
+    gap = cylinder_gap(length, (300, 64))
+    contact = solve_contact(half_space, gap.where(np.abs(gap.x - 30) < 28, np.inf), load=56 * LINE_LOAD)
+    middle = contact["pressure"].sel(x=30, method="nearest")
+    half_width, peak = ref.hertz_line(LINE_LOAD, 0.5, 1.0)
+    # The sharp ends of a roller on a half-space take more than their share: 1 % at a distance of 28 half-widths.
+    assert float(middle.max()) == pytest.approx(peak, rel=1.5e-2)
+    assert float((middle > 0).sum()) * 4 / 64 / 2 == pytest.approx(half_width, abs=4 / 64)
+
+
+def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
+    contact = solve_contact(short_body, cylinder_gap(8.0, (96, 48)), load=8 * LINE_LOAD)
+    assert bool(contact["converged"])
+    total = float(contact["pressure"].sum()) * (8 / 96) * (4 / 48)
+    assert total == pytest.approx(8 * LINE_LOAD, rel=1e-12)
+    assert abs(float(contact["load_error"])) < 1e-10
+    assert float(contact["penetration_error"]) < 3e-6
+    assert float(contact["open_pressure_error"]) == 0.0
+
+
+def test_pressure_is_symmetric_along_x_and_y(short_body: FiniteLengthSpace, cylinder_gap) -> None:
+    pressure = solve_contact(short_body, cylinder_gap(8.0, (64, 48)), load=8 * LINE_LOAD)["pressure"].values
+    assert np.abs(pressure - pressure[::-1]).max() < 1e-5
+    assert np.abs(pressure - pressure[:, ::-1]).max() < 1e-5
+
+
+def test_pressure_falls_towards_a_free_end_where_a_half_space_makes_it_rise(
+    short_body: FiniteLengthSpace, half_space: HalfSpace, cylinder_gap
+) -> None:
+    peaks = {}
+    for cells in (64, 128):
+        gap = cylinder_gap(8.0, (cells, 64))
+        free = solve_contact(short_body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
+        peaks[cells] = float(
+            solve_contact(HalfSpace(material=half_space.material), _island(gap), 8 * LINE_LOAD)["pressure"].max()
+        )
+        assert np.all(np.diff(free.values[: cells // 2]) > 0)
+        assert 0.55 < float(free[0]) < 0.72
+        assert float(free[cells // 2]) == pytest.approx(1.0239, abs=1e-3)
+    assert peaks[64] > 2.5
+    assert peaks[128] > 1.3 * peaks[64]
+
+
+def _island(gap: xr.DataArray) -> xr.DataArray:
+    """The same gap with room around it, in which the half-space has nothing to touch."""
+    step = float(gap.x[1] - gap.x[0])
+    x = np.concatenate([gap.x[:2].values - 2 * step, gap.x.values, gap.x[-2:].values + 2 * step])
+    return gap.reindex(x=x, fill_value=np.inf)
+
+
+@settings(max_examples=12, deadline=None)
+@given(length=st.floats(1.5, 12.0), poisson=st.floats(-0.3, 0.5), factor=st.floats(0.3, 2.0))
+def test_end_pressure_stays_below_the_middle_for_any_body(length: float, poisson: float, factor: float) -> None:
+    body = FiniteLengthSpace(length=length, material=Material(1 - poisson**2, poisson))
+    y = np.linspace(-1.96875 * factor, 1.96875 * factor, 64)
+    x = length * (np.arange(32) + 0.5) / 32
+    gap = xr.DataArray(np.broadcast_to(y**2, (32, 64)), coords={"x": x, "y": y}, dims=("x", "y"))
+    contact = solve_contact(body, gap, load=length * LINE_LOAD * factor**2)
+    along = contact["pressure"].max("y")
+    assert bool(contact["converged"])
+    assert float(along[0]) <= float(along[16]) * (1 + 1e-6)
+    assert abs(float(contact["load_error"])) < 1e-10
+
+
+def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_gap) -> None:
+    middles = [
+        float(
+            solve_contact(short_body, cylinder_gap(8.0, cells), 8 * LINE_LOAD)["pressure"].sel(
+                x=4, y=0, method="nearest"
+            )
+        )
+        for cells in ((32, 33), (64, 65), (128, 129))
+    ]
+    assert abs(middles[2] - middles[1]) < 2e-3
+    assert abs(middles[2] - middles[1]) < abs(middles[1] - middles[0])
+
+
+def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
+    gap = cylinder_gap(8.0, (48, 64))
+    plain = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4)
+    coupled = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4, coupled=True)
+    assert np.allclose(plain["shear_traction"], 0.4 * plain["pressure"])
+
+    def centre(contact: xr.Dataset) -> float:
+        return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())
+
+    assert abs(centre(plain)) < 1e-6
+    # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
+    assert -0.1 < centre(coupled) < -0.01
+    assert bool(coupled["converged"])
+    assert float(coupled["penetration_error"]) < 1e-5
+
+
+def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
+    body = HalfSpace(material=Material(0.75, 0.5))
+    gap = sphere_gap(48)
+    plain = solve_contact(body, gap, 4 / 3, friction=0.3)
+    coupled = solve_contact(body, gap, 4 / 3, friction=0.3, coupled=True)
+    assert np.abs(plain["pressure"] - coupled["pressure"]).max() < 1e-5
+
+
+def test_stopping_early_is_said_and_warned(half_space: HalfSpace) -> None:
+    with pytest.warns(ConvergenceWarning, match="max_iterations"):
+        contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, max_iterations=2)
+    assert not bool(contact["converged"])
+
+
+def test_flooded_window_is_an_error(half_space: HalfSpace, short_body: FiniteLengthSpace, cylinder_gap) -> None:
+    with pytest.raises(WindowError, match=r"y_min.*widen"):
+        solve_contact(half_space, sphere_gap(32, window=0.8), load=4 / 3)
+    with pytest.raises(WindowError, match="y_min"):
+        solve_contact(short_body, cylinder_gap(8.0, (32, 32), window=0.9), load=8 * LINE_LOAD)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"load": 0.0}, "load = 0.0: must be a positive"),
+        ({"load": np.nan}, "load = nan"),
+        ({"load": "much"}, "load = 'much'"),
+        ({"friction": np.inf}, "friction = inf"),
+        ({"coupled": "yes"}, "coupled = 'yes'"),
+        ({"tolerance": -1.0}, "tolerance = -1.0"),
+        ({"max_iterations": 0}, "max_iterations = 0"),
+        ({"body": "steel"}, "body = 'steel'"),
+    ],
+)
+def test_bad_arguments_are_named(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
+    arguments = {"body": half_space, "gap": sphere_gap(16), "load": 1.0} | change
+    with pytest.raises(InvalidInputError, match=message):
+        solve_contact(**arguments)  # type: ignore[arg-type]
+
+
+def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
+    good = sphere_gap(16)
+    with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
+        solve_contact(half_space, good.where(good > 0.1), 1.0)
+    with pytest.raises(InvalidInputError, match="xarray.DataArray"):
+        solve_contact(half_space, good.values, 1.0)  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"gap.dims"):
+        solve_contact(half_space, good.rename(x="u"), 1.0)
+    with pytest.raises(InvalidInputError, match="uniformly spaced"):
+        solve_contact(half_space, good.assign_coords(x=good.x**3), 1.0)
+    with pytest.raises(InvalidInputError, match="increasing"):
+        solve_contact(half_space, good.assign_coords(x=-good.x), 1.0)
+    with pytest.raises(InvalidInputError, match="at least two"):
+        solve_contact(half_space, good[:1], 1.0)
+    with pytest.raises(InvalidInputError, match="non-empty"):
+        solve_contact(half_space, good[:0], 1.0)
+    with pytest.raises(InvalidInputError, match="infinite everywhere"):
+        solve_contact(half_space, good * np.inf, 1.0)
+    with pytest.raises(InvalidInputError, match="begin at the free end"):
+        solve_contact(short_body, good, 1.0)
+    with pytest.raises(InvalidInputError, match="end at the free end"):
+        solve_contact(short_body, good.assign_coords(x=good.x + 1.5), 1.0)

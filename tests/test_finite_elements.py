@@ -1,0 +1,107 @@
+"""The finite-element reference, checked where exact solutions exist, and the stored stresses checked for their own sense."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from tests import finite_elements as fe
+from tests import references as ref
+
+pytest.importorskip("skfem")
+superpose = pytest.importorskip("tests.finite_elements.superpose")
+
+COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
+BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
+Y = (-1.25, -0.5, 0.0, 0.25, 1.0)
+UNIFORM = [(fe.Uniform(), False), (fe.Uniform(), True)]
+
+
+def test_meshes_contain_the_points_where_loads_begin() -> None:
+    for length in (2.5, 4.0, 8.0):
+        edges = superpose.Resolution().mesh_x(length)
+        assert np.all(np.diff(edges) > 0) and edges[0] == 0 and edges[-1] == pytest.approx(length)
+        for mark in np.arange(0, length + 0.1, 0.5):
+            assert np.abs(edges - mark).min() < 1e-12
+
+
+@pytest.mark.parametrize(("length", "poisson", "tolerance"), [(2.5, 0.0, 2e-4), (0.05, 0.3, 5e-4)])
+def test_plane_problems(length: float, poisson: float, tolerance: float) -> None:
+    """Uniform from end to end: a body without lateral contraction is in plane strain, a thin plate in plane stress.
+
+    Both have the stresses of the line contact in the plane, and `sigma_xx = 0`.
+    """
+    x, z = (0.0, 0.2 * length, 0.5 * length), (0.5, 0.8, 1.5, 3.0)
+    harmonic = superpose.harmonics(length, poisson, UNIFORM, x, z, COARSE(panels=BELOW_25))
+    found = superpose.stresses(harmonic, 0, 1, 0.3, Y, superpose.transform_ellipse)
+    exact = ref.hertz_strip(np.array(Y)[:, None], np.array(z), 1.0, 1.0, 0.0, 0.3)
+    for name in ref.COMPONENTS:
+        assert found[name] - exact[name] == pytest.approx(0, abs=tolerance), name
+    assert np.abs(exact["tau_yz"]).max() > 0.2
+
+
+def test_displacement_of_a_line_contact() -> None:
+    """`nu = 0`: `E u_z` is `-p0 y^2 / a` inside from the elliptical pressure, and its slope is `q` from the traction."""
+    case = fe.LoadCase(2.5, fe.Uniform(), 0.3, 0.0)
+    harmonic = superpose.harmonics(2.5, 0.0, UNIFORM, (0.0, 0.5, 1.25), (1.0,), COARSE())
+    y = np.array([-0.6, -0.3, 0.0, 0.3, 0.6])
+    found = superpose.displacement(harmonic, case, 0, 1, y, 2, superpose.transform_ellipse)
+    exact = -(y**2) + 0.3 * 0.5 * (y * np.sqrt(1 - y**2) + np.arcsin(y))
+    assert found - exact == pytest.approx(0, abs=3e-5)
+
+
+def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
+    """Against point loads of Boussinesq and Cerruti over the loaded rectangle; the ends, 6 a away, still count a little."""
+    bump = fe.Bump(6.0, 1.0)
+    x, z = (6.0, 6.5, 7.5), (0.5, 1.0, 2.0)
+    shapes = [(bump, False), (bump, True)]
+    harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4))
+    found = superpose.stresses(harmonic, 0, 1, 0.3, Y)
+    node, weight = np.polynomial.legendre.leggauss(60)
+    loads = np.outer(weight * bump(6 + node), weight * fe.profile_y(node))
+    dx = np.array(x)[:, None, None, None, None] - 6 - node[:, None]
+    dy = np.array(Y)[:, None, None, None] - node
+    point = ref.point_load(dx, dy, np.array(z)[:, None, None], 0.3, 1.0, 0.3)
+    for name in ref.COMPONENTS:
+        exact = np.einsum("xyzij,ij->xyz", point[name], loads)
+        shear = name.startswith("tau")
+        assert found[name] - exact == pytest.approx(0, abs=1e-3 if shear else 5e-3), name
+
+
+@pytest.mark.parametrize("name", fe.CASES)
+def test_stored_case(name: str) -> None:
+    """Free ends, symmetry, and an error estimate that is worth comparing with."""
+    reference = fe.load(name)
+    stress, case = reference.stress, reference.case
+    assert reference.error < 5e-4 and reference.median_error < 1e-5
+    assert stress.attrs["length"] == case.length and stress.attrs["poisson"] == case.poisson
+    assert stress.attrs["friction"] == case.friction and stress.attrs["g"] == str(case.g)
+    for component in ("sigma_xx", "tau_xy", "tau_xz"):
+        for x in (0, case.length):
+            assert np.abs(stress[component].sel(x=x)).max() < 2 * reference.error, (component, x)
+    if case.friction == 0:
+        assert np.abs(stress.tau_yz.sel(y=0)).max() < 1e-6 and np.abs(stress.tau_xy.sel(y=0)).max() < 1e-6
+    if case.symmetric:
+        for component in ref.COMPONENTS:
+            sign = -1 if component in ("tau_xy", "tau_xz") else 1
+            ends = stress[component].sel(x=case.length) - sign * stress[component].sel(x=0)
+            assert np.abs(ends).max() < reference.error, component
+    top = stress.sigma_zz.sel(z=0.05) + case.pressure(stress.x.values, stress.y.values)
+    assert np.abs(top).max() < 0.03
+
+
+def test_stored_friction_is_a_superposition() -> None:
+    """What is even in y of the sliding case is the frictionless one (and odd, of `tau_xy` and `tau_yz`)."""
+    plain, sliding = fe.load("full").stress, fe.load("full_sliding").stress
+    mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
+    for component in ref.COMPONENTS:
+        sign = -1 if component in ("tau_xy", "tau_yz") else 1
+        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=plain.y)
+        assert np.abs(even - plain[component]).max() < 1e-5, component
+    assert np.abs(sliding.tau_xy).max() > 0.05
+
+
+def test_stored_file_is_small() -> None:
+    assert fe.DATA.stat().st_size < 300_000

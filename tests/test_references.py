@@ -1,0 +1,188 @@
+"""The closed forms of `references.py`, checked by themselves: equilibrium, boundary values, known numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from tests import references as ref
+
+NU = 0.3
+Field = Callable[[np.ndarray, np.ndarray, np.ndarray], ref.Stress]
+
+FIELDS: dict[str, Field] = {
+    "Boussinesq": lambda x, y, z: ref.point_load(x, y, z, NU),
+    "Cerruti": lambda x, y, z: ref.point_load(x, y, z, NU, 0.0, 1.0),
+    "circle": lambda x, y, z: ref.hertz_circle(x, y, z, 1.3, 0.8, NU),
+    "sliding circle": lambda x, y, z: ref.hertz_circle(x, y, z, 1.3, 0.8, NU, 0.4),
+    "sliding strip": lambda x, y, z: ref.hertz_strip(y, z, 1.3, 0.8, NU, 0.4),
+}
+
+
+def tensor(stress: ref.Stress) -> np.ndarray:
+    """The components as a 3 x 3 array in front."""
+    xx, yy, zz, xy, xz, yz = np.broadcast_arrays(*(stress[name] for name in ref.COMPONENTS))
+    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+
+
+def difference(field: Field, points: np.ndarray, step: float = 1e-2) -> np.ndarray:
+    """Gradient `[k, i, j, point]` of the stress by sixth-order central differences."""
+    rows = []
+    for axis in range(3):
+        shift = np.zeros((3, 1))
+        shift[axis] = step
+        rows.append(
+            sum(
+                w * (tensor(field(*(points + j * shift))) - tensor(field(*(points - j * shift))))
+                for j, w in ((1, 45), (2, -9), (3, 1))
+            )
+            / (60 * step)
+        )
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("name", FIELDS)
+def test_equilibrium_and_compatibility(name: str) -> None:
+    """No body force, and a harmonic mean stress: together with Beltrami's cross terms this is elasticity."""
+    field = FIELDS[name]
+    points = np.random.default_rng(1).uniform(-2, 2, (3, 20))
+    points[2] = 0.3 + np.abs(points[2])
+    gradient = difference(field, points)
+    assert np.abs(np.einsum("kkjn->jn", gradient)).max() < 1e-7
+
+    def potential(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> ref.Stress:
+        gradients = difference(field, np.array([x, y, z]))
+        trace = np.einsum("kiin->kn", gradients)
+        return dict(zip(ref.COMPONENTS, (*trace, *np.zeros_like(trace)), strict=True))
+
+    hessian = np.einsum("kiin->kin", difference(potential, points))
+    assert np.abs(np.einsum("kkn->n", hessian)).max() < 1e-4
+
+    def laplacian(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
+        step, centre = 0.02, np.array([x, y, z])
+        total = -3 * 490 / 180 * tensor(field(*centre))
+        for axis in range(3):
+            for j, w in ((1, 270), (2, -27), (3, 2)):
+                shift = np.zeros((3, 1))
+                shift[axis] = j * step
+                total = total + w / 180 * (tensor(field(*(centre + shift))) + tensor(field(*(centre - shift))))
+        return total / step**2
+
+    assert laplacian(*points) + hessian / (1 + NU) == pytest.approx(0, abs=2e-4)
+
+
+def test_circle_on_the_surface() -> None:
+    r = np.array([0.0, 0.3, 0.6, 0.9, 1.2, 2.0])
+    stress = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU, 0.25)
+    p = np.sqrt(np.clip(1 - r**2, 0, None))
+    assert stress["sigma_zz"] == pytest.approx(-p, abs=1e-9)
+    assert stress["tau_yz"] == pytest.approx(-0.25 * p, abs=1e-9)
+    assert stress["tau_xz"] == pytest.approx(0, abs=1e-9)
+    radial, hoop = ref.hertz_circle_surface(r, 1.0, 1.0, NU)
+    frictionless = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU)
+    assert frictionless["sigma_xx"] == pytest.approx(radial, abs=1e-9)
+    assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
+    x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
+    shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
+    plain = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
+    for name, value in ref.sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
+        assert shear[name] - plain[name] == pytest.approx(value, abs=1e-9), name
+
+
+def test_circle_on_the_axis_and_far_away() -> None:
+    z = np.linspace(0, 5, 26)
+    zz, rr = ref.hertz_circle_axis(z, 2.0, 3.0, NU)
+    stress = ref.hertz_circle(0.0, 0.0, z, 2.0, 3.0, NU)
+    assert stress["sigma_zz"] == pytest.approx(zz, abs=1e-10)
+    assert stress["sigma_xx"] == pytest.approx(rr, abs=1e-10)
+    fine = np.linspace(0.3, 0.7, 401)
+    zz, rr = ref.hertz_circle_axis(fine, 1.0, 1.0, NU)
+    shear = 0.5 * np.abs(zz - rr)
+    assert shear.max() == pytest.approx(0.310, abs=5e-4) and fine[shear.argmax()] == pytest.approx(0.48, abs=0.01)
+    x, y, depth = np.array([30.0, -5.0]), np.array([10.0, 40.0]), np.array([20.0, 7.0])
+    total = 2 / 3 * np.pi
+    far = ref.hertz_circle(x, y, depth, 1.0, 1.0, NU, 0.5)
+    point = ref.point_load(x, y, depth, NU, total, 0.5 * total)
+    for name in ref.COMPONENTS:
+        assert far[name] == pytest.approx(point[name], abs=2e-3 * np.abs(point["sigma_zz"]).max()), name
+
+
+def test_circle_symmetries() -> None:
+    x, y, z = np.array([0.4, 1.1]), np.array([0.7, -0.2]), np.array([0.2, 0.9])
+    odd_in_x, odd_in_y = {"tau_xy", "tau_xz"}, {"tau_xy", "tau_yz"}
+    plain, slid = (ref.hertz_circle(x, y, z, 1.0, 1.0, NU, f) for f in (0.0, 1.0))
+    plain_y, slid_y = (ref.hertz_circle(x, -y, z, 1.0, 1.0, NU, f) for f in (0.0, 1.0))
+    slid_x = ref.hertz_circle(-x, y, z, 1.0, 1.0, NU, 1.0)
+    for name in ref.COMPONENTS:
+        sign = -1 if name in odd_in_y else 1
+        assert plain_y[name] == pytest.approx(sign * plain[name], abs=1e-12)
+        assert slid_y[name] - plain_y[name] == pytest.approx(-sign * (slid[name] - plain[name]), abs=1e-12)
+        assert slid_x[name] == pytest.approx((-1 if name in odd_in_x else 1) * slid[name], abs=1e-12)
+
+
+def test_hertz_dimensions() -> None:
+    modulus = ref.composite_modulus(210e9, 0.3, 210e9, 0.3)
+    assert modulus == pytest.approx(115.3846e9, rel=1e-6)
+    a, p0, approach = ref.hertz_point(100.0, 0.01, modulus)
+    assert approach == pytest.approx((9 * 100**2 / (16 * 0.01 * modulus**2)) ** (1 / 3))
+    assert p0 == pytest.approx((6 * 100 * modulus**2 / (np.pi**3 * 0.01**2)) ** (1 / 3))
+    a, p0 = ref.hertz_line(2e5, 0.005, modulus)
+    assert p0 == pytest.approx(np.sqrt(2e5 * modulus / (np.pi * 0.005)))
+    assert ref.hertz_line_from_pressure(p0, 0.005, modulus) == pytest.approx((a, 2e5))
+
+
+def test_strip_on_the_surface() -> None:
+    y = np.array([-3.0, -1.2, -0.8, 0.0, 0.5, 0.9, 1.5])
+    p = np.sqrt(np.clip(1 - y**2, 0, None))
+    stress = ref.hertz_strip(y, 0.0, 1.0, 1.0, NU, 0.2)
+    assert stress["sigma_zz"] == pytest.approx(-p, abs=1e-12)
+    assert stress["tau_yz"] == pytest.approx(-0.2 * p, abs=1e-12)
+    inside = np.abs(y) < 1
+    assert stress["sigma_yy"][inside] == pytest.approx((-p - 0.4 * y)[inside], abs=1e-12)
+    outside = -0.4 * (y - np.sign(y) * np.sqrt(np.clip(y**2 - 1, 0, None)))
+    assert stress["sigma_yy"][~inside] == pytest.approx(outside[~inside], abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("friction", "largest", "y_at", "z_at", "surface"),
+    [
+        (0.0, 0.5575, 0.0, 0.70, 0.400),
+        (0.1, 0.5654, 0.29, 0.67, 0.438),
+        (0.2, 0.5900, 0.55, 0.57, 0.535),
+        (0.25, 0.6093, 0.68, 0.49, 0.598),
+        (0.3, None, None, None, 0.667),
+    ],
+)
+def test_strip_von_mises(friction: float, largest: float | None, y_at: float, z_at: float, surface: float) -> None:
+    """The table of largest von Mises stresses of a sliding line contact, Poisson's ratio 0.3."""
+    y, z = np.linspace(-1.2, 1.2, 481)[:, None], np.linspace(0, 1.5, 301)[None, :]
+    mises = ref.von_mises(ref.hertz_strip(y, z, 1.0, 1.0, NU, friction))
+    assert mises[:, 0].max() == pytest.approx(surface, abs=1e-3)
+    if largest is not None:
+        below = mises[:, 40:]
+        i, j = np.unravel_index(below.argmax(), below.shape)
+        assert below.max() == pytest.approx(largest, abs=1e-4)
+        assert (abs(y[i, 0]), z[0, 40 + j]) == pytest.approx((y_at, z_at), abs=0.012)
+
+
+def test_strip_orthogonal_shear() -> None:
+    y, z = np.linspace(-1.5, 1.5, 601)[:, None], np.linspace(0.2, 0.9, 141)[None, :]
+    shear = ref.hertz_strip(y, z, 1.0, 1.0, NU)["tau_yz"]
+    i, j = np.unravel_index(np.abs(shear).argmax(), shear.shape)
+    assert np.abs(shear).max() == pytest.approx(0.25, abs=1e-4)
+    assert (abs(y[i, 0]), z[0, j]) == pytest.approx((0.866, 0.5), abs=0.01)
+
+
+def test_strip_is_the_limit_of_point_loads() -> None:
+    """Boussinesq and Cerruti loads, integrated along x and over the ellipse."""
+    parameter = np.linspace(-17, 17, 1001)
+    x, dx = np.sinh(parameter), np.cosh(parameter) * 34 / 1000
+    node, weight = np.polynomial.chebyshev.chebgauss(60)
+    z, y = 0.6, 0.45
+    loads = weight * (1 - node**2)
+    point = ref.point_load(x[:, None], y - node[None, :], z, NU, 1.0, 0.3)
+    strip = ref.hertz_strip(y, z, 1.0, 1.0, NU, 0.3)
+    for name in ref.COMPONENTS:
+        assert np.einsum("xn,x,n->", point[name], dx, loads) == pytest.approx(float(strip[name]), abs=1e-6), name
