@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from contactstudy import profiles
-    from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace
+    from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
     from contactstudy.errors import (
@@ -37,6 +37,7 @@ _HOME = {
     "HalfSpace": "bodies",
     "InvalidInputError": "errors",
     "Material": "material",
+    "QuarterSpace": "bodies",
     "Roller": "roller",
     "WindowError": "errors",
     "choose_grid": "case",
@@ -58,6 +59,7 @@ __all__ = [
     "HalfSpace",
     "InvalidInputError",
     "Material",
+    "QuarterSpace",
     "Roller",
     "WindowError",
     "choose_grid",

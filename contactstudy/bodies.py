@@ -48,6 +48,22 @@ class HalfSpace(Body):
 
 
 @dataclass(frozen=True, kw_only=True)
+class QuarterSpace(Body):
+    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
+
+    Examples
+    --------
+    >>> QuarterSpace(material=Material(210e9, 0.3)).extent
+    (0.0, inf)
+    """
+
+    @property
+    def extent(self) -> tuple[float, float]:
+        """Smallest and largest x inside the body, metres."""
+        return (0.0, np.inf)
+
+
+@dataclass(frozen=True, kw_only=True)
 class FiniteLengthSpace(Body):
     """Elastic body ``0 <= x <= length``, ``z >= 0`` with free end faces I at ``x = 0`` and II at ``x = length``.
 

@@ -2,13 +2,15 @@
 
 Sources, by the names used below:
 
-* Johnson, *Contact Mechanics* (1985): sections 3.2 (potentials of a loaded half-space), 3.4 (Hertz pressure on a
-  circle), 4.2 (line contact), appendix 3;
-* Hamilton and Goodman, *J. Appl. Mech.* 33 (1966) 371; Hamilton, *Proc. IMechE* 197C (1983) 53: circular sliding contact;
+* Johnson, *Contact Mechanics* (1985): sections 3.2 (potentials of a loaded half-space), 3.4 (Hertz pressure
+  on a circle), 4.2 (line contact), appendix 3;
+* Hamilton and Goodman, *J. Appl. Mech.* 33 (1966) 371; Hamilton, *Proc. IMechE* 197C (1983) 53: circular
+  sliding contact;
 * McEwen, *Phil. Mag.* 48 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact.
 
-Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression, traction
-`q = f p` drags the body's surface along `+y`. Stresses are returned as a dictionary with the keys of `COMPONENTS`.
+Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in
+compression, traction `q = f p` drags the body's surface along `+y`. Stresses are returned as a dictionary
+with the keys of `COMPONENTS`.
 """
 
 from __future__ import annotations
@@ -65,9 +67,10 @@ def _potential_stresses(
 ) -> tuple[list[NDArray[np.inexact]], list[NDArray[np.inexact]]]:
     """Stresses of a unit normal and a unit tangential (along y) load, from the potentials of Johnson, section 3.2.
 
-    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and `W = zeta L - rho`. They are
-    harmonic in `(x, y, zeta)`, while the depth `z` that multiplies them stays apart: for a real source `zeta = z`.
-    Derivatives across the axis follow from those by `s = x^2 + y^2`: `f_xy = 4 x y f''` and so on.
+    With `rho^2 = x^2 + y^2 + zeta^2` the potentials are `V = 1/rho`, `L = ln(rho + zeta)` and
+    `W = zeta L - rho`. They are harmonic in `(x, y, zeta)`, while the depth `z` that multiplies them stays apart:
+    for a real source `zeta = z`. Derivatives across the axis follow from those by `s = x^2 + y^2`:
+    `f_xy = 4 x y f''` and so on.
     """
     rho = np.sqrt(x**2 + y**2 + zeta**2)
     d = rho + zeta
@@ -106,7 +109,7 @@ def _potential_stresses(
 def point_load(
     x: ArrayLike, y: ArrayLike, z: ArrayLike, poisson: float, normal: float = 1.0, tangential: float = 0.0
 ) -> Stress:
-    """Stresses under a point load at the origin of a half-space: Boussinesq (`normal`) and Cerruti (`tangential`, along y)."""
+    """Stresses under a point load on a half-space: Boussinesq (`normal`) and Cerruti (`tangential`, along y)."""
     xs, ys, zs = (np.asarray(c, dtype=float) for c in np.broadcast_arrays(x, y, z))
     by_p, by_q = _potential_stresses(xs, ys, zs, zs, poisson)
     return {c: np.asarray(normal * p + tangential * q) for c, p, q in zip(COMPONENTS, by_p, by_q, strict=True)}
@@ -128,9 +131,10 @@ def hertz_circle(
     """Stresses under `p0 sqrt(1 - r^2/a^2)` and `q = f p` along `+y`: the problem of Hamilton (1983).
 
     Hamilton and Goodman's device: the potential of the Hertz pressure is that of point sources of strength
-    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Their explicit formulae are this integral;
-    here it is done by Gauss quadrature on the half circle through `t = -i a`, on which nothing is singular (`z >= 0`, also on
-    the surface and the axis) except close to the ring `r = a, z = 0`. Twelve digits and more away from there.
+    `pi p0 (a^2 - t^2) / (2 a) dt` at the complex depths `-i t`, `-a < t < a`. Their explicit formulae are
+    this integral; here it is done by Gauss quadrature on the half circle through `t = -i a`, on which nothing
+    is singular (`z >= 0`, also on the surface and the axis) except close to the ring `r = a, z = 0`. Twelve
+    digits and more away from there.
     """
     a = radius
     angle, weight = np.polynomial.legendre.leggauss(nodes)
@@ -150,7 +154,7 @@ def hertz_circle_axis(z: ArrayLike, radius: float, max_pressure: float, poisson:
 
 
 def hertz_circle_surface(r: ArrayLike, radius: float, max_pressure: float, poisson: float) -> tuple[Array, Array]:
-    """`sigma_rr` and `sigma_tt` on the surface of a frictionless Hertz circle, inside and outside (Johnson 3.42, 3.43)."""
+    """`sigma_rr` and `sigma_tt` on the surface around a frictionless Hertz circle (Johnson 3.42, 3.43)."""
     s = np.asarray(r, dtype=float) / radius
     height = np.sqrt(np.clip(1 - s**2, 0, None))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -159,7 +163,7 @@ def hertz_circle_surface(r: ArrayLike, radius: float, max_pressure: float, poiss
 
 
 def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_traction: float, poisson: float) -> Stress:
-    """In-plane stresses on the surface, inside the circle, from the traction `q` along y alone (Johnson section 7.1)."""
+    """In-plane stresses on the surface inside the circle, from the traction `q` alone (Johnson section 7.1)."""
     scale = -np.pi * max_traction / (8 * radius)
     xs, ys = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
     return {

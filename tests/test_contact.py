@@ -43,14 +43,15 @@ def test_sphere_has_hertz_peak_pressure_radius_and_approach(half_space: HalfSpac
 
 
 def test_long_cylinder_on_a_half_space_is_a_line_contact_at_mid_length(half_space: HalfSpace, cylinder_gap) -> None:
-    length = 60.0
-    gap = cylinder_gap(length, (300, 64))
+    """Away from its ends each section of a long roller is the line contact of the load that it carries."""
+    gap = cylinder_gap(60.0, (240, 128))
     contact = solve_contact(half_space, gap.where(np.abs(gap.x - 30) < 28, np.inf), load=56 * LINE_LOAD)
     middle = contact["pressure"].sel(x=30, method="nearest")
-    half_width, peak = ref.hertz_line(LINE_LOAD, 0.5, 1.0)
-    # The sharp ends of a roller on a half-space take more than their share: 1 % at a distance of 28 half-widths.
-    assert float(middle.max()) == pytest.approx(peak, rel=1.5e-2)
-    assert float((middle > 0).sum()) * 4 / 64 / 2 == pytest.approx(half_width, abs=4 / 64)
+    half_width, peak = ref.hertz_line(float(middle.sum()) * 4 / 128, 0.5, 1.0)
+    assert float(middle.max()) == pytest.approx(peak, rel=5e-3)
+    assert float((middle > 0).sum()) * 4 / 128 / 2 == pytest.approx(half_width, abs=4 / 128)
+    exact = peak * np.sqrt(np.maximum(1 - (middle.y / half_width) ** 2, 0))
+    assert float(np.abs(middle - exact).max()) < 3e-2 * peak
 
 
 def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
@@ -94,8 +95,8 @@ def _island(gap: xr.DataArray) -> xr.DataArray:
 
 
 @settings(max_examples=12, deadline=None)
-@given(length=st.floats(1.5, 12.0), poisson=st.floats(-0.3, 0.5), factor=st.floats(0.3, 2.0))
-def test_end_pressure_stays_below_the_middle_for_any_body(length: float, poisson: float, factor: float) -> None:
+@given(length=st.floats(1.5, 12.0), poisson=st.floats(0.05, 0.5), factor=st.floats(0.3, 2.0))
+def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(length: float, poisson: float, factor: float) -> None:
     body = FiniteLengthSpace(length=length, material=Material(1 - poisson**2, poisson))
     y = np.linspace(-1.96875 * factor, 1.96875 * factor, 64)
     x = length * (np.arange(32) + 0.5) / 32
@@ -131,7 +132,7 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
 
     assert abs(centre(plain)) < 1e-6
     # The traction along +y raises the surface behind and lowers it ahead, so the contact moves back.
-    assert -0.1 < centre(coupled) < -0.01
+    assert -0.2 < centre(coupled) < -0.02
     assert bool(coupled["converged"])
     assert float(coupled["penetration_error"]) < 1e-5
 

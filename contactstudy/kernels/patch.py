@@ -15,7 +15,8 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 
-_TINY = 1e-300
+# Its square is still a number; offsets are lengths in metres and never this small unless they vanish.
+_TINY = 1e-150
 
 
 def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: float) -> FloatArray:

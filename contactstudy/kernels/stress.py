@@ -12,11 +12,13 @@ from scipy import fft
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
-from contactstudy.kernels.images import cell_kernel, mirrored_kernel
+from contactstudy.kernels.images import CornerFunction, cell_kernel, mirrored_kernel
 from contactstudy.kernels.patch import normal_corner, tangential_corner
 
 # Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
+# Sign of the components xx, yy, zz, xy, xz, yz on the other side of the load along x.
+ODD_ALONG_X = np.array([1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,10 +141,27 @@ def _aligned_stress(
                 stress = stress + friction * tangential_corner(from_x, from_y, depth, poisson)
             return stress
 
-        if np.isfinite(length):
-            kernel = mirrored_kernel(corner, x, y, grid.dx, grid.dy, length)
-        else:
-            kernel = cell_kernel(corner, x, y, grid.dx, grid.dy)
+        kernel = _kernel_by_symmetry(corner, x, y, grid, length)
         stress = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
         result[..., i] = stress[:, at_x[:, None], at_y[None, :]]
     return result
+
+
+def _kernel_by_symmetry(
+    corner: CornerFunction, x: FloatArray, y: FloatArray, grid: Grid, length: float
+) -> FloatArray:
+    """Kernel at uniform offsets `x`; when they include 0 it is evaluated on one side and reflected to the other."""
+
+    def evaluate(offsets: FloatArray) -> FloatArray:
+        if np.isfinite(length):
+            return mirrored_kernel(corner, offsets, y, grid.dx, grid.dy, length)
+        return cell_kernel(corner, offsets, y, grid.dx, grid.dy)
+
+    steps = x / grid.dx
+    before = round(-float(steps[0]))
+    after = x.size - 1 - before
+    if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
+        return evaluate(x)
+    ahead = evaluate(grid.dx * np.arange(max(before, after) + 1))
+    behind = ahead[:, before:0:-1] * ODD_ALONG_X[:, None, None]
+    return np.concatenate([behind, ahead[:, : after + 1]], axis=1)

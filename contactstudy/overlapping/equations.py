@@ -169,7 +169,7 @@ class EquationSet:
         face_load : complex array (node, column)
             ``S`` there.
         """
-        last = max(resolution.reach / shortest, 4 * self.lateral)
+        last = max(resolution.ray_reach / shortest, 4 * self.lateral)
         depth, weights = ray_nodes(0.5 * self.lateral, last, resolution)
         axial = self.modes.wavenumbers
         total = pressure + self.modes.on_end[:, None] * equivalent

@@ -61,6 +61,8 @@ class Resolution:
         the angle must stay well below pi/2, where ``k_x**2 + k_y**2 + k_z**2`` would vanish.
     reach : float
         Largest axial and depth wavenumber, times the smallest distance from a loaded corner.
+    ray_reach : float
+        Likewise on the ray of depth wavenumbers, where the loads are evaluated and no longer solved for.
     modes : int
         Axial modes that are summed one by one.
     lateral_order : int
@@ -73,6 +75,7 @@ class Resolution:
     ratio: float = 3.0
     angle: float = np.pi / 6
     reach: float = 200.0
+    ray_reach: float = 50.0
     modes: int = 8
     lateral_order: int = 16
     lateral_reach: float = 10.0

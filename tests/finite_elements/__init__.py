@@ -3,9 +3,10 @@
 >>> for name in CASES:
 ...     reference = load(name)
 
-`reference.case` has the body and the load, `p(x, y) = p0 g(x) h(y)` with `h(y) = (1 - y^2)^2` on `|y| < 1` and `q = f p` along
-`+y`; `reference.stress` has `sigma_xx` and the other components on dims `(x, y, z)`. Lengths are in units of `a`, half the
-width of the load, and stresses in units of `p0`. `python -m tests.finite_elements.generate` makes the stored file anew.
+`reference.case` has the body and the load, `p(x, y) = p0 g(x) h(y)` with `h(y) = (1 - y^2)^2` on `|y| < 1`
+and `q = f p` along `+y`; `reference.stress` has `sigma_xx` and the other components on dims `(x, y, z)`.
+Lengths are in units of `a`, half the width of the load, and stresses in units of `p0`.
+`python -m tests.finite_elements.generate` makes the stored file anew.
 """
 
 from __future__ import annotations
@@ -106,9 +107,9 @@ CASES: dict[str, LoadCase] = {
 class Reference:
     """A load case with its stored stresses.
 
-    `stress` may also hold `displacement_z_young` on `(x, y)`: displacement of the top into the body times Young's modulus, less
-    that of the point named in its attributes, over `p0 a`. `error` is the estimate of the largest error of any component at any
-    point, over `p0`; `median_error` that of the median.
+    `stress` may also hold `displacement_z_young` on `(x, y)`: displacement of the top into the body times
+    Young's modulus, less that of the point named in its attributes, over `p0 a`. `error` is the estimate of
+    the largest error of any component at any point, over `p0`; `median_error` that of the median.
     """
 
     name: str
@@ -121,5 +122,6 @@ class Reference:
 def load(name: str, path: Path = DATA) -> Reference:
     """One stored case."""
     stress = xr.load_dataset(path, group=name)
-    return Reference(name, CASES[name], stress, float(stress.attrs["error_estimate"]),
-                     float(stress.attrs["error_estimate_median"]))
+    return Reference(
+        name, CASES[name], stress, float(stress.attrs["error_estimate"]), float(stress.attrs["error_estimate_median"])
+    )

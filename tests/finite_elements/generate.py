@@ -1,7 +1,8 @@
 """Make `data/finite_elements_stress.nc`: `python -m tests.finite_elements.generate [FILE]` (about ten minutes).
 
-Every case is solved at the production resolution and with one thing at a time made worse: element order, mesh, depth of the
-body, quadrature in k. The sum of the largest changes is stored as the error estimate of the case.
+Every case is solved at the production resolution and with one thing at a time made worse: element order,
+mesh, depth of the body, quadrature in k. The sum of the largest changes is stored as the error estimate of
+the case.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 
 import netCDF4
 import numpy as np
-import scipy  # type: ignore[import-untyped]
+import scipy
 import skfem  # type: ignore[import-untyped]
 import xarray as xr
 
@@ -53,14 +54,20 @@ def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, boo
     tangential = shapes.index((case.g, True)) if case.friction else None
     fields = stresses(harmonic, normal, tangential, case.friction, at["y"])
     units = {"units": "p0"}
-    data = xr.Dataset({n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in at.items()})
+    data = xr.Dataset(
+        {n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in at.items()}
+    )
     for name in at:
         data[name].attrs["units"] = "a"
     if case.symmetric:
         reference = at["x"].index(case.length / 2)
         u = displacement(harmonic, case, normal, tangential, at["y"], reference)
-        attrs = {"long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
-                 "units": "p0 a", "reference_x": case.length / 2, "reference_y": 0.0}
+        attrs = {
+            "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
+            "units": "p0 a",
+            "reference_x": case.length / 2,
+            "reference_y": 0.0,
+        }
         data["displacement_z_young"] = (("x", "y"), u, attrs)
     return data
 
@@ -76,21 +83,26 @@ def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]
 def main(path: Path = DATA) -> None:
     """Solve all cases at all resolutions and store the result."""
     path.unlink(missing_ok=True)
-    versions = f"numpy {np.__version__}, scipy {scipy.__version__}, scikit-fem {skfem.__version__}, netCDF4 {netCDF4.__version__}"
-    xr.Dataset(attrs={
-        "title": "Stresses in a finite-length space under prescribed loads, by finite elements",
-        "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
-        "load": "on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
-        "h": str(profile_y.__doc__), "units": "lengths in a, the half-width of h; stresses in p0, positive in tension",
-        "method": "Fourier integral in y, tensor-product elements of high order in x and z",
-        "resolution": str(PRODUCTION), "software": versions,
-        "regenerate": "python -m tests.finite_elements.generate",
-    }).to_netcdf(path)
+    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
+    versions = ", ".join(f"{name} {module.__version__}" for name, module in modules.items())
+    xr.Dataset(
+        attrs={
+            "title": "Stresses in a finite-length space under prescribed loads, by finite elements",
+            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+            "load": "on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
+            "h": str(profile_y.__doc__),
+            "units": "lengths in a, the half-width of h; stresses in p0, positive in tension",
+            "method": "Fourier integral in y, tensor-product elements of high order in x and z",
+            "resolution": str(PRODUCTION),
+            "software": versions,
+            "regenerate": "python -m tests.finite_elements.generate",
+        }
+    ).to_netcdf(path)
     for (length, poisson), group in groupby(CASES.items(), key=lambda item: (item[1].length, item[1].poisson)):
         cases = dict(group)
-        shapes = list(dict.fromkeys(
-            [(c.g, False) for c in cases.values()] + [(c.g, True) for c in cases.values() if c.friction]
-        ))
+        shapes = list(
+            dict.fromkeys([(c.g, False) for c in cases.values()] + [(c.g, True) for c in cases.values() if c.friction])
+        )
         results: dict[Resolution, dict[str, xr.Dataset]] = {}
         for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
             start = time.perf_counter()
@@ -109,7 +121,12 @@ def main(path: Path = DATA) -> None:
                 stored["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in each.values())
             stored = stored.assign_coords({k: list(v) for k, v in coordinates(case).items()})
             stored.to_netcdf(path, mode="a", group=name, encoding={n: {"_FillValue": None} for n in stored.data_vars})
-            print(name, stored.attrs["error_estimate"], {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in each.items()}, flush=True)
+            print(
+                name,
+                stored.attrs["error_estimate"],
+                {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in each.items()},
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

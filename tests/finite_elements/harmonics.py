@@ -1,11 +1,13 @@
 """Finite elements for the finite-length space: Fourier in y, high-order elements in x and z (scikit-fem).
 
-For a load `cos(k y)` the displacement is `(U_x cos, U_y sin, U_z cos)(k y)`, and the amplitudes solve a real two-dimensional
-problem on `0 <= x <= L`, `0 <= z <= depth`: free at `x = 0`, `x = L` and (but for the load) `z = 0`, held at `z = depth`. A
-traction `q cos(k y)` along y is the same problem a quarter period further on: `(U_x sin, -U_y cos, U_z sin)`.
+For a load `cos(k y)` the displacement is `(U_x cos, U_y sin, U_z cos)(k y)`, and the amplitudes solve a real
+two-dimensional problem on `0 <= x <= L`, `0 <= z <= depth`: free at `x = 0`, `x = L` and (but for the load)
+`z = 0`, held at `z = depth`. A traction `q cos(k y)` along y is the same problem a quarter period further on:
+`(U_x sin, -U_y cos, U_z sin)`.
 
-The mesh is a tensor product of two line meshes, so the matrices are sums of Kronecker products of one-dimensional ones, which
-scikit-fem assembles. Unit of stiffness is the shear modulus: stresses do not depend on it.
+The mesh is a tensor product of two line meshes, so the matrices are sums of Kronecker products of
+one-dimensional ones, which scikit-fem assembles. Unit of stiffness is the shear modulus: stresses do not
+depend on it.
 """
 
 from __future__ import annotations
@@ -15,9 +17,9 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-import scipy.sparse as sp  # type: ignore[import-untyped]
+import scipy.sparse as sp
 from numpy.typing import NDArray
-from scipy.sparse.linalg import splu  # type: ignore[import-untyped]
+from scipy.sparse.linalg import splu
 from skfem import Basis, BilinearForm, ElementLinePp, LinearForm, MeshLine  # type: ignore[import-untyped]
 
 Array = NDArray[np.float64]
@@ -41,7 +43,7 @@ def _mixed(u: Any, v: Any, _: Any) -> Any:
 
 @dataclass
 class Line:
-    """One-dimensional elements of one order on given element edges; `mixed` differentiates the test function (rows)."""
+    """One-dimensional elements of one order on given element edges; `mixed` differentiates the rows."""
 
     edges: Array
     order: int
@@ -108,7 +110,7 @@ class HarmonicBody:
         return matrix[self._free][:, self._free].tocsc()
 
     def solve(self, k: float, shapes: Sequence[tuple[Callable[[Array], Array], bool]]) -> Array:
-        """Amplitudes `[shape, component, x, z]` for unit loads `g(x) cos(k y)`; the flag says tangential, not normal."""
+        """Amplitudes `[shape, component, x, z]` for unit loads `g(x) cos(k y)`; the flag: tangential?"""
         loads = np.zeros((len(shapes), 3, self.x.basis.N, self.z.basis.N))
         for load, (g, tangential) in zip(loads, shapes, strict=True):
             along = np.outer(self.x.load(g), self._top)

@@ -1,8 +1,9 @@
 """Stresses under `g(x) h(y)` from the finite-element harmonics: the integral over the wavenumber in y.
 
-The response to `cos(k y)` varies smoothly with k, on the scale of 1 over the body's length at the low end and of 1 over the
-depth at the high end. It is computed at Gauss nodes of panels that about double, interpolated inside each panel, and integrated
-against the transform of h, which oscillates, on as many nodes as that needs.
+The response to `cos(k y)` varies smoothly with k, on the scale of 1 over the body's length at the low end and
+of 1 over the depth at the high end. It is computed at Gauss nodes of panels that about double, interpolated
+inside each panel, and integrated against the transform of h, which oscillates, on as many nodes as that
+needs.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import legendre
 from numpy.typing import NDArray
-from scipy.special import j1, spherical_jn  # type: ignore[import-untyped]
+from scipy.special import j1, spherical_jn
 
 from tests.finite_elements import LoadCase
 from tests.finite_elements.harmonics import COMPONENTS, HarmonicBody, Line
@@ -71,8 +72,12 @@ class Harmonics:
 
 
 def harmonics(
-    length: float, poisson: float, shapes: Sequence[tuple[Callable[[Array], Array], bool]],
-    x: Sequence[float], z: Sequence[float], resolution: Resolution,
+    length: float,
+    poisson: float,
+    shapes: Sequence[tuple[Callable[[Array], Array], bool]],
+    x: Sequence[float],
+    z: Sequence[float],
+    resolution: Resolution,
 ) -> Harmonics:
     """Solve for every wavenumber; a shape is `g` and whether the load is tangential."""
     body = HarmonicBody(
@@ -90,7 +95,7 @@ def harmonics(
 
 
 def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iterator[tuple[slice, Array, Array, Array]]:
-    """For each panel: its slice of the wavenumbers, the fine nodes, their weights times `h(k) / pi`, the interpolation."""
+    """For each panel: its slice of the nodes, fine nodes, their weights times `h(k) / pi`, interpolation."""
     n = resolution.nodes
     coarse = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
     for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
@@ -101,7 +106,11 @@ def _panels(resolution: Resolution, transform: Callable[[Array], Array]) -> Iter
 
 
 def stresses(
-    harmonic: Harmonics, normal: int, tangential: int | None, friction: float, y: Sequence[float],
+    harmonic: Harmonics,
+    normal: int,
+    tangential: int | None,
+    friction: float,
+    y: Sequence[float],
     transform: Callable[[Array], Array] = transform_quartic,
 ) -> dict[str, Array]:
     """The six components on `(x, y, z)`, from the indices of the normal and of the tangential shape."""
@@ -120,12 +129,18 @@ def stresses(
 
 
 def displacement(
-    harmonic: Harmonics, case: LoadCase, normal: int, tangential: int | None, y: Sequence[float], reference: int,
+    harmonic: Harmonics,
+    case: LoadCase,
+    normal: int,
+    tangential: int | None,
+    y: Sequence[float],
+    reference: int,
     transform: Callable[[Array], Array] = transform_quartic,
 ) -> Array:
     """`E u_z` of the top on `(x, y)` less that at `(x[reference], 0)`: only for loads even about mid-length.
 
-    The response grows like `1/k` at low k, the same all along x: what differs along x, and k times the rest, are smooth.
+    The response grows like `1/k` at low k, the same all along x: what differs along x, and k times the rest,
+    are smooth.
     """
     ys = np.asarray(y, dtype=float)
     total = np.zeros((ys.size, harmonic.surface.shape[2]))

@@ -1,0 +1,67 @@
+"""A stand-in for the solver: Hertz' pressure with a made-up end effect, at once; and ways to go wrong on demand.
+
+Only the study layer is tested with it: what it returns has the form of a result, not its physics.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.case import Case
+from contactstudy.dataset import STRESSES, describe
+from contactstudy.errors import LoadError
+from contactstudy.grid import Grid
+
+FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
+"""Coefficients of friction at which the case fails, kills its process, or meets an error of the program."""
+
+
+def solve_fake(case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float) -> xr.Dataset:
+    if case.friction == FAILS:
+        raise LoadError("this friction fails in tests")
+    if case.friction == DIES:
+        os.kill(os.getpid(), signal.SIGKILL)
+    if case.friction == IS_WRONG:
+        raise ZeroDivisionError("a bug")
+    half_width, peak = case.hertz_half_width, case.hertz_max_pressure
+    start, stop = case.contact_range
+    inside = (grid.x > start) & (grid.x < stop)
+    profile = np.sqrt(np.clip(1 - (grid.y / half_width) ** 2, 0, None))
+    pressure = peak * np.outer(inside * (1 + 0.1 * np.cos(grid.x / half_width)), profile)
+    cells = {"x": grid.x, "y": grid.y}
+    result = xr.Dataset(
+        {
+            "pressure": (("x", "y"), pressure),
+            "gap": (("x", "y"), np.where(pressure > 0, 0.0, 1e-6)),
+            "hertz_half_width": half_width,
+            "hertz_max_pressure": peak,
+            "load": case.normal_load,
+            "iterations": 7,
+            "converged": True,
+            "end_traction_residual": 1e-5,
+        },
+        coords=cells,
+    )
+    if stresses:
+        points = {
+            "x_field": grid.x if x is None else x,
+            "y_field": grid.y if y is None else y,
+            "z": half_width * np.array([0.0, 1.0]) if z is None else z,
+        }
+        shape = tuple(axis.size for axis in points.values())
+        depth = np.broadcast_to(points["z"] / half_width, shape)
+        for number, name in enumerate((*STRESSES, "von_mises")):
+            sign = 1 if name == "von_mises" else -1
+            result[name] = (tuple(points), sign * peak * np.exp(-depth) / (1 + number))
+        result = result.assign_coords(points)
+    return describe(result, "made up for tests")
+
+
+def solve_slowly(case: Case, grid: Grid, **settings) -> xr.Dataset:
+    time.sleep(float(os.environ.get("CONTACTSTUDY_TEST_SECONDS", "0.2")))
+    return solve_fake(case, grid, **settings)

@@ -1,0 +1,157 @@
+import json
+
+import numpy as np
+import pytest
+
+from contactstudy.errors import InvalidInputError
+from contactstudy.study import Study, StudyFileError
+from contactstudy.study.identity import case_id
+from tests.study.conftest import BASE, as_toml, small_study
+
+
+def ids(study):
+    return [case.id for case in study.plan().cases]
+
+
+def test_product_in_stable_order():
+    plan = small_study().plan()
+    assert plan.cube.dims == ("e_over_a", "friction")
+    assert [case.position for case in plan.cases] == [(0, 0), (0, 1), (1, 0), (1, 1)]
+    assert plan.cases[1].id == case_id(BASE | {"e_over_a": 0, "friction": 0.1})
+
+
+def test_toml_means_the_same(tmp_path):
+    study = small_study(sweep={"e_over_a": [0, 1], "profile": ["cylinder"]})
+    path = tmp_path / "small.toml"
+    path.write_text(
+        as_toml(small_study(sweep={"e_over_a": [0, 1]})) + '[[sweep.profile]]\nname = "sharp"\nkind = "cylinder"\n'
+    )
+    assert ids(Study.from_toml(path)) == ids(study)
+
+
+def test_json_round_trip():
+    study = small_study(
+        zip=[{"max_pressure": [1e9, 2e9], "poisson": [0.2, 0.3]}],
+        exclude=[{"profile": "sharp"}, {"friction": 0.1, "e_over_a": [0]}],
+        sweep={"e_over_a": np.array([0, 1]), "profile": [{"kind": "cylinder", "name": "sharp"}, "cylinder"],
+               "friction": (0.0, 0.1)},
+    )
+    again = Study.from_mapping(json.loads(study.to_json()))
+    assert again.to_json() == study.to_json()
+    assert ids(again) == ids(study)
+
+
+def test_zip_is_one_dimension():
+    plan = small_study(zip={"max_pressure": [1e9, 2e9], "poisson": [0.3, 0.3]}).plan()
+    assert plan.cube.dims == ("e_over_a", "friction", "max_pressure")
+    assert plan.cube.labels["poisson"] == ("max_pressure", [0.3, 0.3])
+
+
+def test_zip_without_distinct_values_is_numbered():
+    plan = small_study(sweep={}, zip={"max_pressure": [1e9, 1e9, 2e9], "e_over_a": [0, 1, 1]}).plan()
+    assert plan.cube.dims == ("max_pressure_and_e_over_a",)
+
+
+def test_explicit_cases_form_a_cube_if_they_fit():
+    cases = [{"e_over_a": e, "friction": f} for e in (0, 1) for f in (0, 0.1)]
+    assert ids(small_study(sweep={}, cases=cases)) == ids(small_study())
+    assert small_study(sweep={}, cases=cases).plan().cube.dims == ("e_over_a", "friction")
+
+
+def test_explicit_cases_that_fill_no_cube_are_listed():
+    cases = [{"e_over_a": n, "friction": n / 10, "poisson": n / 20, "max_pressure": (1 + n) * 1e9} for n in range(5)]
+    cube = small_study(sweep={}, cases=cases).plan().cube
+    assert cube.dims == ("case",)
+    assert cube.labels["poisson"][0] == "case"
+
+
+def test_explicit_cases_beside_the_product():
+    plan = small_study(cases=[{"e_over_a": 2, "friction": 0}]).plan()
+    assert plan.cube.shape == (3, 2)
+    assert len(plan.cases) == 5
+
+
+def test_excluded_combinations():
+    plan = small_study(exclude=[{"e_over_a": [1], "friction": 0.1}]).plan()
+    assert [case.position for case in plan.cases] == [(0, 0), (0, 1), (1, 0)]
+
+
+def test_exclusion_by_a_default():
+    plan = small_study(
+        sweep={"e_over_a": [0, 1]}, exclude=[{"coupled": False, "e_over_a": 1, "body": "finite-length"}]
+    ).plan()
+    assert len(plan.cases) == 1
+
+
+def test_impossible_combinations_are_skipped_with_the_reason():
+    plan = small_study(sweep={"e_over_a": [0, -9]}).plan()
+    assert [bool(case.reason) for case in plan.cases] == [False, True]
+    assert "body length" in plan.skipped[0].reason
+    assert len(plan.unique) == 1
+
+
+def test_a_case_named_twice_is_solved_once():
+    plan = small_study(sweep={}, cases=[{"e_over_a": 1}, {"e_over_a": 1.0}]).plan()
+    assert (len(plan.cases), len(plan.unique)) == (2, 1)
+
+
+def test_no_sweep_is_one_case():
+    plan = small_study(sweep={}, base=BASE | {"e_over_a": 0}).plan()
+    assert plan.cube.dims == ("case",)
+    assert plan.cases[0].position == (0,)
+
+
+@pytest.mark.parametrize(
+    ("content", "hint"),
+    [
+        ({"sweep": {"frictoin": [0]}}, "friction"),
+        ({"base": {"yuong": 1.0}}, "young"),
+        ({"sweep": {"body": ["half-spce"]}}, "half-space"),
+        ({"sweep": {"profile": [{"kind": "cylindre"}]}}, "cylinder"),
+        ({"sweep": {"profile": [{"kind": "cylinder", "fillet": 1}]}}, "fillet_radius"),
+        ({"level": "field"}, "fields"),
+        ({"base": {"field_x_over_a": {"start": 0, "stop": 1, "cuont": 3}}}, "count"),
+        ({"exclude": [{"e_over_b": 1}]}, "e_over_a"),
+    ],
+)
+def test_unknown_names_are_answered_with_the_nearest(content, hint):
+    with pytest.raises(InvalidInputError, match=f"did you mean '{hint}'"):
+        small_study(**content)
+
+
+def test_unknown_key_of_the_file(tmp_path):
+    path = tmp_path / "s.toml"
+    path.write_text("[bsae]\nyoung = 1.0\n")
+    with pytest.raises(InvalidInputError, match="did you mean 'base'"):
+        Study.from_toml(path)
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        {"sweep": {"friction": 0.1}},
+        {"sweep": {"friction": []}},
+        {"sweep": {"friction": [0.1, 0.1]}},
+        {"sweep": {"friction": ["a"]}},
+        {"sweep": [1]},
+        {"zip": {"friction": [0.1], "e_over_a": [1, 2]}},
+        {"zip": {"e_over_a": [1, 2]}},
+        {"cases": [3]},
+        {"exclude": [{}]},
+        {"name": "../elsewhere"},
+        {"base": {"coupled": 1}},
+    ],
+)
+def test_wrong_content(content):
+    with pytest.raises(InvalidInputError):
+        small_study(**({"name": "small"} | content))
+
+
+@pytest.mark.parametrize("text", ["a = ", "\x00"])
+def test_files_that_are_not_toml(tmp_path, text):
+    path = tmp_path / "s.toml"
+    path.write_text(text)
+    with pytest.raises(StudyFileError, match=r"s\.toml"):
+        Study.from_toml(path)
+    with pytest.raises(StudyFileError, match="no_such"):
+        Study.from_toml(tmp_path / "no_such.toml")

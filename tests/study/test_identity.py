@@ -1,0 +1,61 @@
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles import Cylinder
+from contactstudy.study import parameters
+from contactstudy.study.identity import case_id
+
+
+@pytest.mark.parametrize("one", [1, 1.0, np.int64(1), np.float32(1), np.float64(1), 1 + 1e-14])
+def test_ways_to_write_one(one):
+    assert case_id({"e_over_a": one}) == case_id({"e_over_a": 1})
+
+
+@given(st.floats(-1e12, 1e12))
+def test_digits_beyond_the_twelfth_do_not_count(value):
+    assert case_id({"friction": value}) == case_id({"friction": float(f"{value:.12g}")})
+
+
+def test_different_values_differ():
+    assert case_id({"e_over_a": 1}) != case_id({"e_over_a": 1.000001})
+
+
+def test_order_defaults_and_profile_names_do_not_count():
+    written = {"friction": 0.1, "e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": 1e-4}}
+    same = {
+        "coupled": False,
+        "body": "finite-length",
+        "profile": {"name": "rounded", "fillet_radius": 1e-4, "kind": "cylinder"},
+        "e_over_a": 1,
+        "friction": 0.1,
+    }
+    assert case_id(written) == case_id(same)
+    assert case_id(written) == case_id(written | {"profile": Cylinder(1e-4)})
+
+
+def test_points_as_range_and_as_list_are_the_same():
+    spaced = {"start": 0, "stop": 1, "count": 3}
+    assert case_id({"field_z_over_a": spaced}) == case_id({"field_z_over_a": [0, 0.5, 1]})
+
+
+def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
+    before = case_id({"friction": 0.1})
+    new = parameters.Parameter(parameters._number, 3.0, "1", "added later")
+    monkeypatch.setitem(parameters.PARAMETERS, "roughness", new)
+    assert case_id({"friction": 0.1}) == before
+    assert case_id({"friction": 0.1, "roughness": 3}) == before
+    assert case_id({"friction": 0.1, "roughness": 4}) != before
+
+
+def test_identity_never_changes():
+    """Results on disk depend on this value: if it must change, raise SCHEMA instead of the value here."""
+    assert case_id({"friction": 0.1, "e_over_a": 2})[:16] == "d6d0687246844912"
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf"), "much", True, None.__class__])
+def test_values_that_are_no_numbers(value):
+    with pytest.raises(InvalidInputError, match="friction"):
+        case_id({"friction": value})

@@ -1,0 +1,150 @@
+"""Runs that are really killed."""
+
+import os
+import random
+import signal
+import subprocess
+import time
+
+import pytest
+
+from contactstudy.study import open_study, run_study
+from contactstudy.study.store import read_header
+from tests.study.conftest import as_toml, small_study, start_run
+from tests.study.fakes import solve_fake
+
+LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
+
+
+def finished(folder):
+    return len(list(folder.glob("cases/*.nc")))
+
+
+def wait_for(condition, seconds=40.0):
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.02)
+
+
+def kill_group(process):
+    os.killpg(process.pid, signal.SIGKILL)
+    process.communicate()
+
+
+@pytest.fixture
+def large(tmp_path):
+    path = tmp_path / "large.toml"
+    path.write_text(as_toml(small_study("large", sweep=LARGE)))
+    return path
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, code):
+    folder = tmp_path / "out"
+    process = start_run(large, folder, "--workers", "2", seconds=0.3)
+    wait_for(lambda: finished(folder) >= 2)
+    if number == signal.SIGINT:
+        os.killpg(process.pid, number)  # as a terminal does: to the workers as well
+    else:
+        process.send_signal(number)
+    output, errors = process.communicate(timeout=30)
+    assert process.returncode == code, output + errors
+    assert "interrupted" in errors
+    assert "Traceback" not in errors
+    assert not (folder / "run.lock").exists()
+    assert not list(folder.glob("**/*.part-*"))
+    done = finished(folder)
+    assert 2 <= done < 20
+    report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
+    assert (report.solved, report.counts) == (20 - done, {"ok": 20})
+
+
+def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
+    folder = tmp_path / "out"
+    first = start_run(large, folder, "--workers", "1", seconds=0.1)
+    wait_for(lambda: finished(folder) >= 1)
+    second = start_run(large, folder, "--workers", "0")
+    _, errors = second.communicate(timeout=30)
+    assert second.returncode == 2
+    assert f"process {first.pid} on " in errors
+    output, errors = first.communicate(timeout=60)
+    assert first.returncode == 0, errors
+    assert "20 ok" in output
+
+
+def test_killed_run_is_taken_over(large, tmp_path):
+    folder = tmp_path / "out"
+    process = start_run(large, folder, "--workers", "2", seconds=0.3)
+    wait_for(lambda: finished(folder) >= 3)
+    os.kill(process.pid, signal.SIGKILL)  # the parent only: its workers must not outlive it
+    process.wait()
+    process.communicate(timeout=20)  # ends when the last worker has closed the pipe
+    done = finished(folder)
+    for path in folder.glob("cases/*.nc"):
+        read_header(path, verify=True)
+    report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
+    assert (report.solved, report.counts) == (20 - done, {"ok": 20})
+    assert "took over the lock of a dead run" in (folder / "run.log").read_text()
+
+
+@pytest.mark.slow
+def test_killed_twenty_times_at_random_moments(large, tmp_path):
+    folder, chance = tmp_path / "out", random.Random(1)
+    sizes = [0]
+    kills = 0
+    while kills < 20:
+        process = start_run(large, folder, "--workers", "2", seconds=0.5)
+        try:
+            process.wait(timeout=1.2 + chance.random() * 2.0)
+        except subprocess.TimeoutExpired:
+            kill_group(process)
+            kills += 1
+        else:
+            process.communicate()
+            # Finished before the twentieth kill: take some results away and go on killing.
+            for path in sorted(folder.glob("cases/*.nc"))[:18]:
+                path.unlink()
+        for path in folder.glob("cases/*.nc"):
+            read_header(path, verify=True)
+        sizes.append(finished(folder))
+    process = start_run(large, folder, "--workers", "2", seconds=0.0)
+    output, errors = process.communicate(timeout=60)
+    assert process.returncode == 0, output + errors
+    run_study(small_study("large", sweep=LARGE), tmp_path / "calm", workers=0, solver=solve_fake)
+    killed, calm = (open_study(path).drop_vars("seconds").load() for path in (folder, tmp_path / "calm"))
+    assert killed.identical(calm)
+    assert not list(folder.glob("**/*.part-*"))
+    assert not (folder / "set-aside").exists()
+
+
+@pytest.mark.slow
+def test_a_cluster_of_separate_processes(tmp_path):
+    """The documented way: one scheduler, two workers, each started by its own command."""
+    import sys
+
+    from tests.study.conftest import ROOT
+
+    file = tmp_path / "scheduler.json"
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": ROOT}
+    commands = [
+        ["scheduler", "--scheduler-file", str(file), "--port", "0", "--no-dashboard"],
+        *[["worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard"]] * 2,
+    ]
+    processes = [subprocess.Popen([sys.executable, "-m", "dask", *command], **quiet) for command in commands]
+    try:
+        wait_for(file.exists)
+        import json
+
+        address = json.loads(file.read_text())["address"]
+        study = small_study("large", sweep=LARGE)
+        report = run_study(study, tmp_path / "cluster", scheduler=address, solver=solve_fake)
+        assert report.counts == {"ok": 20}
+        run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
+        there, here = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("cluster", "calm"))
+        assert there.identical(here)
+    finally:
+        for process in processes:
+            process.terminate()
+        for process in processes:
+            process.wait(timeout=20)

@@ -1,0 +1,163 @@
+import json
+import os
+import shutil
+
+import numpy as np
+import pytest
+
+from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study
+from contactstudy.study.folder import Folder
+from contactstudy.study.store import load_case
+from tests.study.conftest import identity, small_study
+from tests.study.fakes import DIES, FAILS, IS_WRONG, solve_fake
+
+
+def run(study, folder, **options):
+    return run_study(study, folder, **({"workers": 0, "solver": solve_fake} | options))
+
+
+def test_a_second_run_solves_nothing(study, tmp_path):
+    assert run(study, tmp_path).solved == 4
+    assert run(study, tmp_path).solved == 0
+
+
+def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
+    run(study, tmp_path)
+    report = run(small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]}), tmp_path)
+    assert (report.solved, report.counts) == (2, {"ok": 6})
+
+
+def test_without_the_manifest_nothing_is_lost(study, tmp_path):
+    run(study, tmp_path)
+    for content in (None, "{", json.dumps({"schema": 99, "files": []})):
+        (tmp_path / "manifest.json").unlink()
+        if content is not None:
+            (tmp_path / "manifest.json").write_text(content)
+        assert run(study, tmp_path).solved == 0
+
+
+def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
+    study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
+    report = run(study, tmp_path)
+    assert report.counts == {"failed": 2, "ok": 2}
+    assert report.failures[0][1].reason == "LoadError: this friction fails in tests"
+    assert run(study, tmp_path).solved == 0
+    assert "this friction fails" in (tmp_path / "run.log").read_text()
+    assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
+
+
+def repaired(case, grid, **settings):
+    settings_of_failed_case = case.friction
+    assert settings_of_failed_case == FAILS
+    object.__setattr__(case, "friction", 0.0)
+    return solve_fake(case, grid, **settings)
+
+
+def test_rerun_repairs(tmp_path):
+    study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
+    run(study, tmp_path)
+    assert rerun_study(tmp_path, workers=0, solver=repaired).counts == {"ok": 4}
+    assert not list((tmp_path / "cases").glob("*.failed"))
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
+    study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, IS_WRONG]})
+    with pytest.raises(ZeroDivisionError) as caught:
+        run(study, tmp_path, workers=workers)
+    assert "friction=0.88" in caught.value.__notes__[0]
+    assert not (tmp_path / "run.lock").exists()
+    assert len(list((tmp_path / "cases").glob("*.nc"))) >= 1
+    assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
+
+
+@pytest.mark.parametrize("content", [b"", b"no netCDF"])
+def test_a_damaged_file_is_set_aside_and_solved_again(study, tmp_path, content):
+    run(study, tmp_path)
+    path = Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1))
+    path.write_bytes(content)
+    assert run(study, tmp_path).solved == 1
+    assert (tmp_path / "set-aside" / path.name).read_bytes() == content
+    assert path.name in (tmp_path / "run.log").read_text()
+    assert load_case(path)["pressure"].max() > 0
+
+
+def test_foreign_and_misplaced_files_are_set_aside(study, tmp_path):
+    run(study, tmp_path)
+    cases = tmp_path / "cases"
+    good = Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1))
+    shutil.copy(good, cases / "copy.nc")
+    (cases / "notes.nc").write_text("mine")
+    assert run(study, tmp_path).solved == 0
+    assert {path.name for path in (tmp_path / "set-aside").iterdir()} == {"copy.nc", "notes.nc"}
+
+
+def test_another_case_under_a_cases_name(study, tmp_path):
+    run(study, tmp_path)
+    one, other = (Folder(tmp_path).case_path(identity(e_over_a=1, friction=f)) for f in (0, 0.1))
+    shutil.copy(one, other)
+    assert run(study, tmp_path).solved == 1
+
+
+def test_a_higher_level_solves_again(tmp_path):
+    run(small_study(level="summary"), tmp_path)
+    assert run(small_study(level="fields"), tmp_path).solved == 4
+    assert run(small_study(level="summary"), tmp_path).solved == 0
+
+
+def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
+    monkeypatch.setattr("contactstudy.study.work.circumstances", lambda: {})
+    monkeypatch.setattr("contactstudy.study.run.circumstances", lambda: {"contactstudy": "0.0.1"})
+    assert run(study, tmp_path).counts == {"stale": 4}
+    monkeypatch.undo()
+    assert run(study, tmp_path).solved == 0
+    assert rerun_study(tmp_path, workers=0, solver=solve_fake).counts == {"ok": 4}
+
+
+def test_the_folder_of_another_study(study, tmp_path):
+    run(study, tmp_path)
+    with pytest.raises(StoreError, match="'small', not 'other'"):
+        run(small_study("other"), tmp_path)
+
+
+def test_a_study_without_a_possible_case(tmp_path):
+    with pytest.raises(StudyFileError, match="body length"):
+        run(small_study(sweep={"e_over_a": [-9]}), tmp_path)
+
+
+def test_a_folder_that_cannot_be_made(study, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(StoreError, match="cannot make"):
+        run(study, tmp_path / "file")
+
+
+@pytest.mark.skipif(os.name == "nt" or (hasattr(os, "geteuid") and os.geteuid() == 0), reason="root may write anywhere")
+def test_a_folder_without_permission(study, tmp_path):
+    tmp_path.chmod(0o500)
+    try:
+        with pytest.raises(StoreError, match="[Pp]ermission"):
+            run(study, tmp_path / "new")
+    finally:
+        tmp_path.chmod(0o700)
+
+
+def test_results_do_not_depend_on_workers(study, tmp_path):
+    for workers in (0, 1, 2):
+        assert run(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
+    first = open_study(tmp_path / "0").drop_vars("seconds")
+    for workers in (1, 2):
+        other = open_study(tmp_path / str(workers)).drop_vars("seconds")
+        assert other.load().identical(first.load())
+
+
+def test_a_worker_that_dies_costs_its_case_only(tmp_path):
+    study = small_study(sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 2], "friction": DIES}])
+    report = run(study, tmp_path, workers=2)
+    assert report.counts == {"ok": 3, "failed": 1}
+    assert report.failures[0][0].name == "e_over_a=1 friction=0.77"
+    assert report.failures[0][1].reason.startswith("WorkerDied")
+
+
+def test_memory_of_the_parent_holds_no_fields(study, tmp_path):
+    report = run(study, tmp_path)
+    assert all(np.isscalar(value) for entry in report.entries for value in entry.scalars.values())

@@ -1,0 +1,82 @@
+import numpy as np
+import pytest
+
+from contactstudy.bodies import HalfSpace
+from contactstudy.errors import InvalidInputError
+from contactstudy.study.setup import build_setup
+from tests.study.conftest import BASE
+
+
+def test_roller_length_fixes_the_roller():
+    case = build_setup(BASE | {"e_over_a": 2}).case
+    assert case.roller.length == pytest.approx(0.5e-3)
+    assert case.body.length == pytest.approx(0.5e-3 + 4 * case.hertz_half_width)
+    assert case.roller_start == pytest.approx(2 * case.hertz_half_width)
+
+
+def test_gamma_fixes_the_body():
+    values = {key: value for key, value in BASE.items() if key != "roller_length"}
+    case = build_setup(values | {"gamma": 0.2, "e_over_a": 2}).case
+    assert case.body.length == pytest.approx(1e-3)
+    assert case.roller.length == pytest.approx(1e-3 - 4 * case.hertz_half_width)
+
+
+def test_half_space_keeps_roller_and_coordinates():
+    finite = build_setup(BASE | {"e_over_a": 2})
+    half = build_setup(BASE | {"e_over_a": 2, "body": "half-space"})
+    assert isinstance(half.case.body, HalfSpace)
+    assert half.case.contact_range == finite.case.contact_range
+    assert half.case.roller == finite.case.roller
+
+
+@pytest.mark.parametrize("e_over_a", [-1.0, 0.0, 3.0])
+@pytest.mark.parametrize("given", [{"gamma": 0.5}, {"roller_length": 2e-3}])
+def test_load_and_e_over_a_together(given, e_over_a):
+    values = {key: BASE[key] for key in ("young", "poisson", "radius")} | given
+    case = build_setup(values | {"load": 300.0, "e_over_a": e_over_a}).case
+    assert case.roller_start == pytest.approx(e_over_a * case.hertz_half_width, rel=1e-9, abs=1e-15)
+
+
+def test_a_load_that_leaves_no_roller():
+    values = {key: BASE[key] for key in ("young", "poisson", "radius")}
+    with pytest.raises(InvalidInputError, match="load"):
+        build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
+
+
+def test_stress_points_are_over_a():
+    setup = build_setup(BASE | {"e_over_a": 0})
+    np.testing.assert_allclose(setup.x / setup.case.hertz_half_width, [0, 1, 2])
+
+
+def test_cases_that_share_an_operator():
+    first = build_setup(BASE | {"e_over_a": 1, "friction": 0.0})
+    assert first.operator == build_setup(BASE | {"e_over_a": 1, "friction": 0.1}).operator
+    assert first.operator != build_setup(BASE | {"e_over_a": 2, "friction": 0.1}).operator
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"e_over_a": None}, "e_over_a, end_distance"),
+        ({"e_over_a": 1, "end_distance": 0.0}, "e_over_a, end_distance"),
+        ({"e_over_a": 1, "gamma": 2}, "gamma, roller_length"),
+        ({"e_over_a": 1, "load": 2}, "max_pressure, load"),
+        ({"e_over_a": 1, "young": None}, "young"),
+        ({"e_over_a": 1, "radius": -1}, "radius"),
+        ({"e_over_a": 1, "poisson": 0.7}, "poisson"),
+        ({"e_over_a": -9}, "body length"),
+        ({"e_over_a": 1, "field_x_over_a": [500]}, "field_x_over_a"),
+        ({"e_over_a": 1, "field_z_over_a": [-1]}, "field_z_over_a"),
+        ({"e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": -1}}, "fillet_radius"),
+        ({"e_over_a": 1, "profile": {"kind": "lundberg"}}, "profile"),
+    ],
+)
+def test_what_cannot_be_solved(changes, named):
+    with pytest.raises(InvalidInputError, match=named):
+        build_setup(BASE | changes)
+
+
+def test_lundberg_by_its_design_pressure():
+    table = {"kind": "lundberg", "design_pressure": 1.5e9}
+    case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
+    assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
