@@ -163,9 +163,5 @@ def summarize(dataset: xr.Dataset) -> xr.Dataset:
     (7, 2.0)
     """
     own = dataset[[name for name, variable in dataset.data_vars.items() if variable.ndim == 0]]
-    return xr.merge(
-        [own.reset_coords(drop=True), pressure_summary(dataset), stress_summary(dataset)],
-        join="exact",
-        compat="no_conflicts",
-        combine_attrs="drop",
-    )
+    own = own.reset_coords(drop=True).drop_attrs(deep=False)
+    return own.assign(pressure_summary(dataset).data_vars).assign(stress_summary(dataset).data_vars)

@@ -96,7 +96,9 @@ def _island(gap: xr.DataArray) -> xr.DataArray:
 
 @settings(max_examples=12, deadline=None)
 @given(length=st.floats(1.5, 12.0), poisson=st.floats(0.05, 0.5), factor=st.floats(0.3, 2.0))
-def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(length: float, poisson: float, factor: float) -> None:
+def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
+    length: float, poisson: float, factor: float
+) -> None:
     body = FiniteLengthSpace(length=length, material=Material(1 - poisson**2, poisson))
     y = np.linspace(-1.96875 * factor, 1.96875 * factor, 64)
     x = length * (np.arange(32) + 0.5) / 32
@@ -181,7 +183,7 @@ def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace
     good = sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
         solve_contact(half_space, good.where(good > 0.1), 1.0)
-    with pytest.raises(InvalidInputError, match="xarray.DataArray"):
+    with pytest.raises(InvalidInputError, match=r"xarray\.DataArray"):
         solve_contact(half_space, good.values, 1.0)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"gap.dims"):
         solve_contact(half_space, good.rename(x="u"), 1.0)

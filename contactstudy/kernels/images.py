@@ -17,9 +17,9 @@ from contactstudy.checks import FloatArray
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
-NEAR_IMAGES = 4
+NEAR_IMAGES = 8
 FAR_LIMIT = 1e6  # of the spread load, over the length; beyond it nothing counts
-CHEBYSHEV_POINTS = 24
+CHEBYSHEV_POINTS = 16
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
@@ -51,28 +51,28 @@ def mirrored_kernel(
     As `cell_kernel`; offsets along x stay within ``length`` (and half a cell). A quantity that grows with distance
     contains the constant of a load that ends at ``FAR_LIMIT * length``.
     """
-    y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
+    period, spread_from, spread_to = 2 * length, (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
+    shifts: list[float] = []
+    weights: list[float] = []
 
-    def between(start: FloatArray, stop: FloatArray) -> FloatArray:
-        """Influence of a unit load on ``start..stop`` (relative to the observer), per y cell: (..., point, y)."""
-        upper = corner(stop[:, None], y_edges[None, :])
-        return np.diff(upper - corner(start[:, None], y_edges[None, :]), axis=-1)
+    def add(start: float, stop: float, weight: float) -> None:
+        """Add a unit load per length between two distances, and its like on the other side."""
+        shifts.extend((start, stop, -stop, -start))
+        weights.extend((-weight, weight, -weight, weight))
+
+    for number in range(1, NEAR_IMAGES + 1):
+        add(period * number - 0.5 * dx, period * number + 0.5 * dx, 1.0)
+    add(spread_from, spread_to, dx / period)
+    step = 0.1 * length
+    for side in (-step, step):
+        slope = period / 24 * np.sign(side) / (2 * step)
+        add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
     span = length + dx
     points = span * chebyshev.chebpts1(CHEBYSHEV_POINTS)
-    period, spread_from, spread_to = 2 * length, (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
-
-    def pair(distance: float) -> FloatArray:
-        """Images at `distance` on either side."""
-        left, right = points - distance, points + distance
-        return between(left - 0.5 * dx, left + 0.5 * dx) + between(right - 0.5 * dx, right + 0.5 * dx)
-
-    spread = between(points - spread_to, points - spread_from) + between(points + spread_from, points + spread_to)
-    step = 0.1 * length
-    slope = (pair(spread_from + step) - pair(spread_from - step)) / (2 * step)
-    images = dx / period * spread + period / 24 * slope
-    for number in range(1, NEAR_IMAGES + 1):
-        images = images + pair(period * number)
+    y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
+    values = np.diff(corner(np.add.outer(shifts, points)[..., None], y_edges), axis=-1)
+    images = np.tensordot(weights, values, axes=(0, -3))
     interpolation = np.linalg.solve(
         chebyshev.chebvander(points / span, CHEBYSHEV_POINTS - 1).T,
         chebyshev.chebvander(x / span, CHEBYSHEV_POINTS - 1).T,

@@ -147,9 +147,7 @@ def _aligned_stress(
     return result
 
 
-def _kernel_by_symmetry(
-    corner: CornerFunction, x: FloatArray, y: FloatArray, grid: Grid, length: float
-) -> FloatArray:
+def _kernel_by_symmetry(corner: CornerFunction, x: FloatArray, y: FloatArray, grid: Grid, length: float) -> FloatArray:
     """Kernel at uniform offsets `x`; when they include 0 it is evaluated on one side and reflected to the other."""
 
     def evaluate(offsets: FloatArray) -> FloatArray:

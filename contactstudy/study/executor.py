@@ -17,7 +17,7 @@ from contactstudy.study.errors import StudyFileError
 from contactstudy.study.work import Job, Record, Solver, perform
 
 if TYPE_CHECKING:
-    from distributed import Client, Future
+    from distributed import Client, Future, WorkerPlugin
 
 POLL_SECONDS = 0.5
 """How often to look for workers that came or went while no case finishes."""
@@ -109,7 +109,21 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         ) as cluster,
         Client(cluster) as client,
     ):
+        client.register_plugin(_interrupt_plugin())
         yield client
+
+
+def _interrupt_plugin() -> WorkerPlugin:
+    """Leave Ctrl-C, which a terminal sends to the workers as well, to the process that started them."""
+    import signal
+
+    from distributed import WorkerPlugin
+
+    class LeaveInterrupts(WorkerPlugin):
+        def setup(self, worker: Any) -> None:
+            signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+    return LeaveInterrupts()
 
 
 def _drive(client: Client, jobs: list[Job], solver: Solver | None) -> Iterator[Record]:

@@ -1,0 +1,103 @@
+"""Cases, rollers, grids and materials: what they say of themselves and what they refuse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    choose_grid,
+    profiles,
+)
+
+STEEL = Material(young=210e9, poisson=0.3)
+ROLLER = Roller(radius=5e-3, length=10e-3, profile=profiles.Cylinder(fillet_radius=0.2e-3))
+BODY = FiniteLengthSpace(length=10.2e-3, material=STEEL)
+
+
+@given(st.floats(0.5e9, 3e9))
+def test_load_and_pressure_say_the_same(pressure: float) -> None:
+    by_pressure = Case(body=BODY, roller=ROLLER, max_pressure=pressure)
+    by_load = Case(body=BODY, roller=ROLLER, load=by_pressure.normal_load)
+    assert by_load.hertz_max_pressure == pytest.approx(pressure, rel=1e-12)
+    assert by_load.hertz_half_width == pytest.approx(by_pressure.hertz_half_width, rel=1e-12)
+
+
+def test_roller_is_centred_unless_told() -> None:
+    case = Case(body=BODY, roller=ROLLER, max_pressure=1e9)
+    assert case.contact_range == pytest.approx((0.1e-3, 10.1e-3))
+    assert replace(case, end_distance=0.0).contact_range == pytest.approx((0.0, 10e-3))
+    assert replace(case, end_distance=-1e-3).contact_range == pytest.approx((0.0, 9e-3))
+    assert replace(case, body=HalfSpace(material=STEEL)).contact_range == pytest.approx((0.0, 10e-3))
+
+
+def test_gap_is_zero_at_first_touch_and_infinite_beside_the_roller() -> None:
+    case = Case(body=BODY, roller=ROLLER, max_pressure=1e9)
+    gap = case.gap(Grid((0.0, 10.2e-3), (-1e-4, 1e-4), 102, 11))
+    assert gap.min() == 0.0
+    assert np.isinf(gap[0]).all()
+    assert gap[50, 0] == pytest.approx((1e-4 * 10 / 11) ** 2 / 2 / 5e-3)
+
+
+def test_grid_follows_the_case() -> None:
+    case = Case(body=BODY, roller=ROLLER, max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=6, cells_y=12, window=1.7)
+    assert grid.x_range == (0.0, 10.2e-3)
+    assert grid.dx <= case.hertz_half_width / 6
+    assert grid.dy <= case.hertz_half_width / 12
+    assert grid.y_range[1] == pytest.approx(1.7 * case.hertz_half_width)
+    on_half_space = choose_grid(replace(case, body=HalfSpace(material=STEEL)), margin=2.0)
+    assert on_half_space.x_range[0] == pytest.approx(-2 * case.hertz_half_width)
+
+
+@given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
+def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: int) -> None:
+    grid = Grid((start, start + span), (-span, span), cells, cells + 1)
+    if grid.dx > 1e-9 * abs(start):
+        again = Grid.from_centres(grid.x, grid.y)
+        assert again.shape == grid.shape
+        assert again.dx == pytest.approx(grid.dx, rel=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Material(young=-1.0, poisson=0.3), r"young = -1.0: must be a positive finite number \(Pa\)"),
+        (lambda: Material(young=1.0, poisson=0.51), r"poisson = 0.51: must be in \(-1, 0.5\]"),
+        (lambda: Material(young=1.0, poisson=-1.0), "poisson = -1.0"),
+        (lambda: Material(young="hard", poisson=0.3), "young = 'hard'"),
+        (lambda: Material(young=True, poisson=0.3), "young = True"),
+        (lambda: FiniteLengthSpace(length=-1.0, material=STEEL), "length = -1.0"),
+        (lambda: FiniteLengthSpace(length=1.0, material="steel"), "material = 'steel'.*not str"),
+        (lambda: Roller(radius=0.0, length=1.0), "radius = 0.0"),
+        (lambda: Roller(radius=1.0, length=np.nan), "length = nan"),
+        (lambda: Roller(radius=1.0, length=1.0, profile=3), "profile = 3"),
+        (lambda: Roller(radius=1.0, length=1.0, profile=profiles.Cylinder(fillet_radius=0.6)), "fillet_radius = 0.6"),
+        (lambda: Case(body=BODY, roller=ROLLER), "max_pressure, load = .*exactly one"),
+        (lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, load=1.0), "exactly one"),
+        (lambda: Case(body=BODY, roller=ROLLER, max_pressure=-1e9), "max_pressure = -1000000000.0"),
+        (
+            lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, end_distance=1.0),
+            "end_distance = 1.0.*over the body",
+        ),
+        (lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, friction="none"), "friction = 'none'"),
+        (lambda: Grid((0.0, 0.0), (0.0, 1.0), 1, 1), r"x_range = \(0.0, 0.0\)"),
+        (lambda: Grid((0.0, 1.0), (0.0, 1.0), 0, 1), "cells_x = 0: must be a whole number"),
+        (lambda: Grid((0.0, 1.0), (0.0, 1.0), 1, 1.5), "cells_y = 1.5"),
+        (lambda: choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=1e9), window=0.0), "window = 0.0"),
+    ],
+)
+def test_bad_values_are_named(make, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        make()

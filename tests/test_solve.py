@@ -1,0 +1,70 @@
+"""The whole case in one Dataset."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, Material, Roller, solve
+from contactstudy.dataset import STRESSES, VARIABLES
+
+STEEL = Material(young=210e9, poisson=0.3)
+BODY = FiniteLengthSpace(length=0.6e-3, material=STEEL)
+CASE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.6e-3), max_pressure=1.5e9, friction=0.1)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return solve(CASE)
+
+
+def test_everything_the_interface_promises_is_there_with_its_unit(result) -> None:
+    for name, specification in VARIABLES.items():
+        assert name in result, name
+        assert result[name].dims == specification.dims, name
+        assert result[name].attrs["units"] == specification.units, name
+    for axis in "xyz":
+        assert result[axis].attrs["units"] == "m"
+    assert result.attrs["Conventions"].startswith("CF")
+
+
+def test_certificate_is_good(result) -> None:
+    assert bool(result["converged"])
+    assert abs(float(result["load_error"])) < 1e-10
+    assert float(result["end_traction_residual"]) < 1e-4
+    assert float(result["penetration_error"]) < 1e-5
+
+
+def test_top_carries_the_load(result) -> None:
+    top = result.isel(z=0)
+    inside = top["x"].values[1:-1]
+    assert np.allclose(top["sigma_zz"].sel(x=inside), -top["pressure"].sel(x=inside), atol=1e-6 * 1.5e9)
+    assert np.allclose(top["tau_yz"], -top["shear_traction"], atol=1e-6 * 1.5e9)
+
+
+def test_result_survives_netcdf(result, tmp_path) -> None:
+    import xarray as xr
+
+    result.to_netcdf(tmp_path / "case.nc")
+    with xr.open_dataset(tmp_path / "case.nc") as again:
+        for name in STRESSES:
+            assert np.array_equal(again[name], result[name])
+
+
+def test_stresses_may_have_positions_of_their_own() -> None:
+    result = solve(CASE, x=[0.0, 0.3e-3], y=[0.0], z=[50e-6])
+    assert result["von_mises"].dims == ("x_field", "y_field", "z")
+    assert result["sigma_xx"].values[0, 0, 0] == 0.0
+
+
+def test_half_space_has_nothing_left_on_its_ends() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
+    assert float(solve(case, stresses=False)["end_traction_residual"]) == 0.0
+
+
+def test_grid_beside_the_roller_is_refused() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
+    with pytest.raises(InvalidInputError, match="cells under the roller"):
+        solve(case, Grid((1.0, 2.0), (-1e-4, 1e-4), 8, 8))
+    with pytest.raises(InvalidInputError, match="case = 1"):
+        solve(1)  # type: ignore[arg-type]
