@@ -75,4 +75,4 @@ def test_all_images_are_summed(kind: str, depth: float) -> None:
         sums.append(sum(images.cell_kernel(corner, x + shift, y, dx, dy) for shift in shifts))
     limit = sums[1] + (sums[1] - sums[0])
     # Far below the length of the body there is next to nothing left of one cell's load.
-    assert np.abs(found - limit).max() < 2e-9
+    assert np.abs(found - limit).max() < 1e-8
