@@ -12,6 +12,7 @@ import numpy.typing as npt
 from contactstudy.errors import InvalidInputError
 
 FloatArray = npt.NDArray[np.float64]
+IntArray = npt.NDArray[np.int64]
 
 
 def finite(name: str, value: object, unit: str = "") -> float:

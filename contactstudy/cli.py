@@ -87,7 +87,12 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
 
     try:
         actions = {
-            "run": _run, "rerun": _rerun, "plan": _plan, "status": _status, "collect": _collect, "export": _export,
+            "run": _run,
+            "rerun": _rerun,
+            "plan": _plan,
+            "status": _status,
+            "collect": _collect,
+            "export": _export,
         }
         return actions[options.command](options, solver)
     except ContactStudyError as error:
@@ -195,9 +200,7 @@ def _list(plan: Plan, entries: list[Entry], *, everything: bool) -> None:
     """Print counts, and the cases that need attention."""
     for status, count in Counter(entry.status for entry in entries).items():
         print(f"  {count} {status}")
-    listed = [
-        (case, entry) for case, entry in zip(plan.cases, entries, strict=True) if everything or entry.reason
-    ]
+    listed = [(case, entry) for case, entry in zip(plan.cases, entries, strict=True) if everything or entry.reason]
     for case, entry in listed if everything else listed[:SHOWN]:
         print(f"  {entry.status}: {case.id[:16]} {case.name}" + (f": {entry.reason}" if entry.reason else ""))
     if not everything and len(listed) > SHOWN:

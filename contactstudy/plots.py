@@ -64,7 +64,9 @@ def _position(dataset: xr.Dataset, array: xr.DataArray, axis: str) -> np.ndarray
 def _check(dataset: xr.Dataset, variable: str) -> None:
     if variable not in dataset:
         raise InvalidInputError(
-            "dataset", sorted(map(str, dataset.data_vars)), f"a Dataset with {variable}",
+            "dataset",
+            sorted(map(str, dataset.data_vars)),
+            f"a Dataset with {variable}",
             "a study keeps it at level 'fields', pressure already at 'surface'",
         )
 
@@ -302,7 +304,11 @@ def _draw_pressures(
     highest = 1.2
     for number, ((e, case), color) in enumerate(zip(drawn, colors, strict=True)):
         plot_axial_pressure(
-            case, ax, color=color, linestyle=dashes[number % len(dashes)], linewidth=1.8,
+            case,
+            ax,
+            color=color,
+            linestyle=dashes[number % len(dashes)],
+            linewidth=1.8,
             label=f"free end, $e/a$ = {e:g}",
         )
         highest = max(highest, float(ax.lines[-1].get_ydata().max()))  # type: ignore[union-attr]
@@ -329,7 +335,7 @@ def _draw_planes(
     largest = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
     levels = MaxNLocator(14).tick_values(0.0, largest)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
-    for ax in axes.ravel()[len(stressed):]:
+    for ax in axes.ravel()[len(stressed) :]:
         ax.set_visible(False)
     for number, (e, case) in enumerate(stressed):
         ax = axes.ravel()[number]

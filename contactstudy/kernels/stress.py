@@ -10,10 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.kernels.images import CornerFunction, cell_kernel, mirrored_kernel
 from contactstudy.kernels.patch import normal_corner, tangential_corner
+from contactstudy.threads import in_threads
 
 # Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
@@ -36,8 +37,8 @@ class Aligned:
     """
 
     offset: float
-    points: np.ndarray
-    cells: np.ndarray
+    points: IntArray
+    cells: IntArray
 
 
 def aligned_points(values: FloatArray, first_centre: float, step: float) -> list[Aligned]:
@@ -132,19 +133,21 @@ def _aligned_stress(
     spectrum = fft.rfft2(load, shape)
     at_x = (rows.cells - x_from) % shape[0]
     at_y = column.cells - y_from
-    result = np.empty((6, rows.points.size, column.points.size, z.size))
-    for i, depth in enumerate(z):
 
-        def corner(from_x: FloatArray, from_y: FloatArray, depth: float = float(depth)) -> FloatArray:
+    def layer(depth: float) -> FloatArray:
+        """Stresses (6, row, column) at one depth."""
+
+        def corner(from_x: FloatArray, from_y: FloatArray) -> FloatArray:
             stress = normal_corner(from_x, from_y, depth, poisson)
             if friction:
-                stress = stress + friction * tangential_corner(from_x, from_y, depth, poisson)
+                stress += friction * tangential_corner(from_x, from_y, depth, poisson)
             return stress
 
         kernel = _kernel_by_symmetry(corner, x, y, grid, length)
         stress = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
-        result[..., i] = stress[:, at_x[:, None], at_y[None, :]]
-    return result
+        return np.asarray(stress[:, at_x[:, None], at_y[None, :]])
+
+    return np.stack(list(in_threads(layer, z.tolist())), axis=-1)
 
 
 def _kernel_by_symmetry(corner: CornerFunction, x: FloatArray, y: FloatArray, grid: Grid, length: float) -> FloatArray:
@@ -160,6 +163,6 @@ def _kernel_by_symmetry(corner: CornerFunction, x: FloatArray, y: FloatArray, gr
     after = x.size - 1 - before
     if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
         return evaluate(x)
-    ahead = evaluate(grid.dx * np.arange(max(before, after) + 1))
+    ahead = evaluate(grid.dx * np.arange(max(before, after) + 1.0))
     behind = ahead[:, before:0:-1] * ODD_ALONG_X[:, None, None]
     return np.concatenate([behind, ahead[:, : after + 1]], axis=1)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import DECAY_LENGTHS, AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet, slab_factors
@@ -21,7 +21,7 @@ from contactstudy.overlapping.quadrature import (
     Resolution,
     lateral_nodes,
 )
-from contactstudy.threads import one_blas_thread
+from contactstudy.threads import in_threads, one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
 BATCH = 24
@@ -138,30 +138,54 @@ def _away_from_corner(
     synthesis_even = np.stack([cosine, sine], axis=1)
     synthesis_odd = np.stack([-sine, cosine], axis=1)
     result = np.zeros((6, x.size, z.size, y.size))
-    for start in range(0, lateral.size, BATCH):
+
+    def batch_stress(start: int) -> tuple[IntArray, IntArray, FloatArray]:
+        """Stresses (6, row, column, y) from one batch of wavenumbers, and the points (row, column) it reaches."""
         batch = slice(start, min(start + BATCH, lateral.size))
         near = lateral[start] * distance < DECAY_LENGTHS
         rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
-        if not rows.size:
-            break
-        views = [
-            view
-            for modes in axial_modes(length, float(lateral[start]), shortest, resolution)
-            for view in _views(modes, length, loads, batch, grid, x[rows])
-        ]
-        fields = np.zeros((6, rows.size, columns.size, lateral[batch].size, 2))
-        for number, wavenumber in enumerate(lateral[batch]):
-            system = None
-            for view in views:
-                if system is None or system.modes is not view.modes:
-                    system = EquationSet.build(view.modes, float(wavenumber), poisson, shortest, resolution)
-                fields[..., number, :] += _harmonic_stress(system, view, number, z[columns], shortest, resolution)
+        amplitudes = _batch_amplitudes(
+            length, poisson, loads, lateral[batch], batch, grid, x[rows], z[columns], shortest, resolution
+        )
+        values = np.empty((6, rows.size, columns.size, y.size))
         for components, synthesis in ((EVEN_IN_Y, synthesis_even), (ODD_IN_Y, synthesis_odd)):
-            flat = fields[components].reshape(-1, 2 * fields.shape[3])
-            values = flat @ synthesis[batch].reshape(-1, y.size)
-            for component, part in zip(components, values.reshape(-1, rows.size, columns.size, y.size), strict=True):
-                result[component, rows[:, None], columns] += part
+            flat = amplitudes[components].reshape(-1, 2 * amplitudes.shape[3])
+            part = flat @ synthesis[batch].reshape(-1, y.size)
+            values[components] = part.reshape(-1, rows.size, columns.size, y.size)
+        return rows, columns, values
+
+    reached = lateral * distance.min() < DECAY_LENGTHS
+    for rows, columns, values in in_threads(batch_stress, range(0, int(reached.sum()), BATCH)):
+        result[:, rows[:, None], columns] += values
     return np.ascontiguousarray(result.transpose(0, 1, 3, 2))
+
+
+def _batch_amplitudes(
+    length: float,
+    poisson: float,
+    loads: LateralAmplitudes,
+    lateral: FloatArray,
+    batch: slice,
+    grid: Grid,
+    x: FloatArray,
+    z: FloatArray,
+    shortest: float,
+    resolution: Resolution,
+) -> FloatArray:
+    """Amplitudes of the six stresses for a batch of wavenumbers along y: array (6, x, z, wavenumber, 2)."""
+    views = [
+        view
+        for modes in axial_modes(length, float(lateral[0]), shortest, resolution)
+        for view in _views(modes, length, loads, batch, grid, x)
+    ]
+    amplitudes = np.zeros((6, x.size, z.size, lateral.size, 2))
+    for number, wavenumber in enumerate(lateral):
+        system = None
+        for view in views:
+            if system is None or system.modes is not view.modes:
+                system = EquationSet.build(view.modes, float(wavenumber), poisson, shortest, resolution)
+            amplitudes[..., number, :] += _harmonic_stress(system, view, number, z, shortest, resolution)
+    return amplitudes
 
 
 @dataclass(frozen=True, eq=False)

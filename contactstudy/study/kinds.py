@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from contactstudy import checks
-from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace
+from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.errors import InvalidInputError
 from contactstudy.material import Material
 from contactstudy.profiles import Cylinder, Lundberg, Profile
@@ -64,6 +64,7 @@ PROFILES: dict[str, ProfileKind] = {
 
 BODIES: dict[str, Callable[[Material, float], Body]] = {
     "finite-length": lambda material, length: FiniteLengthSpace(length=length, material=material),
+    "quarter-space": lambda material, length: QuarterSpace(material=material),
     "half-space": lambda material, length: HalfSpace(material=material),
 }
 """Makers of a body from its material and the length between the free ends, by their name in a study."""

@@ -21,6 +21,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from contactstudy.dataset import COORDINATES
 from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
 
@@ -134,7 +135,9 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
     kept = kept.drop_vars([name for name in kept.coords if not set(kept[name].dims) <= used])
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in kept.variables.items():
-        variable.attrs = _attributes(variable.attrs)
+        known = COORDINATES.get(str(name)[0]) if name in variable.dims else None
+        default = {"units": known.units, "long_name": known.long_name} if known else {}
+        variable.attrs = default | _attributes(variable.attrs)
         variable.encoding = {}
         if variable.dtype == bool:
             kept[name] = variable.astype(np.int8)

@@ -1,0 +1,148 @@
+import csv
+import subprocess
+import sys
+
+import pytest
+import xarray as xr
+
+from contactstudy.cli import main
+from tests.study.conftest import ROOT, as_toml, small_study
+from tests.study.fakes import FAILS, IS_WRONG, solve_fake
+
+
+@pytest.fixture
+def study_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "small.toml"
+    path.write_text(as_toml(small_study()))
+    return path
+
+
+def command(*arguments):
+    return main([str(argument) for argument in arguments], solver=solve_fake)
+
+
+def run(study_file, *more):
+    return command("run", study_file, "--workers", 0, *more)
+
+
+def test_run_names_what_it_wrote(study_file, tmp_path, capsys):
+    assert run(study_file) == 0
+    output = capsys.readouterr().out
+    folder = tmp_path / "results" / "small"
+    assert "4 cases: 4 ok; 4 solved now" in output
+    assert "wrote 4 netCDF files" in output
+    for name in ("summary.nc", "edge_effect.png"):
+        assert f"wrote results/small/{name}" in output
+        assert (folder / name).stat().st_size > 1000
+
+
+def test_run_without_figure_elsewhere(study_file, tmp_path, capsys):
+    assert run(study_file, "--out", tmp_path / "here", "--no-figure") == 0
+    assert not (tmp_path / "here" / "edge_effect.png").exists()
+    assert "png" not in capsys.readouterr().out
+
+
+def test_failures_give_code_1_and_are_named(study_file, capsys):
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1], "friction": [0, FAILS]})))
+    assert run(study_file) == 1
+    assert "failed: e_over_a=0 friction=0.66: LoadError: this friction fails" in capsys.readouterr().out
+    assert command("status", "results/small") == 1
+    assert command("rerun", "results/small", "--workers", 0) == 1
+
+
+def test_plan_solves_nothing(study_file, tmp_path, capsys):
+    assert command("plan", study_file) == 0
+    output = capsys.readouterr().out
+    assert "4 missing" in output
+    assert "e_over_a 2 x friction 2" in output
+    assert not (tmp_path / "results").exists()
+
+
+def test_plan_after_a_run_forecasts_the_new_cases(study_file, capsys):
+    run(study_file)
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, 0.1, 0.2]})))
+    capsys.readouterr()
+    assert command("plan", study_file, "--all") == 0
+    output = capsys.readouterr().out
+    for expected in ("4 ok", "2 missing", "3 skipped", "body length", "of one core for 2 cases"):
+        assert expected in output
+
+
+def test_status(study_file, capsys):
+    run(study_file)
+    capsys.readouterr()
+    assert command("status", "results/small") == 0
+    assert "4 ok" in capsys.readouterr().out
+
+
+def test_collect(study_file, tmp_path):
+    run(study_file)
+    assert command("collect", "results/small", "--out", tmp_path / "all.nc") == 0
+    with xr.open_dataset(tmp_path / "all.nc") as merged:
+        assert merged["peak_pressure"].dims == ("e_over_a", "friction")
+        assert (merged["status"] == "ok").all()
+
+
+def test_export(study_file, tmp_path, capsys):
+    run(study_file)
+    assert command("export", "results/small") == 0
+    with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == 4
+    assert float(rows[0]["peak_pressure"]) > 1e9
+    capsys.readouterr()
+    assert command("export", "results/small", "--out", "-") == 0
+    assert capsys.readouterr().out.startswith("e_over_a,friction,")
+
+
+@pytest.mark.parametrize(
+    ("content", "expected"),
+    [("[sweep]\nfrictoin = [0]\n", "did you mean 'friction'"), ("name = ", "small.toml"), ("", "given")],
+)
+def test_wrong_files_give_code_2(study_file, capsys, content, expected):
+    study_file.write_text(content)
+    assert run(study_file) == 2
+    assert expected in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("arguments", [("status", "nowhere"), ("plan", "nothing.toml"), ()])
+def test_other_misuse_gives_code_2(tmp_path, monkeypatch, capsys, arguments):
+    monkeypatch.chdir(tmp_path)
+    assert command(*arguments) == 2
+
+
+@pytest.mark.parametrize("arguments", [("fly",), ("run",), ("run", "a.toml", "--workers", "many")])
+def test_wrong_arguments_give_code_2(arguments, capsys):
+    with pytest.raises(SystemExit) as ended:
+        command(*arguments)
+    assert ended.value.code == 2
+
+
+def test_wrong_number_of_workers(study_file, capsys):
+    assert command("run", study_file, "--workers", -1) == 2
+    assert "workers = -1" in capsys.readouterr().err
+
+
+def test_an_error_of_the_program_is_not_hidden(study_file):
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0], "friction": [IS_WRONG]})))
+    with pytest.raises(ZeroDivisionError):
+        run(study_file)
+
+
+def test_version(capsys):
+    assert command("--version") == 0
+    assert capsys.readouterr().out.startswith("contactstudy ")
+
+
+def test_help_imports_nothing_heavy():
+    code = (
+        "import sys; sys.argv = ['contactstudy', '--help']\n"
+        "from contactstudy.cli import main\n"
+        "try: main()\n"
+        "except SystemExit: pass\n"
+        "assert not {'numpy', 'xarray', 'dask', 'matplotlib', 'scipy'} & set(sys.modules)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert "plan" in done.stdout
