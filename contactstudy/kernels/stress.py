@@ -1,6 +1,7 @@
 """Stresses of the half-space, alone or with all mirrored loads, under cell-wise uniform pressure and traction.
 
-Points that lie alike relative to their cells share one kernel and one fast convolution; the others are summed directly.
+Points that lie alike relative to their cells share one kernel and one fast convolution. Where the points along x lie
+in many different ways, the field is interpolated from the cell centres and the nearest cells are put right.
 """
 
 from __future__ import annotations
@@ -18,6 +19,10 @@ from contactstudy.threads import in_threads
 
 # Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
+# More ways than this for points to lie along x are interpolated instead of convolved one by one.
+ALIGNED_GROUPS = 2
+INTERPOLATION_POINTS = 8
+NEAR_CELLS = 14
 # Sign of the components xx, yy, zz, xy, xz, yz on the other side of the load along x.
 ODD_ALONG_X = np.array([1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
 
@@ -97,72 +102,135 @@ def half_space_stress(
     if mirrored:  # cells of the mirrored load lie before those of the load
         load = np.concatenate([load[::-1], load])
         start -= grid.cells_x * grid.dx
+    length = extent[1] if periodic else np.inf
+    cells = _LoadedCells(load, grid.dx, grid.dy, length, friction, poisson)
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
-    for rows in aligned_points(x, float(start), grid.dx):
-        for column in columns:
-            values = _aligned_stress(load, friction, poisson, grid, rows, column, z, extent[1] if periodic else np.inf)
-            result[:, rows.points[:, None], column.points] = values
+    rows = aligned_points(x, float(start), grid.dx)
+    for column in columns:
+        if len(rows) > ALIGNED_GROUPS:
+            result[:, :, column.points] = _unaligned_stress(cells, (x - start) / grid.dx, column, z)
+            continue
+        for row in rows:
+            result[:, row.points[:, None], column.points] = _aligned_stress(cells, row.cells, row.offset, column, z)
     return result
 
 
-def _aligned_stress(
-    load: FloatArray,
-    friction: float,
-    poisson: float,
-    grid: Grid,
-    rows: Aligned,
-    column: Aligned,
-    z: FloatArray,
-    length: float,
-) -> FloatArray:
-    """Stresses (6, row, column, z) at points that share their offsets from the cells."""
-    count_x, count_y = load.shape
-    y_from, y_to = int(column.cells.min()) - count_y + 1, int(column.cells.max())
-    y = grid.dy * np.arange(y_from, y_to + 1) + column.offset
-    if np.isfinite(length):
+@dataclass(frozen=True, eq=False)
+class _LoadedCells:
+    """A load on uniform cells, with its mirror image beside it if it has one; its period is twice the length."""
+
+    load: FloatArray
+    dx: float
+    dy: float
+    length: float
+    friction: float
+    poisson: float
+
+    @property
+    def periodic(self) -> bool:
+        return bool(np.isfinite(self.length))
+
+    def corner(self, depth: float) -> CornerFunction:
+        """Corner function of the six stresses under unit pressure and its friction."""
+
+        def stress(x: FloatArray, y: FloatArray) -> FloatArray:
+            normal = normal_corner(x, y, depth, self.poisson)
+            if self.friction:
+                normal += self.friction * tangential_corner(x, y, depth, self.poisson)
+            return normal
+
+        return stress
+
+    def lateral_offsets(self, column: Aligned) -> tuple[FloatArray, IntArray]:
+        """Offsets along y from any cell to any point of the column, and where among them the points lie."""
+        first = int(column.cells.min()) - self.load.shape[1] + 1
+        steps = np.arange(first, int(column.cells.max()) + 1)
+        return self.dy * steps + column.offset, column.cells - first
+
+
+def _aligned_stress(cells: _LoadedCells, rows: IntArray, offset: float, column: Aligned, z: FloatArray) -> FloatArray:
+    """Stresses (6, row, column, z) at one offset along x from the centres of the cells `rows`."""
+    count = cells.load.shape[0]
+    y, at_y = cells.lateral_offsets(column)
+    if cells.periodic:
         # One period holds the load and its mirror image; offsets are wrapped into -length .. length.
-        x_from, size_x = -(count_x // 2), count_x
+        first, size = -(count // 2), count
+        shape = (size, fft.next_fast_len(y.size, real=True))
     else:
-        x_from = int(rows.cells.min()) - count_x + 1
-        size_x = int(rows.cells.max()) - x_from + 1
-    x = grid.dx * np.arange(x_from, x_from + size_x) + rows.offset
-    shape = (
-        size_x if np.isfinite(length) else fft.next_fast_len(size_x, real=True),
-        fft.next_fast_len(y.size, real=True),
-    )
-    spectrum = fft.rfft2(load, shape)
-    at_x = (rows.cells - x_from) % shape[0]
-    at_y = column.cells - y_from
+        first = int(rows.min()) - count + 1
+        size = int(rows.max()) - first + 1
+        shape = (fft.next_fast_len(size, real=True), fft.next_fast_len(y.size, real=True))
+    x = cells.dx * np.arange(first, first + size) + offset
+    spectrum = fft.rfft2(cells.load, shape)
+    at_x = (rows - first) % shape[0]
 
     def layer(depth: float) -> FloatArray:
-        """Stresses (6, row, column) at one depth."""
-
-        def corner(from_x: FloatArray, from_y: FloatArray) -> FloatArray:
-            stress = normal_corner(from_x, from_y, depth, poisson)
-            if friction:
-                stress += friction * tangential_corner(from_x, from_y, depth, poisson)
-            return stress
-
-        kernel = _kernel_by_symmetry(corner, x, y, grid, length)
+        kernel = _kernel_by_symmetry(cells, depth, x, y)
         stress = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
         return np.asarray(stress[:, at_x[:, None], at_y[None, :]])
 
     return np.stack(list(in_threads(layer, z.tolist())), axis=-1)
 
 
-def _kernel_by_symmetry(corner: CornerFunction, x: FloatArray, y: FloatArray, grid: Grid, length: float) -> FloatArray:
+def _unaligned_stress(cells: _LoadedCells, position: FloatArray, column: Aligned, z: FloatArray) -> FloatArray:
+    """Stresses (6, position, column, z) at any positions along x, counted in cells from the first centre.
+
+    The influence of all but the nearest cells is smooth enough to be interpolated from the cell centres around each
+    position; the nearest cells are interpolated with them, and the difference to their exact influence is added.
+    """
+    base = np.floor(position).astype(np.int64)
+    fraction = position - base
+    steps = np.arange(-INTERPOLATION_POINTS // 2 + 1, INTERPOLATION_POINTS // 2 + 1)
+    weights = np.ones((position.size, steps.size))
+    for i, step in enumerate(steps):
+        for other in steps[steps != step]:
+            weights[:, i] *= (fraction - other) / (step - other)
+    centres, where = np.unique(base[:, None] + steps, return_inverse=True)
+    at_centres = _aligned_stress(cells, centres, 0.0, column, z)
+    stress = np.einsum("ti,ctiyz->ctyz", weights, at_centres[:, where.reshape(weights.shape)])
+
+    near = np.arange(-NEAR_CELLS, NEAR_CELLS + 1)
+    sources = base[:, None] - near
+    if cells.periodic:
+        load = cells.load[sources % cells.load.shape[0]]
+    else:
+        inside = (sources >= 0) & (sources < cells.load.shape[0])
+        load = np.where(inside[..., None], cells.load[np.where(inside, sources, 0)], 0.0)
+    y, at_y = cells.lateral_offsets(column)
+    size = fft.next_fast_len(y.size, real=True)
+    spectrum = fft.rfft(load, size, axis=2)
+    around = np.arange(near[0] + steps[0], near[-1] + steps[-1] + 1)
+    interpolation = np.zeros((position.size, near.size, around.size))
+    for i in range(steps.size):
+        interpolation[:, np.arange(near.size), np.arange(near.size) + i] = weights[:, i, None]
+    x_edges = cells.dx * (fraction[:, None] + np.append(near, near[-1] + 1) - 0.5)
+    y_edges = np.append(y - 0.5 * cells.dy, y[-1] + 0.5 * cells.dy)
+
+    def correction(depth: float) -> FloatArray:
+        corner = cells.corner(depth)
+        exact = np.diff(np.diff(corner(x_edges[..., None], y_edges), axis=-1), axis=-2)
+        aligned = cell_kernel(corner, cells.dx * around, y, cells.dx, cells.dy)
+        difference = exact - np.einsum("tka,cay->ctky", interpolation, aligned)
+        summed = np.einsum("ctkw,tkw->ctw", fft.rfft(difference, size, axis=3), spectrum)
+        return np.asarray(fft.irfft(summed, size, axis=2)[..., at_y])
+
+    return np.asarray(stress + np.stack(list(in_threads(correction, z.tolist())), axis=-1))
+
+
+def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:
     """Kernel at uniform offsets `x`; when they include 0 it is evaluated on one side and reflected to the other."""
+    corner = cells.corner(depth)
 
     def evaluate(offsets: FloatArray) -> FloatArray:
-        if np.isfinite(length):
-            return mirrored_kernel(corner, offsets, y, grid.dx, grid.dy, length)
-        return cell_kernel(corner, offsets, y, grid.dx, grid.dy)
+        if cells.periodic:
+            return mirrored_kernel(corner, offsets, y, cells.dx, cells.dy, cells.length)
+        return cell_kernel(corner, offsets, y, cells.dx, cells.dy)
 
-    steps = x / grid.dx
+    steps = x / cells.dx
     before = round(-float(steps[0]))
     after = x.size - 1 - before
     if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
         return evaluate(x)
-    ahead = evaluate(grid.dx * np.arange(max(before, after) + 1.0))
+    ahead = evaluate(cells.dx * np.arange(max(before, after) + 1.0))
     behind = ahead[:, before:0:-1] * ODD_ALONG_X[:, None, None]
     return np.concatenate([behind, ahead[:, : after + 1]], axis=1)
