@@ -15,7 +15,6 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.kernels.images import CornerFunction, cell_kernel, mirrored_kernel
 from contactstudy.kernels.patch import normal_corner, tangential_corner
-from contactstudy.threads import in_threads
 
 # Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
@@ -169,7 +168,7 @@ def _aligned_stress(cells: _LoadedCells, rows: IntArray, offset: float, column: 
         stress = fft.irfft2(fft.rfft2(kernel, shape, axes=(1, 2)) * spectrum, shape, axes=(1, 2))
         return np.asarray(stress[:, at_x[:, None], at_y[None, :]])
 
-    return np.stack(list(in_threads(layer, z.tolist())), axis=-1)
+    return np.stack([layer(depth) for depth in z.tolist()], axis=-1)
 
 
 def _unaligned_stress(cells: _LoadedCells, position: FloatArray, column: Aligned, z: FloatArray) -> FloatArray:
@@ -214,7 +213,7 @@ def _unaligned_stress(cells: _LoadedCells, position: FloatArray, column: Aligned
         summed = np.einsum("ctkw,tkw->ctw", fft.rfft(difference, size, axis=3), spectrum)
         return np.asarray(fft.irfft(summed, size, axis=2)[..., at_y])
 
-    return np.asarray(stress + np.stack(list(in_threads(correction, z.tolist())), axis=-1))
+    return np.asarray(stress + np.stack([correction(depth) for depth in z.tolist()], axis=-1))
 
 
 def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:

@@ -21,7 +21,7 @@ from contactstudy.overlapping.quadrature import (
     Resolution,
     lateral_nodes,
 )
-from contactstudy.threads import in_threads, one_blas_thread
+from contactstudy.threads import one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
 BATCH = 24
@@ -155,7 +155,7 @@ def _away_from_corner(
         return rows, columns, values
 
     reached = lateral * distance.min() < DECAY_LENGTHS
-    for rows, columns, values in in_threads(batch_stress, range(0, int(reached.sum()), BATCH)):
+    for rows, columns, values in map(batch_stress, range(0, int(reached.sum()), BATCH)):
         result[:, rows[:, None], columns] += values
     return np.ascontiguousarray(result.transpose(0, 1, 3, 2))
 

@@ -22,6 +22,18 @@ if TYPE_CHECKING:
 POLL_SECONDS = 0.5
 """How often to look for workers that came or went while no case finishes."""
 START_SECONDS = 60.0
+WORKER_ENVIRONMENT = {
+    "OMP_NUM_THREADS": "1",
+    "MKL_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "PYFFTW_NUM_THREADS": "1",
+    "MALLOC_MMAP_THRESHOLD_": str(32 * 2**20),
+    "MALLOC_TRIM_THRESHOLD_": str(512 * 2**20),
+}
+"""One thread per worker; and memory that arrays gave back is kept for the next ones.
+
+Dask's own setting returns it to the system at once, which made cases twice as slow as in the parent's process.
+"""
 
 
 def execute(
@@ -98,6 +110,7 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         "distributed.scheduler.allowed-failures": 0,
         "distributed.comm.timeouts.connect": START_SECONDS,
         "distributed.worker.daemon": True,
+        "distributed.nanny.pre-spawn-environ": WORKER_ENVIRONMENT,
     }
     # A dying worker is a failed case with a reason of its own; the libraries' pages of log would bury it.
     quiet = logging.CRITICAL

@@ -133,14 +133,14 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
     kept = dataset[kept_variables(dataset, level)].copy()
     used = {dim for variable in kept.data_vars.values() for dim in variable.dims}
     kept = kept.drop_vars([name for name in kept.coords if not set(kept[name].dims) <= used])
+    flags = {name: entry.astype(np.int8) for name, entry in kept.data_vars.items() if entry.dtype == bool}
+    kept = kept.assign(flags)
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in kept.variables.items():
         known = COORDINATES.get(str(name)[0]) if name in variable.dims else None
         default = {"units": known.units, "long_name": known.long_name} if known else {}
         variable.attrs = default | _attributes(variable.attrs)
         variable.encoding = {}
-        if variable.dtype == bool:
-            kept[name] = variable.astype(np.int8)
         depth = any(str(dim).startswith("z") for dim in variable.dims)
         if variable.ndim >= 2:
             encoding[str(name)] = {
