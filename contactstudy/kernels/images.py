@@ -17,9 +17,9 @@ from contactstudy.checks import FloatArray
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
-NEAR_IMAGES = 8
+NEAR_IMAGES = 5
 FAR_LIMIT = 1e6  # of the spread load, over the length; beyond it nothing counts
-CHEBYSHEV_POINTS = 16
+CHEBYSHEV_X, CHEBYSHEV_Y = 16, 28
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
@@ -68,15 +68,23 @@ def mirrored_kernel(
         slope = period / 24 * np.sign(side) / (2 * step)
         add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
-    span = length + dx
-    points = span * chebyshev.chebpts1(CHEBYSHEV_POINTS)
-    y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
-    values = np.diff(corner(np.add.outer(shifts, points)[..., None], y_edges), axis=-1)
+    at_x, from_points_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
+    if y.size > CHEBYSHEV_Y:
+        at_y, from_points_y = _chebyshev_points(y, float(np.abs(y).max()) + dy, CHEBYSHEV_Y)
+    else:
+        at_y, from_points_y = y, np.eye(y.size)
+    positions = np.add.outer(shifts, at_x)[..., None]
+    values = corner(positions, at_y + 0.5 * dy) - corner(positions, at_y - 0.5 * dy)
     images = np.tensordot(weights, values, axes=(0, -3))
-    interpolation = np.linalg.solve(
-        chebyshev.chebvander(points / span, CHEBYSHEV_POINTS - 1).T,
-        chebyshev.chebvander(x / span, CHEBYSHEV_POINTS - 1).T,
-    )
     kernel = cell_kernel(corner, x, y, dx, dy)
-    kernel += np.moveaxis(np.tensordot(images, interpolation, axes=(-2, 0)), -1, -2)
+    kernel += from_points_x @ images @ from_points_y.T
     return kernel
+
+
+def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:
+    """Chebyshev points of ``-span..span``, and the matrix that interpolates from them to `values`."""
+    points = chebyshev.chebpts1(count)
+    matrix: FloatArray = np.linalg.solve(
+        chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(values / span, count - 1).T
+    )
+    return span * points, matrix.T

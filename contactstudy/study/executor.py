@@ -118,7 +118,8 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         dask.config.set(settings),
         LocalCluster(
             n_workers=min(workers or cores, jobs), processes=True, threads_per_worker=1, dashboard_address=None,
-            memory_limit=0, silence_logs=quiet, scheduler_port=0,
+            # Without an address of its own the scheduler insists on one port, and two studies at once collide.
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"}, memory_limit=0, silence_logs=quiet,
         ) as cluster,
         Client(cluster) as client,
     ):
