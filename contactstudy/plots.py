@@ -311,14 +311,14 @@ def _draw_pressures(
             linewidth=1.8,
             label=f"free end, $e/a$ = {e:g}",
         )
-        highest = max(highest, float(ax.lines[-1].get_ydata().max()))  # type: ignore[union-attr]
+        highest = max(highest, float(np.nanmax(ax.lines[-1].get_ydata())))
     if comparison:
         # On a half-space the distance changes nothing but the coordinate: one case stands for all.
         e, case = next((entry for entry in comparison if entry[0] == drawn[0][0]), comparison[0])
         plot_axial_pressure(
             case, ax, color="black", linestyle=":", linewidth=1.2, zorder=1, label=f"half-space, $e/a$ = {e:g}"
         )
-        highest = max(highest, float(ax.lines[-1].get_ydata().max()))  # type: ignore[union-attr]
+        highest = max(highest, float(np.nanmax(ax.lines[-1].get_ydata())))
     ax.set_xlim(0.0, distance)
     ax.set_ylim(0.0, 1.05 * highest)
     ax.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
@@ -333,7 +333,7 @@ def _draw_planes(
 
     planes = [_plane(case, "von_mises", 0.0) for _, case in stressed]
     largest = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
-    levels = MaxNLocator(14).tick_values(0.0, largest)
+    levels = MaxNLocator(20).tick_values(0.0, largest)
     axes = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False)
     for ax in axes.ravel()[len(stressed) :]:
         ax.set_visible(False)

@@ -84,7 +84,7 @@ def mirrored_kernel(
 def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:
     """Chebyshev points of ``-span..span``, and the matrix that interpolates from them to `values`."""
     points = chebyshev.chebpts1(count)
-    matrix: FloatArray = np.linalg.solve(
+    matrix = np.linalg.solve(
         chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(values / span, count - 1).T
     )
-    return span * points, matrix.T
+    return span * points, np.asarray(matrix.T, dtype=np.float64)

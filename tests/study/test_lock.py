@@ -11,9 +11,9 @@ from contactstudy.study.lock import LOCK_NAME, _started, locked, read_lock
 
 
 def test_a_second_holder_is_refused_and_told_who(tmp_path):
-    with locked(tmp_path), pytest.raises(LockedError, match=f"process {os.getpid()} on {socket.gethostname()} since"):
-        with locked(tmp_path):
-            pass
+    who = f"process {os.getpid()} on {socket.gethostname()} since"
+    with locked(tmp_path), pytest.raises(LockedError, match=who), locked(tmp_path):
+        pass
     assert read_lock(tmp_path) is None
 
 
