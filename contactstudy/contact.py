@@ -9,18 +9,20 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.bodies import Body
+from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.conjugate_gradients import ContactIterate, solve_complementarity
 from contactstudy.dataset import describe
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
 from contactstudy.labelled import labelled_cells
-from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.surface import OPERATORS, SurfaceOperator
+from contactstudy.surface import SurfaceOperator, surface_operator
 from contactstudy.threads import one_blas_thread
 
 # A gap counts as open when it exceeds this many tolerances of the displacement's variation.
 OPEN_TOLERANCES = 10.0
 COUPLED_ROUNDS = 60
+
+_CONTACTS: BoundedCache[ContactIterate] = BoundedCache(2**26, lambda iterate: iterate.pressure.nbytes)
 
 
 def solve_contact(
@@ -99,10 +101,12 @@ def solve_contact(
     bends = bool(coupled) and friction != 0
     total = load / grid.cell_area
     with one_blas_thread():
-        operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
+        operator = surface_operator(body, grid, tangential=bends)
+        # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
+        key = (body, grid, digest(clearance), total, friction if bends else 0.0, tolerance, max_iterations)
         solve = _solve_coupled if bends else _solve_normal
-        iterate = solve(operator, clearance, total, friction, tolerance, max_iterations)
-        pressure = iterate.pressure
+        iterate = _CONTACTS.get(key, lambda: solve(operator, clearance, total, friction, tolerance, max_iterations))
+        pressure = iterate.pressure.copy()
         traction = friction * pressure
         displacement = operator(pressure, traction if bends else None)
     _check_window(body, pressure, np.isfinite(clearance))

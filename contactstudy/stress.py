@@ -10,6 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.bodies import Body
+from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import STRESSES, describe
 from contactstudy.errors import InvalidInputError
@@ -18,7 +19,7 @@ from contactstudy.invariants import von_mises
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.labelled import labelled_cells
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import end_stress
+from contactstudy.overlapping.stress import EndProblem, end_stress
 from contactstudy.surface import check_span
 
 Positions = Sequence[float] | npt.ArrayLike
@@ -93,19 +94,37 @@ def stress_field(
     return describe(fields, "stresses under a prescribed pressure")
 
 
+_FIELDS: BoundedCache[FloatArray] = BoundedCache(2**28, lambda fields: fields.nbytes)
+
+
 def raw_stress(
     body: Body, pressure: FloatArray, friction: float, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses (6, x, y, z) as computed: nothing is imposed on the free ends."""
-    stresses = half_space_stress(pressure, friction, body.material.poisson, grid, x, y, z, extent=body.extent)
+    """Stresses (6, x, y, z) as computed: nothing is imposed on the free ends.
+
+    Stresses are linear in the friction, so the fields under the pressure and under an equal traction are kept: a
+    sweep over the friction computes them once.
+    """
+    key = (body, grid, friction != 0, digest(pressure, x, y, z))
+    fields = _FIELDS.get(key, lambda: _unit_fields(body, pressure, grid, x, y, z, tangential=friction != 0))
+    return np.asarray(fields[0] + friction * fields[1] if friction else fields[0].copy())
+
+
+def _unit_fields(
+    body: Body, pressure: FloatArray, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray, *, tangential: bool
+) -> FloatArray:
+    """Stresses (load, 6, x, y, z) under the pressure and, if wanted, under an equal traction along +y."""
+    poisson = body.material.poisson
+    fields = half_space_stress(pressure, poisson, grid, x, y, z, extent=body.extent, tangential=tangential)
     low, high = body.extent
     if np.isfinite(low) and pressure.any():
-        from_ends = end_stress(high, body.material.poisson, pressure, friction, grid, x, y, z, Resolution())
+        problem = EndProblem(high, poisson, pressure, grid, tangential, Resolution())
+        from_ends = end_stress(problem, x, y, z)
         # The two auxiliary bodies leave no traction on the top, by construction.
         for component in (2, 4, 5):
-            from_ends[component][..., z == 0] = 0.0
-        stresses += from_ends
-    return stresses
+            from_ends[:, component][..., z == 0] = 0.0
+        fields += from_ends
+    return fields
 
 
 def end_traction_residual(

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from functools import cached_property
-from threading import local
 
 import numpy as np
 import xarray as xr
@@ -12,6 +10,7 @@ from scipy import fft
 
 from contactstudy import checks
 from contactstudy.bodies import Body
+from contactstudy.cache import BoundedCache
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
@@ -143,36 +142,16 @@ def check_span(body: Body, grid: Grid) -> None:
         raise InvalidInputError("x", f"cells up to {stop:g} m", f"cells that end at the free end, {high:g} m")
 
 
-class OperatorCache:
-    """Surface operators, kept while they are used and together take less than a bound.
-
-    Operators own their buffers, so each thread keeps its own.
-
-    Parameters
-    ----------
-    limit : int
-        Bytes that the kept operators may take together.
-    """
-
-    def __init__(self, limit: int = 2**30) -> None:
-        self.limit = limit
-        self._kept = local()
-
-    def get(self, body: Body, grid: Grid, *, tangential: bool, resolution: Resolution) -> SurfaceOperator:
-        """Return the operator for body and grid, building it if it is not at hand."""
-        kept: OrderedDict[object, SurfaceOperator] = self._kept.__dict__.setdefault("operators", OrderedDict())
-        key = (body, grid, resolution)
-        operator = kept.get(key)
-        if operator is None or (tangential and not operator.tangential):
-            operator = SurfaceOperator(body, grid, tangential=tangential, resolution=resolution)
-            kept[key] = operator
-        kept.move_to_end(key)
-        while len(kept) > 1 and sum(item.nbytes for item in kept.values()) > self.limit:
-            kept.popitem(last=False)
-        return operator
+_OPERATORS: BoundedCache[SurfaceOperator] = BoundedCache(2**30, lambda operator: operator.nbytes)
 
 
-OPERATORS = OperatorCache()
+def surface_operator(body: Body, grid: Grid, *, tangential: bool) -> SurfaceOperator:
+    """Return the operator for body and grid, which all cases with the same two share."""
+    resolution = Resolution()
+    return _OPERATORS.get(
+        (body, grid, tangential),
+        lambda: SurfaceOperator(body, grid, tangential=tangential, resolution=resolution),
+    )
 
 
 def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0.0) -> xr.DataArray:
@@ -212,7 +191,7 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     values, grid = labelled_cells("pressure", pressure)
     friction = checks.finite("friction", friction)
-    operator = OPERATORS.get(body, grid, tangential=friction != 0, resolution=Resolution())
+    operator = surface_operator(body, grid, tangential=friction != 0)
     with one_blas_thread():
         displacement = operator(values, friction * values if friction else None)
     attributes: dict[str, str | float] = {"units": "m", "long_name": "normal displacement of the top, into the body"}

@@ -48,12 +48,16 @@ def test_ratios_do_not_depend_on_the_unit(scale):
 
 def test_stress_points_of_their_own():
     stress = xr.DataArray(
-        np.arange(8.0).reshape(2, 2, 2), dims=("x_field", "y_field", "z"),
+        np.arange(8.0).reshape(2, 2, 2),
+        dims=("x_field", "y_field", "z"),
         coords={"x_field": [1, 2], "y_field": [3, 4], "z": [5, 6]},
     )
     result = stress_summary(xr.Dataset({"von_mises": stress}))
     assert {name: float(value) for name, value in result.items()} == {
-        "peak_von_mises": 7, "peak_von_mises_x": 2, "peak_von_mises_y": 4, "peak_von_mises_z": 6,
+        "peak_von_mises": 7,
+        "peak_von_mises_x": 2,
+        "peak_von_mises_y": 4,
+        "peak_von_mises_z": 6,
     }
 
 

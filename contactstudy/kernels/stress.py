@@ -59,7 +59,6 @@ def aligned_points(values: FloatArray, first_centre: float, step: float) -> list
 
 def half_space_stress(
     pressure: FloatArray,
-    friction: float,
     poisson: float,
     grid: Grid,
     x: FloatArray,
@@ -67,15 +66,14 @@ def half_space_stress(
     z: FloatArray,
     *,
     extent: tuple[float, float],
+    tangential: bool,
 ) -> FloatArray:
-    """Stresses of the half-space under the pressure and all its mirror images in the ends of `extent`.
+    """Stresses of the half-space under a pressure and all its mirror images in the ends of `extent`.
 
     Parameters
     ----------
     pressure : array (cell_x, cell_y)
         Pressure, Pa.
-    friction : float
-        Coefficient of the traction along +y.
     poisson : float
         Poisson's ratio.
     grid : Grid
@@ -84,17 +82,19 @@ def half_space_stress(
         Points, as a tensor product, metres.
     extent : tuple of float
         Where the mirrors stand; infinite for none.
+    tangential : bool
+        Whether the stresses under a traction along +y, equal to the pressure, are wanted as well.
 
     Returns
     -------
-    array (6, x, y, z)
-        xx, yy, zz, xy, xz, yz in Pa.
+    array (load, 6, x, y, z)
+        Under the pressure and, if wanted, under the traction: xx, yy, zz, xy, xz, yz in Pa.
     """
     mirrored, periodic = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     loaded = np.flatnonzero(pressure.any(axis=0))
-    result = np.zeros((6, x.size, y.size, z.size))
+    result = np.zeros((6 * (1 + tangential), x.size, y.size, z.size))
     if not loaded.size:
-        return result
+        return result.reshape(-1, 6, *result.shape[1:])
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = pressure[:, first:last]
     start = grid.x[0]
@@ -102,7 +102,7 @@ def half_space_stress(
         load = np.concatenate([load[::-1], load])
         start -= grid.cells_x * grid.dx
     length = extent[1] if periodic else np.inf
-    cells = _LoadedCells(load, grid.dx, grid.dy, length, friction, poisson)
+    cells = _LoadedCells(load, grid.dx, grid.dy, length, tangential, poisson)
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(start), grid.dx)
     for column in columns:
@@ -111,7 +111,7 @@ def half_space_stress(
             continue
         for row in rows:
             result[:, row.points[:, None], column.points] = _aligned_stress(cells, row.cells, row.offset, column, z)
-    return result
+    return result.reshape(-1, 6, *result.shape[1:])
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,7 +122,7 @@ class _LoadedCells:
     dx: float
     dy: float
     length: float
-    friction: float
+    tangential: bool
     poisson: float
 
     @property
@@ -130,13 +130,13 @@ class _LoadedCells:
         return bool(np.isfinite(self.length))
 
     def corner(self, depth: float) -> CornerFunction:
-        """Corner function of the six stresses under unit pressure and its friction."""
+        """Corner function of the six stresses under unit pressure and, if wanted, those under unit traction."""
 
         def stress(x: FloatArray, y: FloatArray) -> FloatArray:
             normal = normal_corner(x, y, depth, self.poisson)
-            if self.friction:
-                normal += self.friction * tangential_corner(x, y, depth, self.poisson)
-            return normal
+            if not self.tangential:
+                return normal
+            return np.concatenate([normal, tangential_corner(x, y, depth, self.poisson)])
 
         return stress
 
@@ -148,7 +148,7 @@ class _LoadedCells:
 
 
 def _aligned_stress(cells: _LoadedCells, rows: IntArray, offset: float, column: Aligned, z: FloatArray) -> FloatArray:
-    """Stresses (6, row, column, z) at one offset along x from the centres of the cells `rows`."""
+    """Stresses (component, row, column, z) at one offset along x from the centres of the cells `rows`."""
     count = cells.load.shape[0]
     y, at_y = cells.lateral_offsets(column)
     if cells.periodic:
@@ -172,7 +172,7 @@ def _aligned_stress(cells: _LoadedCells, rows: IntArray, offset: float, column: 
 
 
 def _unaligned_stress(cells: _LoadedCells, position: FloatArray, column: Aligned, z: FloatArray) -> FloatArray:
-    """Stresses (6, position, column, z) at any positions along x, counted in cells from the first centre.
+    """Stresses (component, position, column, z) at any positions along x, counted in cells from the first centre.
 
     The influence of all but the nearest cells is smooth enough to be interpolated from the cell centres around each
     position; the nearest cells are interpolated with them, and the difference to their exact influence is added.
@@ -231,5 +231,5 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
         return evaluate(x)
     ahead = evaluate(cells.dx * np.arange(max(before, after) + 1.0))
-    behind = ahead[:, before:0:-1] * ODD_ALONG_X[:, None, None]
+    behind = ahead[:, before:0:-1] * np.tile(ODD_ALONG_X, 1 + cells.tangential)[:, None, None]
     return np.concatenate([behind, ahead[:, : after + 1]], axis=1)

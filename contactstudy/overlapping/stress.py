@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import DECAY_LENGTHS, AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet, slab_factors
@@ -38,40 +38,36 @@ class LateralAmplitudes:
 
     Attributes
     ----------
-    pressure, traction : array (cell, q, 2)
-        Amplitudes of the parts that make stresses even in y follow ``cos(k_y y)`` and ``sin(k_y y)``.
+    pressure, traction : array (cell, q, column)
+        Amplitudes. The first two columns are a pressure, whose part in one column makes stresses that are even in
+        y follow ``cos(k_y y)`` and in the other ``sin(k_y y)``; two more, if there, are an equal traction along y.
     """
 
     pressure: FloatArray
     traction: FloatArray
 
 
-def lateral_amplitudes(pressure: FloatArray, friction: float, grid: Grid, wavenumbers: FloatArray) -> LateralAmplitudes:
-    """Amplitudes of cell-wise uniform `pressure` (x, y) and of the traction that friction makes of it."""
+def lateral_amplitudes(
+    pressure: FloatArray, grid: Grid, wavenumbers: FloatArray, *, tangential: bool
+) -> LateralAmplitudes:
+    """Amplitudes of cell-wise uniform `pressure` (x, y) and, if asked, of an equal traction."""
     width = grid.dy * np.sinc(wavenumbers * grid.dy / (2 * np.pi))
     cosine = pressure @ (np.cos(np.outer(grid.y, wavenumbers)) * width)
     sine = pressure @ (np.sin(np.outer(grid.y, wavenumbers)) * width)
+    none = np.zeros_like(cosine)
+    if not tangential:
+        return LateralAmplitudes(np.stack([cosine, sine], axis=-1), np.stack([none, none], axis=-1))
     # Kernels of a traction carry a factor i against those of a pressure, which turns cosine into sine.
     return LateralAmplitudes(
-        np.stack([cosine, sine], axis=-1),
-        friction * np.stack([sine, -cosine], axis=-1),
+        np.stack([cosine, sine, none, none], axis=-1), np.stack([none, none, sine, -cosine], axis=-1)
     )
 
 
-def end_stress(
-    length: float,
-    poisson: float,
-    pressure: FloatArray,
-    friction: float,
-    grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    resolution: Resolution,
-) -> FloatArray:
-    """Stresses that the free ends add to the half-space with all mirrored loads.
+@dataclass(frozen=True, eq=False)
+class EndProblem:
+    """A pressure on a body with one end or two, and perhaps an equal traction beside it.
 
-    Parameters
+    Attributes
     ----------
     length : float
         Distance between the ends, metres; infinite for one end.
@@ -79,111 +75,116 @@ def end_stress(
         Poisson's ratio.
     pressure : array (cell_x, cell_y)
         Pressure on the cells of `grid`, Pa.
-    friction : float
-        Coefficient of the traction along +y.
     grid : Grid
         Cells, from ``x = 0``.
-    x, y, z : array
-        Points, as a tensor product, inside the body, metres.
+    tangential : bool
+        Whether the stresses under a traction along +y, equal to the pressure, are wanted as well.
     resolution : Resolution
         Quadrature settings.
+    """
+
+    length: float
+    poisson: float
+    pressure: FloatArray
+    grid: Grid
+    tangential: bool
+    resolution: Resolution
+
+    @property
+    def corner_offset(self) -> float:
+        """Distance from the corner below which nothing is evaluated, metres."""
+        return CORNER_OFFSET * min(self.grid.dx, self.grid.dy)
+
+    def from_end(self, x: FloatArray) -> FloatArray:
+        """Distance of positions from the nearest end."""
+        return np.minimum(x, self.length - x)
+
+
+def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Stresses that the free ends add to the half-space with all mirrored loads.
+
+    Parameters
+    ----------
+    problem : EndProblem
+        Body and load.
+    x, y, z : array
+        Points, as a tensor product, inside the body, metres.
 
     Returns
     -------
-    array (6, x, y, z)
-        xx, yy, zz, xy, xz, yz in Pa.
+    array (load, 6, x, y, z)
+        Under the pressure and, if wanted, under the traction: xx, yy, zz, xy, xz, yz in Pa.
     """
-    fewer = graded_interpolation(x, length, POSITIONS_PER_PANEL)
+    fewer = graded_interpolation(x, problem.length, POSITIONS_PER_PANEL)
     if fewer is not None:
         positions, interpolation = fewer
-        coarse = end_stress(length, poisson, pressure, friction, grid, positions, y, z, resolution)
-        return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 1)), 0, 1))
-    offset = CORNER_OFFSET * min(grid.dx, grid.dy)
-    arguments = (length, poisson, pressure, friction, grid)
+        coarse = end_stress(problem, positions, y, z)
+        return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 2)), 0, 2))
+    offset = problem.corner_offset
     with one_blas_thread():
-        result = _away_from_corner(*arguments, x, y, z, offset, resolution)
-        rows, columns = np.flatnonzero(np.minimum(x, length - x) < offset), np.flatnonzero(z < offset)
+        result = _away_from_corner(problem, x, y, z)
+        rows, columns = np.flatnonzero(problem.from_end(x) < offset), np.flatnonzero(z < offset)
         if rows.size and columns.size:
-            at_corner = _away_from_corner(*arguments, x[rows], y, np.array([offset]), offset, resolution)
-            result[:, rows[:, None], :, columns[None, :]] = at_corner[..., 0].transpose(1, 0, 2)[:, None]
+            at_corner = _away_from_corner(problem, x[rows], y, np.array([offset]))
+            for place, row in enumerate(rows):
+                result[:, :, row][..., columns] = at_corner[:, :, place]
     return result
 
 
-def _away_from_corner(
-    length: float,
-    poisson: float,
-    pressure: FloatArray,
-    friction: float,
-    grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    offset: float,
-    resolution: Resolution,
-) -> FloatArray:
-    from_end = np.minimum(x, length - x)
-    distance = np.hypot(from_end[:, None], z[None, :])
-    shortest = max(float(distance.min()), offset)
-    loaded = np.abs(grid.y[pressure.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
+def _away_from_corner(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    grid, resolution = problem.grid, problem.resolution
+    distance = np.hypot(problem.from_end(x)[:, None], z[None, :])
+    shortest = max(float(distance.min()), problem.corner_offset)
+    loaded = np.abs(grid.y[problem.pressure.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
     reach = loaded + np.abs(y).max()
     lateral, weights = lateral_nodes(
-        1e-2 / min(length, 4 * max(grid.x_range[1], reach)),
+        1e-2 / min(problem.length, 4 * max(grid.x_range[1], reach)),
         reach,
         # Along y the load is known to the cell only; finer than half a cell there is nothing to resolve.
         resolution.lateral_reach / max(shortest, 0.5 * min(grid.dx, grid.dy)),
         resolution,
     )
-    loads = lateral_amplitudes(pressure, friction, grid, lateral)
+    lateral, weights = (values[lateral * distance.min() < DECAY_LENGTHS] for values in (lateral, weights))
+    loads = lateral_amplitudes(problem.pressure, grid, lateral, tangential=problem.tangential)
     cosine, sine = (function(np.outer(lateral, y)) * (weights / np.pi)[:, None] for function in (np.cos, np.sin))
-    synthesis_even = np.stack([cosine, sine], axis=1)
-    synthesis_odd = np.stack([-sine, cosine], axis=1)
-    result = np.zeros((6, x.size, z.size, y.size))
-
-    def batch_stress(start: int) -> tuple[IntArray, IntArray, FloatArray]:
-        """Stresses (6, row, column, y) from one batch of wavenumbers, and the points (row, column) it reaches."""
+    syntheses = ((EVEN_IN_Y, np.stack([cosine, sine], axis=1)), (ODD_IN_Y, np.stack([-sine, cosine], axis=1)))
+    result = np.zeros((1 + problem.tangential, 6, x.size, z.size, y.size))
+    for start in range(0, lateral.size, BATCH):
         batch = slice(start, min(start + BATCH, lateral.size))
         near = lateral[start] * distance < DECAY_LENGTHS
         rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
-        amplitudes = _batch_amplitudes(
-            length, poisson, loads, lateral[batch], batch, grid, x[rows], z[columns], shortest, resolution
-        )
-        values = np.empty((6, rows.size, columns.size, y.size))
-        for components, synthesis in ((EVEN_IN_Y, synthesis_even), (ODD_IN_Y, synthesis_odd)):
-            flat = amplitudes[components].reshape(-1, 2 * amplitudes.shape[3])
-            part = flat @ synthesis[batch].reshape(-1, y.size)
-            values[components] = part.reshape(-1, rows.size, columns.size, y.size)
-        return rows, columns, values
-
-    reached = lateral * distance.min() < DECAY_LENGTHS
-    for rows, columns, values in map(batch_stress, range(0, int(reached.sum()), BATCH)):
-        result[:, rows[:, None], columns] += values
-    return np.ascontiguousarray(result.transpose(0, 1, 3, 2))
+        amplitudes = _batch_amplitudes(problem, loads, lateral[batch], batch, x[rows], z[columns], shortest)
+        for load, part in enumerate(np.split(amplitudes, len(result), axis=-1)):
+            for components, synthesis in syntheses:
+                flat = part[components].reshape(-1, 2 * part.shape[3])
+                values = (flat @ synthesis[batch].reshape(-1, y.size)).reshape(-1, rows.size, columns.size, y.size)
+                for component, value in zip(components, values, strict=True):
+                    result[load, component, rows[:, None], columns] += value
+    return np.ascontiguousarray(result.transpose(0, 1, 2, 4, 3))
 
 
 def _batch_amplitudes(
-    length: float,
-    poisson: float,
+    problem: EndProblem,
     loads: LateralAmplitudes,
     lateral: FloatArray,
     batch: slice,
-    grid: Grid,
     x: FloatArray,
     z: FloatArray,
     shortest: float,
-    resolution: Resolution,
 ) -> FloatArray:
-    """Amplitudes of the six stresses for a batch of wavenumbers along y: array (6, x, z, wavenumber, 2)."""
+    """Amplitudes of the six stresses for a batch of wavenumbers along y: array (6, x, z, wavenumber, column)."""
+    resolution = problem.resolution
     views = [
         view
-        for modes in axial_modes(length, float(lateral[0]), shortest, resolution)
-        for view in _views(modes, length, loads, batch, grid, x)
+        for modes in axial_modes(problem.length, float(lateral[0]), shortest, resolution)
+        for view in _views(modes, problem, loads, batch, x)
     ]
-    amplitudes = np.zeros((6, x.size, z.size, lateral.size, 2))
+    amplitudes = np.zeros((6, x.size, z.size, lateral.size, loads.pressure.shape[-1]))
     for number, wavenumber in enumerate(lateral):
         system = None
         for view in views:
             if system is None or system.modes is not view.modes:
-                system = EquationSet.build(view.modes, float(wavenumber), poisson, shortest, resolution)
+                system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
             amplitudes[..., number, :] += _harmonic_stress(system, view, number, z, shortest, resolution)
     return amplitudes
 
@@ -202,8 +203,9 @@ class _View:
 
 
 def _views(
-    modes: AxialModes, length: float, loads: LateralAmplitudes, batch: slice, grid: Grid, x: FloatArray
+    modes: AxialModes, problem: EndProblem, loads: LateralAmplitudes, batch: slice, x: FloatArray
 ) -> list[_View]:
+    grid, length = problem.grid, problem.length
     edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
     integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
     # Ends that know nothing of each other are two quarter spaces, the second seen from its own end.
@@ -222,7 +224,7 @@ def _views(
 def _harmonic_stress(
     system: EquationSet, view: _View, number: int, z: FloatArray, shortest: float, resolution: Resolution
 ) -> FloatArray:
-    """Amplitudes of the six stresses for the batch's wavenumber `number`: array (6, x, z, 2)."""
+    """Amplitudes of the six stresses for the batch's wavenumber `number`: array (6, x, z, column)."""
     pressure, traction = view.pressure[:, number], view.traction[:, number]
     source = system.from_pressure(pressure)
     if np.any(traction):
@@ -247,7 +249,7 @@ def _real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
 def _below_equivalent_load(
     system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of H under the equivalent load: array (6, x, z, 2). Half-space harmonics, pressure column."""
+    """Stresses of H under the equivalent load: array (6, x, z, column). Half-space harmonics, pressure column."""
     nu, lateral = system.poisson, system.lateral
     axial = system.modes.wavenumbers
     k = np.sqrt(axial**2 + lateral**2)
@@ -262,7 +264,7 @@ def _below_equivalent_load(
         (zero, zero + lateral),
     ]
     odd = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
-    result = np.empty((6, cosine.shape[1], z.size, 2))
+    result = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
     for functions, terms, components in ((cosine, even, [0, 1, 2, 5]), (sine, odd, [3, 4])):
         along_z = np.stack([a[:, None] * decay + b[:, None] * ramp for a, b in terms], axis=1)
         right = along_z[..., None] * equivalent[:, None, None, :]
@@ -273,7 +275,7 @@ def _below_equivalent_load(
 def _beside_face_load(
     system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
 ) -> FloatArray:
-    """Stresses of V under the face loads on its two ends: array (6, x, z, 2).
+    """Stresses of V under the face loads on its two ends: array (6, x, z, column).
 
     The slab's harmonics, written as two half-space harmonics that start from either end; with ``X = kappa`` times the
     distance from the end, ``tau`` and ``T`` of `slab_factors`, and ``Phi = 1 - 2 nu - tau - X``, each end gives
@@ -303,7 +305,7 @@ def _beside_face_load(
         cosine_z[3] -= odd * lateral * shear
         sine_z[0] += even * lateral * depth / kappa**2 * potential
         sine_z[1] += odd * depth * shear
-    result = np.empty((6, x.size, z.size, 2))
+    result = np.empty((6, x.size, z.size, face_load.shape[1]))
     result[[0, 1, 2, 3]] = _real_product(cosine_z, right)
     result[[5, 4]] = _real_product(-1j * sine_z, right)
     return result

@@ -74,9 +74,7 @@ def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
     return Cube(tuple(dims), tuple(shape), labels)
 
 
-def cube_of_cases(
-    cases: Sequence[Mapping[str, Any]], label: Labeller
-) -> tuple[Cube, list[tuple[int, ...]]]:
+def cube_of_cases(cases: Sequence[Mapping[str, Any]], label: Labeller) -> tuple[Cube, list[tuple[int, ...]]]:
     """Cube of cases that are no product, and each case's place in it.
 
     The dimensions are the parameters that differ, if that does not leave too much of the cube empty; else one

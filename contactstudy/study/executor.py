@@ -117,9 +117,14 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
     with (
         dask.config.set(settings),
         LocalCluster(
-            n_workers=min(workers or cores, jobs), processes=True, threads_per_worker=1, dashboard_address=None,
+            n_workers=min(workers or cores, jobs),
+            processes=True,
+            threads_per_worker=1,
+            dashboard_address=None,
             # Without an address of its own the scheduler insists on one port, and two studies at once collide.
-            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"}, memory_limit=0, silence_logs=quiet,
+            scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
+            memory_limit=0,
+            silence_logs=quiet,
         ) as cluster,
         Client(cluster) as client,
     ):
@@ -193,8 +198,14 @@ def _feed(
             return
         # Were the worker gone by now, another one may take the job.
         future = client.submit(
-            perform, job, solver, key=f"case-{job.id[:16]}-{id(dispatcher):x}", workers=[worker],
-            allow_other_workers=True, pure=False, retries=0,
+            perform,
+            job,
+            solver,
+            key=f"case-{job.id[:16]}-{id(dispatcher):x}",
+            workers=[worker],
+            allow_other_workers=True,
+            pure=False,
+            retries=0,
         )
         running[future] = (worker, job)
         future.add_done_callback(finished.put)

@@ -112,8 +112,13 @@ class Folder:
 
     def write_failure(self, identity: str, parameters: dict[str, Any], kind: str, message: str) -> None:
         """Record why a case failed."""
-        content = {"id": identity, "parameters": parameters, "type": kind, "message": message,
-                   "version": package_version()}
+        content = {
+            "id": identity,
+            "parameters": parameters,
+            "type": kind,
+            "message": message,
+            "version": package_version(),
+        }
         write_text(self.failure_path(identity), json.dumps(content, indent=1))
 
     def clean(self) -> int:
@@ -154,7 +159,11 @@ class Folder:
         """Enter a file, just written or checked, in the cache."""
         state = path.stat()
         self._manifest()[path.name] = {
-            "size": state.st_size, "changed": state.st_mtime_ns, "id": identity, "run": run, "scalars": scalars,
+            "size": state.st_size,
+            "changed": state.st_mtime_ns,
+            "id": identity,
+            "run": run,
+            "scalars": scalars,
         }
 
     def _checked(self, path: Path, identity: str) -> dict[str, Any]:

@@ -51,9 +51,7 @@ def _lundberg(table: Mapping[str, float], around: Surroundings) -> Profile:
     delta = table.get("delta", 1.0)
     if "amplitude" in table:
         return Lundberg(table["amplitude"], delta)
-    return Lundberg.for_pressure(
-        table["design_pressure"], radius=around.radius, modulus=around.modulus, delta=delta
-    )
+    return Lundberg.for_pressure(table["design_pressure"], radius=around.radius, modulus=around.modulus, delta=delta)
 
 
 PROFILES: dict[str, ProfileKind] = {

@@ -82,7 +82,10 @@ def locked(folder: Path) -> Iterator[str]:
     token = uuid.uuid4().hex
     now = datetime.now(UTC).isoformat(timespec="seconds")
     mine = {
-        "process": os.getpid(), "host": socket.gethostname(), "time": now, "token": token,
+        "process": os.getpid(),
+        "host": socket.gethostname(),
+        "time": now,
+        "token": token,
         "process_start": _started(os.getpid()),
     }
     message = ""
@@ -92,9 +95,7 @@ def locked(folder: Path) -> Iterator[str]:
             if holder is not None:
                 who = f"process {holder.get('process')} on {holder.get('host')} since {holder.get('time')}"
                 if not _is_dead(holder):
-                    raise LockedError(
-                        f"{folder} is in use by {who}; if that run is surely gone, delete {path}"
-                    )
+                    raise LockedError(f"{folder} is in use by {who}; if that run is surely gone, delete {path}")
                 message = f"took over the lock of a dead run: {who}"
                 path.unlink()
             part = folder / f"{LOCK_NAME}.{token}"

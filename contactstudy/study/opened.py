@@ -70,7 +70,7 @@ def open_study(folder: str | Path) -> xr.Dataset:
     usable = {
         case.position: place.path / entry.path
         for case, entry in zip(plan.cases, entries, strict=True)
-        if entry.path
+        if entry.path and entry.run.get("level") != "summary"
     }
     structures = {}
     for position, path in usable.items():
@@ -117,9 +117,7 @@ def _summaries(plan: Plan, entries: list[Entry], place: Folder) -> xr.Dataset:
     for entry in entries:
         if set(names) - set(attributes) and set(entry.scalars) - set(attributes):
             attributes |= scalar_attributes(place.path / entry.path)
-    variables: dict[str, Any] = {
-        name: (cube.dims, array, attributes.get(name, {})) for name, array in scalars.items()
-    }
+    variables: dict[str, Any] = {name: (cube.dims, array, attributes.get(name, {})) for name, array in scalars.items()}
     for name, text, meaning in (
         ("status", status, "state of the case"),
         ("message", message, "why the case is not ok"),
@@ -206,8 +204,15 @@ def _lazy(paths: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtype: np.
     """Dask array of a variable over all cases, one chunk per case."""
     cases = da.from_array(paths.astype(object), chunks=1)
     result: da.Array = da.map_blocks(
-        _load_block, cases, name, shape, dtype, dtype=dtype, new_axis=list(range(paths.ndim, paths.ndim + len(shape))),
-        chunks=(*cases.chunks, *((size,) for size in shape)), meta=np.empty((0,) * (paths.ndim + len(shape)), dtype),
+        _load_block,
+        cases,
+        name,
+        shape,
+        dtype,
+        dtype=dtype,
+        new_axis=list(range(paths.ndim, paths.ndim + len(shape))),
+        chunks=(*cases.chunks, *((size,) for size in shape)),
+        meta=np.empty((0,) * (paths.ndim + len(shape)), dtype),
     )
     return result
 

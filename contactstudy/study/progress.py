@@ -86,7 +86,9 @@ class Progress:
             from tqdm import tqdm
 
             self._bar = tqdm(
-                total=len(jobs), unit="case", dynamic_ncols=True,
+                total=len(jobs),
+                unit="case",
+                dynamic_ncols=True,
                 bar_format="{percentage:3.0f}%|{bar}| {n_fmt}/{total_fmt} cases [{elapsed}{postfix}]",
             )
 
@@ -98,8 +100,10 @@ class Progress:
         remaining = (time.monotonic() - self._began) * self._left / done if done > 0 else 0.0
         left = f"about {duration(remaining)} left" if self._count < self._total else "all done"
         detail = f": {record.error}: {record.message}" if record.error else ""
-        self.say(f"{self._count}/{self._total} {record.status} {job.id[:16]} {job.name} "
-                 f"{record.seconds:.2f} s, {left}{detail}")
+        self.say(
+            f"{self._count}/{self._total} {record.status} {job.id[:16]} {job.name} "
+            f"{record.seconds:.2f} s, {left}{detail}"
+        )
         if self._bar is not None:
             self._bar.set_postfix_str(left, refresh=False)
             self._bar.update()

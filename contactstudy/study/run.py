@@ -12,7 +12,7 @@ from pathlib import Path
 from types import FrameType
 
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import StudyFileError
+from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.executor import execute
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lock import locked
@@ -97,8 +97,9 @@ def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str
     for case in plan.unique:
         entry, _ = folder.state(case.id, plan.level)
         if entry.status == "missing" or (entry.status == "stale" and not entry.usable) or entry.status in again:
-            jobs.append(Job(case.id, case.name, case.parameters, str(folder.path), plan.level, case.operator,
-                            case.cost, found))
+            jobs.append(
+                Job(case.id, case.name, case.parameters, str(folder.path), plan.level, case.operator, case.cost, found)
+            )
     return jobs
 
 
@@ -183,7 +184,8 @@ def run_study(
             log.say(f"stopped: {type(error).__name__}: {error}")
             raise
         finally:
-            with _uninterrupted():
+            # The manifest is a cache: a disk that cannot take it must not hide why the run ended.
+            with _uninterrupted(), contextlib.suppress(StoreError):
                 place.clean()
                 place.save_manifest()
         report = RunReport(place.path, plan, place.entries(plan), len(jobs))

@@ -10,6 +10,7 @@ import contextlib
 import json
 import os
 import re
+import shutil
 import socket
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -26,6 +27,8 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
 
 NETCDF_LOCK = RLock()
+ALMOST_FULL = 2**20
+"""Bytes left on a disk below which a failed write is put down to that."""
 PART = re.compile(r"(?P<name>.+)\.part-(?P<host>.+)-(?P<pid>\d+)")
 CASE_ATTRIBUTE = "contactstudy_case"
 ID_ATTRIBUTE = "contactstudy_case_id"
@@ -60,7 +63,9 @@ def _netcdf(path: Path, doing: str) -> Iterator[None]:
         with NETCDF_LOCK, dask.config.set(scheduler="synchronous"):
             yield
     except (OSError, RuntimeError, ValueError, KeyError, IndexError, AttributeError) as error:
-        raise StoreError(f"cannot {doing} {path}: {error}") from error
+        # The netCDF library does not say so itself.
+        full = doing == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
+        raise StoreError(f"cannot {doing} {path}: {'the disk is full; ' if full else ''}{error}") from error
 
 
 def write_atomically(path: Path, write: Any) -> None:
@@ -102,7 +107,8 @@ def kept_variables(dataset: xr.Dataset, level: str) -> list[str]:
 def _attributes(attributes: Mapping[Any, Any]) -> dict[str, Any]:
     """Attributes that netCDF can hold; others as JSON."""
     return {
-        str(name): value if isinstance(value, (str, int, float, np.number)) and not isinstance(value, bool)
+        str(name): value
+        if isinstance(value, (str, int, float, np.number)) and not isinstance(value, bool)
         else json.dumps(value, default=str)
         for name, value in attributes.items()
     }
@@ -144,8 +150,12 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
         depth = any(str(dim).startswith("z") for dim in variable.dims)
         if variable.ndim >= 2:
             encoding[str(name)] = {
-                "zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True,
-                "dtype": "float32" if depth else "float64", "_FillValue": np.nan,
+                "zlib": True,
+                "complevel": 1,
+                "shuffle": True,
+                "fletcher32": True,
+                "dtype": "float32" if depth else "float64",
+                "_FillValue": np.nan,
                 "chunksizes": variable.shape,
             }
         elif variable.dtype.kind == "f":

@@ -91,7 +91,10 @@ def circumstances() -> dict[str, Any]:
         subprocess.run(tracked, capture_output=True, check=True, timeout=10)
         commit = subprocess.run(
             ["git", "-C", str(here.parent), "describe", "--always", "--dirty", "--abbrev=40"],
-            capture_output=True, check=True, timeout=10, text=True,
+            capture_output=True,
+            check=True,
+            timeout=10,
+            text=True,
         )
         found["commit"] = commit.stdout.strip()
     except (OSError, subprocess.SubprocessError):
@@ -151,8 +154,13 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
             warnings.simplefilter("always")
             setup = build_setup(job.parameters)
             dataset = (solver or default_solver())(
-                setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z,
-                stresses=setup.stresses, tolerance=setup.tolerance,
+                setup.case,
+                setup.grid,
+                x=setup.x,
+                y=setup.y,
+                z=setup.z,
+                stresses=setup.stresses,
+                tolerance=setup.tolerance,
             )
             scalars = summarize(dataset)
     except StoreError:

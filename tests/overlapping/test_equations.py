@@ -12,7 +12,7 @@ from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.displacement import build_end_correction
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import end_stress
+from contactstudy.overlapping.stress import EndProblem, end_stress
 
 
 @pytest.mark.parametrize("lateral", [0.3, 2.0, 20.0])
@@ -49,7 +49,7 @@ def test_no_internal_setting_matters() -> None:
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
 
     def stress(resolution: Resolution) -> np.ndarray:
-        return end_stress(8.0, 0.3, pressure, 0.3, grid, *points, resolution)
+        return end_stress(EndProblem(8.0, 0.3, pressure, grid, True, resolution), *points)
 
     usual = stress(Resolution())
     finer = {

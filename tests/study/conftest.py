@@ -53,7 +53,11 @@ def start_run(study: Path, folder: Path, *more: str, seconds: float = 0.2) -> su
 
     return subprocess.Popen(
         [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure", *more],
-        cwd=ROOT, start_new_session=True, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        cwd=ROOT,
+        start_new_session=True,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
         env=os.environ | {"CONTACTSTUDY_TEST_SECONDS": str(seconds)},
     )
 

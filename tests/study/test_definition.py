@@ -33,8 +33,11 @@ def test_json_round_trip():
     study = small_study(
         zip=[{"max_pressure": [1e9, 2e9], "poisson": [0.2, 0.3]}],
         exclude=[{"profile": "sharp"}, {"friction": 0.1, "e_over_a": [0]}],
-        sweep={"e_over_a": np.array([0, 1]), "profile": [{"kind": "cylinder", "name": "sharp"}, "cylinder"],
-               "friction": (0.0, 0.1)},
+        sweep={
+            "e_over_a": np.array([0, 1]),
+            "profile": [{"kind": "cylinder", "name": "sharp"}, "cylinder"],
+            "friction": (0.0, 0.1),
+        },
     )
     again = Study.from_mapping(json.loads(study.to_json()))
     assert again.to_json() == study.to_json()

@@ -3,7 +3,9 @@ from contactstudy.study.work import Job
 
 
 def jobs(*groups):
-    return [Job(f"{name}{number}", "", {}, "", "summary", operator=name) for name, size in groups for number in range(size)]
+    return [
+        Job(f"{name}{number}", "", {}, "", "summary", operator=name) for name, size in groups for number in range(size)
+    ]
 
 
 def test_groups_stay_together_and_in_order():

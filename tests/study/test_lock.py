@@ -18,8 +18,13 @@ def test_a_second_holder_is_refused_and_told_who(tmp_path):
 
 
 def holder(**changes):
-    return {"process": os.getpid(), "host": socket.gethostname(), "time": "then", "token": "other",
-            "process_start": _started(os.getpid())} | changes
+    return {
+        "process": os.getpid(),
+        "host": socket.gethostname(),
+        "time": "then",
+        "token": "other",
+        "process_start": _started(os.getpid()),
+    } | changes
 
 
 def dead_process():

@@ -13,8 +13,10 @@ PROFILES = [{"name": "sharp", "kind": "cylinder"}, {"name": "crowned", "kind": "
 
 @pytest.fixture
 def opened(tmp_path):
-    study = small_study(sweep={"e_over_a": [0, 1, -9], "friction": [0, FAILS], "profile": PROFILES},
-                        exclude=[{"e_over_a": 1, "friction": FAILS, "profile": "sharp"}])
+    study = small_study(
+        sweep={"e_over_a": [0, 1, -9], "friction": [0, FAILS], "profile": PROFILES},
+        exclude=[{"e_over_a": 1, "friction": FAILS, "profile": "sharp"}],
+    )
     run_study(study, tmp_path, workers=0, solver=solve_fake)
     return open_study(tmp_path)
 
@@ -74,7 +76,8 @@ def test_a_study_without_a_sweep(tmp_path):
 
 def test_a_swept_load_is_not_doubled(tmp_path):
     base = {key: value for key, value in BASE.items() if key != "max_pressure"}
-    run_study(small_study(base=base, sweep={"load": [50, 100], "e_over_a": [0]}), tmp_path, workers=0, solver=solve_fake)
+    study = small_study(base=base, sweep={"load": [50, 100], "e_over_a": [0]})
+    run_study(study, tmp_path, workers=0, solver=solve_fake)
     opened = open_study(tmp_path)
     assert opened["load"].values.tolist() == [50, 100]
 

@@ -1,13 +1,14 @@
 import json
 import os
 import shutil
+import subprocess
 
 import numpy as np
 import pytest
 
 from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study
 from contactstudy.study.folder import Folder
-from contactstudy.study.store import load_case
+from contactstudy.study.store import load_case, read_header
 from tests.study.conftest import identity, small_study
 from tests.study.fakes import DIES, FAILS, IS_WRONG, solve_fake
 
@@ -135,10 +136,38 @@ def test_a_folder_that_cannot_be_made(study, tmp_path):
 def test_a_folder_without_permission(study, tmp_path):
     tmp_path.chmod(0o500)
     try:
-        with pytest.raises(StoreError, match="[Pp]ermission"):
+        with pytest.raises(StoreError, match=r"[Pp]ermission"):
             run(study, tmp_path / "new")
     finally:
         tmp_path.chmod(0o700)
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of its own, too small for a study."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=1200k", "tmpfs", str(place)]
+    if shutil.which("mount") is None or subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("needs the right to mount a file system")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+@pytest.mark.parametrize("workers", [0, 1])
+def test_a_full_disk(small_disk, study, workers):
+    rest = small_disk / "other.bin"
+    rest.write_bytes(bytes(1_060_000))
+    with pytest.raises(StoreError, match=r"disk is full|No space"):
+        run(study, small_disk / "out", workers=workers)
+    assert not list(small_disk.glob("**/*.part-*"))
+    assert not (small_disk / "out" / "run.lock").exists()
+    done = list((small_disk / "out" / "cases").glob("*.nc"))
+    for path in done:
+        read_header(path, verify=True)
+    rest.unlink()
+    report = run(study, small_disk / "out")
+    assert (report.counts, report.solved) == ({"ok": 4}, 4 - len(done))
 
 
 def test_results_do_not_depend_on_workers(study, tmp_path):
@@ -151,7 +180,8 @@ def test_results_do_not_depend_on_workers(study, tmp_path):
 
 
 def test_a_worker_that_dies_costs_its_case_only(tmp_path):
-    study = small_study(sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": [0, 2], "friction": DIES}])
+    sweep = {"e_over_a": [0, 1, 2], "friction": [0, DIES]}
+    study = small_study(sweep=sweep, exclude=[{"e_over_a": [0, 2], "friction": DIES}])
     report = run(study, tmp_path, workers=2)
     assert report.counts == {"ok": 3, "failed": 1}
     assert report.failures[0][0].name == "e_over_a=1 friction=0.77"

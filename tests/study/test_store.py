@@ -59,9 +59,14 @@ def test_every_variable_says_what_it_is(case_file):
     assert stored.attrs["Conventions"].startswith("CF-")
 
 
-@pytest.mark.parametrize(("level", "kept", "dropped"), [
-    ("summary", "peak_pressure", "pressure"), ("surface", "pressure", "von_mises"), ("fields", "von_mises", None),
-])
+@pytest.mark.parametrize(
+    ("level", "kept", "dropped"),
+    [
+        ("summary", "peak_pressure", "pressure"),
+        ("surface", "pressure", "von_mises"),
+        ("fields", "von_mises", None),
+    ],
+)
 def test_levels(tmp_path, level, kept, dropped):
     run_study(small_study(level=level), tmp_path, workers=0, solver=solve_fake)
     stored = load_case(Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1)))
