@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from contactstudy import profiles
+    from contactstudy import plots, profiles
     from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
@@ -25,6 +25,11 @@ if TYPE_CHECKING:
     from contactstudy.roller import Roller
     from contactstudy.solve import solve
     from contactstudy.stress import stress_field
+    from contactstudy.study.definition import Study
+    from contactstudy.study.errors import LockedError, StoreError, StudyFileError
+    from contactstudy.study.opened import open_study
+    from contactstudy.study.run import run_study
+    from contactstudy.summary import summarize
     from contactstudy.surface import surface_displacement
 
 _HOME = {
@@ -36,15 +41,23 @@ _HOME = {
     "Grid": "grid",
     "HalfSpace": "bodies",
     "InvalidInputError": "errors",
+    "LockedError": "study.errors",
     "Material": "material",
     "QuarterSpace": "bodies",
     "Roller": "roller",
+    "StoreError": "study.errors",
+    "Study": "study.definition",
+    "StudyFileError": "study.errors",
     "WindowError": "errors",
     "choose_grid": "case",
+    "open_study": "study.opened",
+    "plots": "",
     "profiles": "",
+    "run_study": "study.run",
     "solve": "solve",
     "solve_contact": "contact",
     "stress_field": "stress",
+    "summarize": "summary",
     "surface_displacement": "surface",
     "von_mises": "invariants",
 }
@@ -58,15 +71,23 @@ __all__ = [
     "Grid",
     "HalfSpace",
     "InvalidInputError",
+    "LockedError",
     "Material",
     "QuarterSpace",
     "Roller",
+    "StoreError",
+    "Study",
+    "StudyFileError",
     "WindowError",
     "choose_grid",
+    "open_study",
+    "plots",
     "profiles",
+    "run_study",
     "solve",
     "solve_contact",
     "stress_field",
+    "summarize",
     "surface_displacement",
     "von_mises",
 ]

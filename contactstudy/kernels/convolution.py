@@ -46,7 +46,8 @@ class GridTransform:
         self.cells_x, self.cells_y, self.mirrored = cells_x, cells_y, mirrored
         self._real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
         self._lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
-        options = {"threads": threads, "flags": ("FFTW_MEASURE",)}
+        # A plan that was measured differs from run to run, and its last bits with it.
+        options = {"threads": threads, "flags": ("FFTW_ESTIMATE",)}
         # Only rows that hold cells are transformed along y; the padding rows stay zero.
         rows = slice(0, cells_x)
         self._to_lateral = pyfftw.FFTW(self._real[rows], self._lateral[rows], axes=(1,), **options)
