@@ -52,9 +52,5 @@ class WindowError(ContactStudyError):
     """The contact reaches the edge of the window in y, so the window is too narrow for the load."""
 
 
-class LoadError(ContactStudyError):
-    """The load cannot be carried by the cells that may come into contact."""
-
-
 class ConvergenceWarning(UserWarning):
     """The contact iteration stopped before its tolerance; the result says ``converged = False``."""

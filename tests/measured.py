@@ -5,21 +5,37 @@ Run ``python -m tests.measured`` in an environment with the development extra.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 
-from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, solve_contact, stress_field
+from contactstudy import (
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    Material,
+    QuarterSpace,
+    Study,
+    solve,
+    solve_contact,
+    stress_field,
+)
 from contactstudy.dataset import STRESSES
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.displacement import build_end_correction
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import end_traction_residual
+from contactstudy.study.setup import build_setup
+from contactstudy.surface import surface_operator
 from tests import finite_elements
 from tests import references as ref
 
+T = TypeVar("T")
 LINE_LOAD = 0.5 * np.pi
 MATERIAL = Material(1 - 0.3**2, 0.3)
 
@@ -147,10 +163,37 @@ def limits() -> Iterator[tuple[str, str]]:
     yield "Hetenyi's alternation, 200 rounds, against the explicit solution", f"{error:.0e}"
 
 
+def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
+    """Seconds of the parts of one case of ``studies/edge_effect.toml``, on one core."""
+    plan = Study.from_toml(Path(__file__).parents[1] / "studies" / "edge_effect.toml").plan()
+    setup = build_setup(next(c.parameters for c in plan.cases if c.parameters.get("e_over_a") == 1.0))
+    case, grid = setup.case, setup.grid
+
+    def timed(work: Callable[[], T]) -> tuple[float, T]:
+        began = time.perf_counter()
+        found = work()
+        return time.perf_counter() - began, found
+
+    yield (
+        f"grid of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
+        f"{grid.shape[0]} x {grid.shape[1]} cells",
+    )
+    seconds, _ = timed(lambda: surface_operator(case.body, grid, tangential=False))
+    yield "building the operator", f"{seconds:.1f} s"
+    seconds, result = timed(lambda: solve(case, grid, stresses=False))
+    yield "contact, and the traction left on the ends", f"{seconds:.1f} s"
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.0, setup.x, setup.y, setup.z))
+    yield f"six stresses at {len(setup.x)} x {len(setup.y)} x {len(setup.z)} points", f"{seconds:.1f} s"
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.1, setup.x, setup.y, setup.z))
+    yield "... with friction, the first time", f"{seconds:.1f} s"
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.2, setup.x, setup.y, setup.z))
+    yield "... with any further friction", f"{seconds:.2f} s"
+
+
 def main() -> None:
     """Print the table."""
     print("| quantity | measured |\n|---|---|")
-    for part in (half_space, free_ends, limits):
+    for part in (half_space, free_ends, limits, parts_of_the_main_job):
         for quantity, value in part():
             print(f"| {quantity} | {value} |", flush=True)
 
