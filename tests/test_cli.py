@@ -46,7 +46,7 @@ def test_run_without_figure_elsewhere(study_file, tmp_path, capsys):
 def test_failures_give_code_1_and_are_named(study_file, capsys):
     study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1], "friction": [0, FAILS]})))
     assert run(study_file) == 1
-    assert "failed: e_over_a=0 friction=0.66: LoadError: this friction fails" in capsys.readouterr().out
+    assert "failed: e_over_a=0 friction=0.66: WindowError: this friction fails" in capsys.readouterr().out
     assert command("status", "results/small") == 1
     assert command("rerun", "results/small", "--workers", 0) == 1
 

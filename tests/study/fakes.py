@@ -14,7 +14,7 @@ import xarray as xr
 
 from contactstudy.case import Case
 from contactstudy.dataset import STRESSES, describe
-from contactstudy.errors import LoadError
+from contactstudy.errors import WindowError
 from contactstudy.grid import Grid
 
 FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
@@ -23,7 +23,7 @@ FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
 
 def solve_fake(case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float) -> xr.Dataset:
     if case.friction == FAILS:
-        raise LoadError("this friction fails in tests")
+        raise WindowError("this friction fails in tests")
     if case.friction == DIES:
         os.kill(os.getpid(), signal.SIGKILL)
     if case.friction == IS_WRONG:

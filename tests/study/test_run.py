@@ -41,7 +41,7 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     report = run(study, tmp_path)
     assert report.counts == {"failed": 2, "ok": 2}
-    assert report.failures[0][1].reason == "LoadError: this friction fails in tests"
+    assert report.failures[0][1].reason == "WindowError: this friction fails in tests"
     assert run(study, tmp_path).solved == 0
     assert "this friction fails" in (tmp_path / "run.log").read_text()
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
