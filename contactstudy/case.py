@@ -68,6 +68,13 @@ class Case:
         object.__setattr__(self, "friction", checks.finite("friction", self.friction))
         if self.end_distance is not None:
             object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
+        if self.end_distance is None and self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
+            raise InvalidInputError(
+                "roller.length",
+                self.roller.length,
+                f"at most the body's length, {extent:g} m",
+                "give end_distance (negative) if the roller is to overhang",
+            )
         start, stop = self.contact_range
         if not start < stop:
             raise InvalidInputError(
