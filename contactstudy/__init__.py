@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
+    from contactstudy.equivalent import equivalent_loads
     from contactstudy.errors import (
         ContactStudyError,
         ConvergenceWarning,
@@ -50,6 +51,7 @@ _HOME = {
     "StudyFileError": "study.errors",
     "WindowError": "errors",
     "choose_grid": "case",
+    "equivalent_loads": "equivalent",
     "open_study": "study.opened",
     "plots": "",
     "profiles": "",
@@ -80,6 +82,7 @@ __all__ = [
     "StudyFileError",
     "WindowError",
     "choose_grid",
+    "equivalent_loads",
     "open_study",
     "plots",
     "profiles",

@@ -18,8 +18,9 @@ from contactstudy.grid import Grid
 from contactstudy.invariants import von_mises
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.labelled import labelled_cells
+from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import EndProblem, end_stress
+from contactstudy.overlapping.stress import end_stress
 from contactstudy.surface import check_span
 
 Positions = Sequence[float] | npt.ArrayLike

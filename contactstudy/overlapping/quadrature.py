@@ -106,8 +106,8 @@ def graded_then_uniform_edges(first: float, width: float, last: float) -> FloatA
 def lateral_nodes(first: float, reach: float, last: float, resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights of an integral over the wavenumber along y, from 0 to `last`.
 
-    Panels double from `first` until they are as wide as the phase over the distance `reach` lets the Gauss nodes
-    follow, then go on uniformly.
+    Panels grow from `first`, then go on uniformly, as wide as the phase over the distance `reach` lets the Gauss
+    nodes follow.
 
     Examples
     --------
@@ -116,10 +116,10 @@ def lateral_nodes(first: float, reach: float, last: float, resolution: Resolutio
     1.0
     """
     width = 1.8 * resolution.lateral_order / reach
-    edges = [0.0, first]
-    while 2 * edges[-1] <= width and edges[-1] < last:
-        edges.append(2 * edges[-1])
-    graded = panel_nodes(np.array(edges), resolution.order)
+    # The uniform panels begin where a quarter of one is behind them: near enough to 0 for their order.
+    edges = growing_edges(first, max(first, 0.25 * width), resolution.ratio)
+    edges = np.append(edges[edges < 0.25 * width], max(first, 0.25 * width))
+    graded = panel_nodes(edges, resolution.order)
     panels = max(0, int(np.ceil((last - edges[-1]) / width - 1e-12)))
     uniform = panel_nodes(np.linspace(edges[-1], edges[-1] + width * panels, panels + 1), resolution.lateral_order)
     return np.concatenate([graded[0], uniform[0]]), np.concatenate([graded[1], uniform[1]])

@@ -7,97 +7,28 @@ rays, where every factor decays with the distance from the loaded corner; the st
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from contactstudy.checks import FloatArray
-from contactstudy.grid import Grid
-from contactstudy.overlapping.axial import DECAY_LENGTHS, AxialModes, axial_modes
+from contactstudy.overlapping.axial import DECAY_LENGTHS, axial_modes
 from contactstudy.overlapping.equations import EquationSet, slab_factors
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
-from contactstudy.overlapping.quadrature import (
-    ComplexArray,
-    Resolution,
-    lateral_nodes,
+from contactstudy.overlapping.problem import (
+    EndProblem,
+    LateralAmplitudes,
+    View,
+    lateral_amplitudes,
+    lateral_quadrature,
+    lateral_synthesis,
+    views_of,
 )
+from contactstudy.overlapping.quadrature import ComplexArray, Resolution
 from contactstudy.threads import one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
-BATCH = 24
-# Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
-# there, of which only the sum is finite.
-CORNER_OFFSET = 1e-2
+BATCH = 16
 # Order of the components: xx, yy, zz, xy, xz, yz.
 EVEN_IN_Y, ODD_IN_Y = [0, 1, 2, 4], [3, 5]
-
-
-@dataclass(frozen=True, eq=False)
-class LateralAmplitudes:
-    """Top loads as amplitudes along x for each wavenumber along y.
-
-    Attributes
-    ----------
-    pressure, traction : array (cell, q, column)
-        Amplitudes. The first two columns are a pressure, whose part in one column makes stresses that are even in
-        y follow ``cos(k_y y)`` and in the other ``sin(k_y y)``; two more, if there, are an equal traction along y.
-    """
-
-    pressure: FloatArray
-    traction: FloatArray
-
-
-def lateral_amplitudes(
-    pressure: FloatArray, grid: Grid, wavenumbers: FloatArray, *, tangential: bool
-) -> LateralAmplitudes:
-    """Amplitudes of cell-wise uniform `pressure` (x, y) and, if asked, of an equal traction."""
-    width = grid.dy * np.sinc(wavenumbers * grid.dy / (2 * np.pi))
-    cosine = pressure @ (np.cos(np.outer(grid.y, wavenumbers)) * width)
-    sine = pressure @ (np.sin(np.outer(grid.y, wavenumbers)) * width)
-    none = np.zeros_like(cosine)
-    if not tangential:
-        return LateralAmplitudes(np.stack([cosine, sine], axis=-1), np.stack([none, none], axis=-1))
-    # Kernels of a traction carry a factor i against those of a pressure, which turns cosine into sine.
-    return LateralAmplitudes(
-        np.stack([cosine, sine, none, none], axis=-1), np.stack([none, none, sine, -cosine], axis=-1)
-    )
-
-
-@dataclass(frozen=True, eq=False)
-class EndProblem:
-    """A pressure on a body with one end or two, and perhaps an equal traction beside it.
-
-    Attributes
-    ----------
-    length : float
-        Distance between the ends, metres; infinite for one end.
-    poisson : float
-        Poisson's ratio.
-    pressure : array (cell_x, cell_y)
-        Pressure on the cells of `grid`, Pa.
-    grid : Grid
-        Cells, from ``x = 0``.
-    tangential : bool
-        Whether the stresses under a traction along +y, equal to the pressure, are wanted as well.
-    resolution : Resolution
-        Quadrature settings.
-    """
-
-    length: float
-    poisson: float
-    pressure: FloatArray
-    grid: Grid
-    tangential: bool
-    resolution: Resolution
-
-    @property
-    def corner_offset(self) -> float:
-        """Distance from the corner below which nothing is evaluated, metres."""
-        return CORNER_OFFSET * min(self.grid.dx, self.grid.dy)
-
-    def from_end(self, x: FloatArray) -> FloatArray:
-        """Distance of positions from the nearest end."""
-        return np.minimum(x, self.length - x)
 
 
 def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
@@ -132,22 +63,13 @@ def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray)
 
 
 def _away_from_corner(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    grid, resolution = problem.grid, problem.resolution
     distance = np.hypot(problem.from_end(x)[:, None], z[None, :])
     shortest = max(float(distance.min()), problem.corner_offset)
-    loaded = np.abs(grid.y[problem.pressure.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
-    reach = loaded + np.abs(y).max()
-    lateral, weights = lateral_nodes(
-        1e-2 / min(problem.length, 4 * max(grid.x_range[1], reach)),
-        reach,
-        # Along y the load is known to the cell only; finer than half a cell there is nothing to resolve.
-        resolution.lateral_reach / max(shortest, 0.5 * min(grid.dx, grid.dy)),
-        resolution,
-    )
+    lateral, weights = lateral_quadrature(problem, y, shortest)
     lateral, weights = (values[lateral * distance.min() < DECAY_LENGTHS] for values in (lateral, weights))
-    loads = lateral_amplitudes(problem.pressure, grid, lateral, tangential=problem.tangential)
-    cosine, sine = (function(np.outer(lateral, y)) * (weights / np.pi)[:, None] for function in (np.cos, np.sin))
-    syntheses = ((EVEN_IN_Y, np.stack([cosine, sine], axis=1)), (ODD_IN_Y, np.stack([-sine, cosine], axis=1)))
+    loads = lateral_amplitudes(problem.pressure, problem.grid, lateral, tangential=problem.tangential)
+    even, odd = lateral_synthesis(lateral, weights, y)
+    syntheses = ((EVEN_IN_Y, even), (ODD_IN_Y, odd))
     result = np.zeros((1 + problem.tangential, 6, x.size, z.size, y.size))
     for start in range(0, lateral.size, BATCH):
         batch = slice(start, min(start + BATCH, lateral.size))
@@ -177,7 +99,7 @@ def _batch_amplitudes(
     views = [
         view
         for modes in axial_modes(problem.length, float(lateral[0]), shortest, resolution)
-        for view in _views(modes, problem, loads, batch, x)
+        for view in views_of(modes, problem, loads, batch, x)
     ]
     amplitudes = np.zeros((6, x.size, z.size, lateral.size, loads.pressure.shape[-1]))
     for number, wavenumber in enumerate(lateral):
@@ -185,44 +107,13 @@ def _batch_amplitudes(
         for view in views:
             if system is None or system.modes is not view.modes:
                 system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
-            amplitudes[..., number, :] += _harmonic_stress(system, view, number, z, shortest, resolution)
+            here = amplitudes[..., number, :]
+            here[:, view.rows] += _harmonic_stress(system, view, number, z, shortest, resolution)
     return amplitudes
 
 
-@dataclass(frozen=True, eq=False)
-class _View:
-    """Loads and points as one set of axial modes sees them; from end II when `flipped`."""
-
-    modes: AxialModes
-    pressure: ComplexArray
-    traction: ComplexArray
-    x: FloatArray
-    cosine: ComplexArray
-    sine: ComplexArray
-    flipped: bool
-
-
-def _views(
-    modes: AxialModes, problem: EndProblem, loads: LateralAmplitudes, batch: slice, x: FloatArray
-) -> list[_View]:
-    grid, length = problem.grid, problem.length
-    edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
-    integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
-    # Ends that know nothing of each other are two quarter spaces, the second seen from its own end.
-    sides = (False, True) if np.isfinite(length) and not modes.parity else (False,)
-    views = []
-    for flipped in sides:
-        facing = integrals[:, ::-1] if flipped else integrals
-        pressure = np.tensordot(facing, loads.pressure[:, batch], axes=1)
-        traction = np.tensordot(facing, loads.traction[:, batch], axes=1)
-        distance = length - x if flipped else x
-        cosine, sine = modes.cosine(distance), modes.sine(distance)
-        views.append(_View(modes, pressure, traction, distance, cosine, sine, flipped))
-    return views
-
-
 def _harmonic_stress(
-    system: EquationSet, view: _View, number: int, z: FloatArray, shortest: float, resolution: Resolution
+    system: EquationSet, view: View, number: int, z: FloatArray, shortest: float, resolution: Resolution
 ) -> FloatArray:
     """Amplitudes of the six stresses for the batch's wavenumber `number`: array (6, x, z, column)."""
     pressure, traction = view.pressure[:, number], view.traction[:, number]

@@ -11,8 +11,9 @@ from contactstudy import Grid, Material
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.displacement import build_end_correction
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import EndProblem, end_stress
+from contactstudy.overlapping.stress import end_stress
 
 
 @pytest.mark.parametrize("lateral", [0.3, 2.0, 20.0])

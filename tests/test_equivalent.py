@@ -1,0 +1,40 @@
+"""Equivalent loads: what they must do, checked in real space without the equation set."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, QuarterSpace, equivalent_loads
+from contactstudy.kernels.stress import half_space_stress
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.3])
+def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
+    short_body: FiniteLengthSpace, strip_pressure, friction: float
+) -> None:
+    pressure = strip_pressure(8.0, (96, 64))
+    depths = np.array([0.2, 0.5, 1.0, 3.0])
+    loads = equivalent_loads(short_body, pressure, friction, z=depths)
+    grid = Grid.from_centres(pressure.x.values, pressure.y.values)
+    y = grid.y[[10, 28, 33, 50]]
+
+    def on_ends(load: np.ndarray, tangential: bool) -> np.ndarray:
+        return half_space_stress(
+            load, 0.3, grid, np.array([0.0, 8.0]), y, depths, extent=(0.0, 8.0), tangential=tangential
+        )[int(tangential), 0]
+
+    left = on_ends(loads["P_h1"].values, False) + friction * on_ends(pressure.values, True)
+    # The top load is known on cells here, and within the window only.
+    assert np.abs(left[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
+    assert np.abs(left[1] - loads["P_v2"].sel(y=y)).max() < 2e-2
+    assert float(np.abs(loads["P_v1"]).max()) > 0.5
+
+
+def test_quarter_space_has_one_end_and_a_half_space_none(half_space: HalfSpace, strip_pressure) -> None:
+    pressure = strip_pressure(8.0, (32, 32))
+    loads = equivalent_loads(QuarterSpace(material=half_space.material), pressure, z=[0.5])
+    assert "P_v2" not in loads
+    assert loads["P_h1"].attrs["long_name"].endswith("P_h1")
+    with pytest.raises(InvalidInputError, match="a body with a free end"):
+        equivalent_loads(half_space, pressure)
