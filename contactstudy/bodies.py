@@ -7,11 +7,35 @@ body from its loaded top ``z = 0``. No body has a boundary in y or at depth.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.material import Material
+
+Extent = tuple[float, float]
+
+
+class Part(NamedTuple):
+    """One of the solutions whose weighted sum is a body's: a half-space with the load mirrored in its ends.
+
+    Attributes
+    ----------
+    weight : float
+        Its share.
+    extent : tuple of float
+        Where the mirrors stand; infinite for none.
+    freed : bool
+        Whether the normal stress that mirroring leaves on the ends is removed as well.
+    """
+
+    weight: float
+    extent: Extent
+    freed: bool
+
+
+WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -31,9 +55,14 @@ class Body:
         checks.instance("material", self.material, Material, "a Material")
 
     @property
-    def extent(self) -> tuple[float, float]:
+    def extent(self) -> Extent:
         """Smallest and largest x inside the body, metres (infinite where it has no end)."""
-        return (-np.inf, np.inf)
+        return WHOLE_LINE
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Solutions whose weighted sum is this body's."""
+        return (Part(1.0, self.extent, False),)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,9 +76,62 @@ class HalfSpace(Body):
     """
 
 
+MODELS = ("exact", "mirror", "mirror-factor")
+
+
 @dataclass(frozen=True, kw_only=True)
-class QuarterSpace(Body):
+class EndedBody(Body):
+    """A body with free ends; use one of its kinds.
+
+    Parameters
+    ----------
+    model : str
+        How the ends are treated. "exact" frees them. The others are quick fixes in use, for comparison: "mirror"
+        mirrors the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
+        `guilbault_factor` to make up for it.
+    """
+
+    model: str = "exact"
+
+    def __post_init__(self) -> None:
+        """Check material and model."""
+        super().__post_init__()
+        checks.instance("model", self.model, str, "a name")
+        checks.known_name("model", self.model, MODELS)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Solutions whose weighted sum is this body's."""
+        if self.model == "mirror-factor":
+            factor = guilbault_factor(self.material.poisson)
+            return (Part(factor, self.extent, False), Part(1 - factor, WHOLE_LINE, False))
+        return (Part(1.0, self.extent, self.model == "exact"),)
+
+
+def guilbault_factor(poisson: float) -> float:
+    """Guilbault's factor on mirrored loads, ``1.29 - (0.08 - 0.5 nu) / (1 - nu)``.
+
+    Quoted second-hand from R. Guilbault, A fast correction for elastic quarter-space applied to 3D modeling of edge
+    contact problems, J. Tribology 133 (2011) 031402; compare with the exact ends before relying on it.
+
+    Examples
+    --------
+    >>> round(guilbault_factor(0.3), 3)
+    1.39
+    """
+    return 1.29 - (0.08 - 0.5 * poisson) / (1 - poisson)
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuarterSpace(EndedBody):
     """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
+
+    Parameters
+    ----------
+    material : Material
+        What the body is made of.
+    model : str
+        How the end is treated, see `EndedBody`; "exact" unless a comparison is wanted.
 
     Examples
     --------
@@ -58,13 +140,13 @@ class QuarterSpace(Body):
     """
 
     @property
-    def extent(self) -> tuple[float, float]:
+    def extent(self) -> Extent:
         """Smallest and largest x inside the body, metres."""
         return (0.0, np.inf)
 
 
 @dataclass(frozen=True, kw_only=True)
-class FiniteLengthSpace(Body):
+class FiniteLengthSpace(EndedBody):
     """Elastic body ``0 <= x <= length``, ``z >= 0`` with free end faces I at ``x = 0`` and II at ``x = length``.
 
     Parameters
@@ -73,11 +155,13 @@ class FiniteLengthSpace(Body):
         Distance between the free ends (``L_f``), metres.
     material : Material
         What the body is made of.
+    model : str
+        How the ends are treated, see `EndedBody`; "exact" unless a comparison is wanted.
 
     Raises
     ------
     InvalidInputError
-        If the length is not a positive number.
+        If the length is not a positive number, or the model is unknown.
 
     Examples
     --------
@@ -93,6 +177,6 @@ class FiniteLengthSpace(Body):
         object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
 
     @property
-    def extent(self) -> tuple[float, float]:
+    def extent(self) -> Extent:
         """Smallest and largest x inside the body, metres."""
         return (0.0, self.length)

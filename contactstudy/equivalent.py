@@ -53,8 +53,8 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     (True, True)
     """
     checks.instance("body", body, Body, "a QuarterSpace or a FiniteLengthSpace")
-    low, high = body.extent
-    if np.isinf(low):
+    high = body.extent[1]
+    if not any(part.freed for part in body.parts):
         raise InvalidInputError("body", body, "a body with a free end: a half-space needs no equivalent loads")
     values, grid = labelled_cells("pressure", pressure)
     check_span(body, grid)

@@ -116,15 +116,18 @@ def _unit_fields(
 ) -> FloatArray:
     """Stresses (load, 6, x, y, z) under the pressure and, if wanted, under an equal traction along +y."""
     poisson = body.material.poisson
-    fields = half_space_stress(pressure, poisson, grid, x, y, z, extent=body.extent, tangential=tangential)
-    low, high = body.extent
-    if np.isfinite(low) and pressure.any():
-        problem = EndProblem(high, poisson, pressure, grid, tangential, Resolution())
-        from_ends = end_stress(problem, x, y, z)
-        # The two auxiliary bodies leave no traction on the top, by construction.
-        for component in (2, 4, 5):
-            from_ends[:, component][..., z == 0] = 0.0
-        fields += from_ends
+    fields: FloatArray = np.zeros((1 + tangential, 6, x.size, y.size, z.size))
+    for part in body.parts:
+        fields += part.weight * half_space_stress(
+            pressure, poisson, grid, x, y, z, extent=part.extent, tangential=tangential
+        )
+        if part.freed and pressure.any():
+            problem = EndProblem(part.extent[1], poisson, pressure, grid, tangential, Resolution())
+            from_ends = end_stress(problem, x, y, z)
+            # The two auxiliary bodies leave no traction on the top, by construction.
+            for component in (2, 4, 5):
+                from_ends[:, component][..., z == 0] = 0.0
+            fields += part.weight * from_ends
     return fields
 
 
@@ -169,6 +172,8 @@ def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
 
 
 def _impose_free_ends(body: Body, stresses: FloatArray, x: FloatArray) -> None:
-    """Set what is known exactly on the end faces."""
+    """Set what is known exactly on the end faces, unless the body is a comparison model that does not free them."""
+    if not all(part.freed for part in body.parts):
+        return
     for component in (0, 3, 4):
         stresses[component][np.isin(x, body.extent)] = 0.0

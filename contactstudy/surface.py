@@ -9,7 +9,7 @@ import xarray as xr
 from scipy import fft
 
 from contactstudy import checks
-from contactstudy.bodies import Body
+from contactstudy.bodies import Body, Part
 from contactstudy.cache import BoundedCache
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -18,6 +18,7 @@ from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_s
 from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, cell_kernel, mirrored_kernel
 from contactstudy.kernels.patch import normal_displacement_corner, tangential_displacement_corner
 from contactstudy.labelled import labelled_cells
+from contactstudy.material import Material
 from contactstudy.overlapping.displacement import EndCorrection, build_end_correction
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
@@ -48,14 +49,48 @@ class SurfaceOperator:
 
     def __init__(self, body: Body, grid: Grid, *, tangential: bool, resolution: Resolution) -> None:
         check_span(body, grid)
-        self.body, self.grid, self.tangential = body, grid, tangential
-        low, high = body.extent
-        mirrored = np.isfinite(low)
+        self.parts = [
+            (part.weight, PartOperator(body.material, part, grid, tangential=tangential, resolution=resolution))
+            for part in body.parts
+        ]
+
+    def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
+        """Displacement (m) of the cell centres under `pressure` and, if given, `traction` (Pa): array (x, y)."""
+        weight, first = self.parts[0]
+        displacement = weight * first(pressure, traction)
+        for weight, part in self.parts[1:]:
+            displacement += weight * part(pressure, traction)
+        return displacement
+
+    def precondition(self, gap: FloatArray) -> FloatArray:
+        """Roughly the pressure that sinks the cells by `gap`."""
+        return self.parts[0][1].precondition(gap)
+
+    @property
+    def reference(self) -> float:
+        """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
+        return self.parts[0][1].reference
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        return sum(part.nbytes for _, part in self.parts)
+
+
+class PartOperator:
+    """Displacement of a half-space with the load mirrored in its ends, and perhaps of what frees them.
+
+    Parameters are those of `SurfaceOperator`, with one `Part` of the body.
+    """
+
+    def __init__(self, material: Material, part: Part, grid: Grid, *, tangential: bool, resolution: Resolution) -> None:
+        self.extent, self.grid = part.extent, grid
+        low, high = part.extent
+        mirrored = bool(np.isfinite(low))
         padded = grid.cells_x if np.isfinite(high) else 2 * grid.cells_x
-        self._transform = GridTransform(*grid.shape, padded, mirrored=bool(mirrored))
+        self._transform = GridTransform(*grid.shape, padded, mirrored=mirrored)
         x: FloatArray = grid.dx * np.arange(padded + 1.0 if mirrored else grid.cells_x + 1.0)
         y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
-        material = body.material
         factor = (1 - material.poisson) / (2 * np.pi * material.shear_modulus)
         self._normal = factor * self._spectrum(even_spectrum(self._kernel(normal_displacement_corner, x, y)))
         self._shear = np.zeros(0)
@@ -64,7 +99,7 @@ class SurfaceOperator:
             kernel = self._kernel(tangential_displacement_corner, x, y)
             self._shear = factor * self._spectrum(odd_spectrum(kernel))
         self._ends: EndCorrection | None = None
-        if mirrored:
+        if part.freed:
             with one_blas_thread():
                 self._ends = build_end_correction(
                     high, material, grid, reference=self.reference, tangential=tangential, resolution=resolution
@@ -73,12 +108,12 @@ class SurfaceOperator:
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        low, high = self.body.extent
+        low, high = self.extent
         return REFERENCE_LENGTHS * (high - low)
 
     def _kernel(self, corner: CornerFunction, x: FloatArray, y: FloatArray) -> FloatArray:
         grid = self.grid
-        length = self.body.extent[1]
+        length = self.extent[1]
         if np.isinf(length):
             return cell_kernel(corner, x, y, grid.dx, grid.dy)
         kernel = mirrored_kernel(corner, x, y, grid.dx, grid.dy, length)
@@ -90,12 +125,12 @@ class SurfaceOperator:
     def _spectrum(self, lateral: FloatArray) -> FloatArray:
         """Spectrum along x of a kernel even in x, given at offsets from 0 on."""
         spectrum = fft.dct(lateral, type=1, axis=0)
-        if np.isfinite(self.body.extent[0]):
+        if np.isfinite(self.extent[0]):
             return np.asarray(spectrum[:-1])
         return np.concatenate([spectrum, spectrum[-2:0:-1]])
 
     def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
-        """Displacement (m) of the cell centres under `pressure` and, if given, `traction` (Pa): array (x, y)."""
+        """Displacement (m) of the cell centres: array (x, y)."""
         displacement = self._apply(pressure, self._normal, tangential=False)
         if traction is not None:
             displacement += self._apply(traction, self._shear, tangential=True)
