@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import warnings
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.bodies import Body
+from contactstudy.bodies import Body, EndedBody
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.conjugate_gradients import ContactIterate, solve_complementarity
 from contactstudy.dataset import describe
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
+from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
 from contactstudy.surface import SurfaceOperator, surface_operator
 from contactstudy.threads import one_blas_thread
@@ -21,6 +23,9 @@ from contactstudy.threads import one_blas_thread
 # A gap counts as open when it exceeds this many tolerances of the displacement's variation.
 OPEN_TOLERANCES = 10.0
 COUPLED_ROUNDS = 60
+# From this many cells on, the contact is first solved on coarser ones, to a tolerance that serves as a guess.
+NESTED_CELLS = 4096
+COARSE_TOLERANCE = 1e-3
 
 _CONTACTS: BoundedCache[ContactIterate] = BoundedCache(2**26, lambda iterate: iterate.pressure.nbytes)
 
@@ -104,8 +109,9 @@ def solve_contact(
         operator = surface_operator(body, grid, tangential=bends)
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
         key = (body, grid, digest(clearance), total, friction if bends else 0.0, tolerance, max_iterations)
+        problem = _Problem(body, grid, clearance, total, friction, tolerance, max_iterations)
         solve = _solve_coupled if bends else _solve_normal
-        iterate = _CONTACTS.get(key, lambda: solve(operator, clearance, total, friction, tolerance, max_iterations))
+        iterate = _CONTACTS.get(key, lambda: solve(operator, problem))
         pressure = iterate.pressure.copy()
         traction = friction * pressure
         displacement = operator(pressure, traction if bends else None)
@@ -150,56 +156,76 @@ def solve_contact(
     return describe(result, "contact of a rigid shape with an elastic body")
 
 
-def _first_guess(gap: FloatArray) -> FloatArray:
-    """Pressure that follows the gap over the lower part of the cells that can touch."""
+@dataclass(frozen=True, eq=False)
+class _Problem:
+    """A contact to solve, checked."""
+
+    body: Body
+    grid: Grid
+    gap: FloatArray
+    total: float
+    friction: float
+    tolerance: float
+    max_iterations: int
+
+    def coarser(self) -> _Problem:
+        """Return the same contact on cells of twice the size, where mirrored ends are good enough."""
+        grid = self.grid
+        cells = self.gap.reshape(grid.cells_x // 2, 2, grid.cells_y // 2, 2)
+        possible = np.isfinite(cells)
+        count = possible.sum(axis=(1, 3))
+        mean = np.where(possible, cells, 0.0).sum(axis=(1, 3)) / np.maximum(count, 1)
+        return replace(
+            self,
+            body=replace(self.body, model="mirror") if isinstance(self.body, EndedBody) else self.body,
+            grid=Grid(grid.x_range, grid.y_range, grid.cells_x // 2, grid.cells_y // 2),
+            gap=np.where(count > 0, mean, np.inf),
+            total=self.total / 4,
+            tolerance=COARSE_TOLERANCE,
+        )
+
+
+def _first_guess(problem: _Problem) -> FloatArray:
+    """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
+    gap = problem.gap
     possible = np.isfinite(gap)
+    if gap.size >= NESTED_CELLS and problem.grid.cells_x % 2 == 0 and problem.grid.cells_y % 2 == 0:
+        coarse = problem.coarser()
+        found = _solve_normal(surface_operator(coarse.body, coarse.grid, tangential=False), coarse)
+        guess = np.where(possible, np.kron(found.pressure, np.ones((2, 2))), 0.0)
+        return guess if guess.any() else possible.astype(np.float64)
     level = np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
     guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
     return np.asarray(guess if guess.any() else possible.astype(np.float64))
 
 
-def _solve_normal(
-    operator: SurfaceOperator,
-    gap: FloatArray,
-    total: float,
-    friction: float,
-    tolerance: float,
-    max_iterations: int,
-    start: FloatArray | None = None,
-) -> ContactIterate:
+def _solve_normal(operator: SurfaceOperator, problem: _Problem, start: FloatArray | None = None) -> ContactIterate:
     """Contact without the displacement from friction."""
     return solve_complementarity(
         operator,
         operator.precondition,
-        gap,
-        total,
-        _first_guess(gap) if start is None else start,
-        tolerance=tolerance,
-        max_iterations=max_iterations,
+        problem.gap,
+        problem.total,
+        _first_guess(problem) if start is None else start,
+        tolerance=problem.tolerance,
+        max_iterations=problem.max_iterations,
     )
 
 
-def _solve_coupled(
-    operator: SurfaceOperator,
-    gap: FloatArray,
-    total: float,
-    friction: float,
-    tolerance: float,
-    max_iterations: int,
-) -> ContactIterate:
+def _solve_coupled(operator: SurfaceOperator, problem: _Problem) -> ContactIterate:
     """Contact with the displacement from friction: the traction of one round shapes the gap of the next.
 
     The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``, so a few are enough.
     """
-    iterate = _solve_normal(operator, gap, total, friction, tolerance, max_iterations)
+    iterate = _solve_normal(operator, problem)
     applications = iterate.applications
     for _ in range(COUPLED_ROUNDS):
-        bent = operator(np.zeros_like(gap), friction * iterate.pressure)
         previous = iterate.pressure
-        iterate = _solve_normal(operator, gap + bent, total, friction, tolerance, max_iterations, previous)
+        bent = operator(np.zeros_like(previous), problem.friction * previous)
+        iterate = _solve_normal(operator, replace(problem, gap=problem.gap + bent), previous)
         applications += iterate.applications + 1
-        change = float(np.abs(iterate.pressure - previous).sum() / total)
-        if change <= 3 * tolerance or not iterate.converged:
+        change = float(np.abs(iterate.pressure - previous).sum() / problem.total)
+        if change <= 3 * problem.tolerance or not iterate.converged:
             return ContactIterate(iterate.pressure, iterate.approach, applications, iterate.converged)
     return ContactIterate(iterate.pressure, iterate.approach, applications, False)
 
