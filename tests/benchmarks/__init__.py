@@ -1,0 +1,1 @@
+"""Speed of the package beside that of published contact codes: `python -m tests.benchmarks`."""

@@ -1,0 +1,133 @@
+"""Rows on the body: building the operator, stresses, and rollers that are long against their contact."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import Body, FiniteLengthSpace, Grid, HalfSpace, stress_field
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.surface import SurfaceOperator, surface_operator
+from tests.benchmarks.peers import contact_of
+from tests.benchmarks.problems import HALF_WIDTH, STEEL, roller
+from tests.benchmarks.timing import Report, Row, medians, nudge, show
+
+LONG_CELLS = (250, 500, 1000)
+MEMORY_BAR = 2000.0  # megabytes
+
+
+def building(repeats: int, _: Report) -> Iterator[Row]:
+    """Operator of a body with ends, and what a second case pays for it."""
+    grid = Grid((0.0, 8 * HALF_WIDTH), (-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), 128, 64)
+    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    surface_operator(body, grid, tangential=False)
+    works: dict[str, Callable[[], object]] = {
+        "cold": lambda: SurfaceOperator(body, grid, tangential=False, resolution=Resolution()),
+        "friction": lambda: SurfaceOperator(body, grid, tangential=True, resolution=Resolution()),
+        "kept": lambda: surface_operator(body, grid, tangential=False),
+    }
+    seconds = medians(works, repeats, warm_up=False)
+    held = surface_operator(body, grid, tangential=False).nbytes / 1e6
+    yield Row(
+        "building the operator, 128 x 64, L = 8a",
+        show(seconds["cold"]),
+        bar="1 s",
+        met=seconds["cold"] <= 1.0,
+        notes=f"with traction {show(seconds['friction'])}; reused by a second case in "
+        f"{1e6 * seconds['kept']:.0f} µs; {held:.0f} MB",
+    )
+
+
+def stresses(repeats: int, _: Report) -> Iterator[Row]:
+    """Six stresses on 128 x 128 x 32 points, nothing kept from before."""
+    length, window = 8 * HALF_WIDTH, 4 * HALF_WIDTH
+    z = np.linspace(0.0, 3 * HALF_WIDTH, 32)
+    bodies: dict[str, Body] = {
+        "half-space": HalfSpace(material=STEEL),
+        "finite-length": FiniteLengthSpace(length=length, material=STEEL),
+    }
+    grid = Grid((0.0, length), (-window / 2, window / 2), 128, 128)
+    line = 1e9 * np.sqrt(np.maximum(1 - (grid.y / HALF_WIDTH) ** 2, 0.0)) * np.ones((128, 1))
+
+    def field(body: Body, friction: float) -> xr.Dataset:
+        pressure = xr.DataArray(line * nudge(), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+        return stress_field(body, pressure, friction, z=z)
+
+    seconds = {}
+    for friction in (0.0, 0.3):
+        works: dict[str, Callable[[], object]] = {name: partial(field, body, friction) for name, body in bodies.items()}
+        seconds[friction] = medians(works, repeats)
+    half, ended = seconds[0.0]["half-space"], seconds[0.0]["finite-length"]
+    sliding = seconds[0.3]
+    yield Row(
+        "six stresses 128 x 128 x 32, half-space",
+        show(half),
+        bar="0.26 s cold",
+        met=half <= 0.26,
+        notes=f"a new pressure on the same grid each time, {half / 0.11:.1f} times the 0.11 s of a code that keeps its "
+        f"kernels; with friction {show(sliding['half-space'])}",
+    )
+    yield Row(
+        "six stresses 128 x 128 x 32, finite-length",
+        show(ended),
+        "our half-space " + show(half),
+        f"{ended / half:.2f}",
+        "2x the half-space, 0.52 s",
+        ended <= 2 * 0.26,
+        notes="with friction " + show(sliding["finite-length"]),
+    )
+
+
+def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
+    """Contact on 1000 x 48 cells, L = 100a, and how the cost grows to there."""
+    contact, build, counts = {}, {}, {}
+    for cells in LONG_CELLS:
+        problem = roller((cells, 48), cells / 10, free_ends=True)
+        grid = Grid.from_centres(problem.labelled()["x"].values, problem.labelled()["y"].values)
+        make = partial(SurfaceOperator, problem.body, grid, tangential=False, resolution=Resolution())
+        build[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
+        contact[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
+        counts[cells] = int(contact_of(problem)["iterations"])
+    first, last = LONG_CELLS[0], LONG_CELLS[-1]
+    growth = contact[last] / contact[first] / (last / first)
+    per_application = growth * counts[first] / counts[last]
+    times = ", ".join(f"{cells}: {show(contact[cells])} ({counts[cells]} applications)" for cells in LONG_CELLS)
+    yield Row(
+        "contact 1000 x 48, L = 100a, built", show(contact[last]), bar="1.5 s", met=contact[last] <= 1.5, notes=times
+    )
+    yield Row(
+        "growth from 250 to 1000 cells, over linear",
+        f"{growth:.2f}",
+        bar="1.2",
+        met=growth <= 1.2,
+        notes=f"per operator application {per_application:.2f}",
+    )
+    yield Row(
+        "building the operator, 1000 x 48, L = 100a",
+        show(build[last]),
+        notes=", ".join(f"{cells}: {show(build[cells])}" for cells in LONG_CELLS),
+    )
+    yield from memory(report)
+
+
+def memory(report: Report) -> Iterator[Row]:
+    """Peak memory of a process that builds the operator, solves the contact and takes stresses in one section."""
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.benchmarks.memory"], capture_output=True, text=True, check=False
+    )
+    if done.returncode:
+        report.remark(f"the measurement of memory failed: {done.stderr.strip().splitlines()[-1]}")
+        return
+    idle, contact, stress = (float(word) for word in done.stdout.split())
+    yield Row(
+        "peak memory, 1000 x 48, L = 100a",
+        f"{stress:.0f} MB",
+        bar="2 GB",
+        met=stress <= MEMORY_BAR,
+        notes=f"process with its imports {idle:.0f} MB, after the contact {contact:.0f} MB, after stresses in y = 0",
+    )
