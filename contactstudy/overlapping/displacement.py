@@ -57,13 +57,15 @@ class EndCorrection:
     def apply(self, transform: ComplexArray, tangential: bool = False) -> ComplexArray:
         """Correction from the transform (cell, wavenumber) of pressure or traction."""
         kernels, phase = (self.tangential, 1j) if tangential else (self.normal, 1.0)
-        correction = np.zeros_like(transform)
+        cells, wavenumbers = transform.shape
+        # The operator is real: real products on pairs of real and imaginary part are four times faster.
+        pairs = np.ascontiguousarray(transform).view(np.float64)
+        correction = np.zeros((cells, 2 * wavenumbers))
         for moments, kernel in zip(self.moments, kernels, strict=True):
-            sources = (moments @ transform).T[:, :, None]
-            sunk = np.matmul(kernel, sources.view(np.float64).reshape(*sources.shape[:2], 2))
-            sunk = np.ascontiguousarray(sunk).view(np.complex128)[:, :, 0]
-            correction += moments.T @ sunk.T
-        return np.asarray(correction * (phase / self.cell))
+            sources = (moments @ pairs).reshape(-1, wavenumbers, 2).transpose(1, 0, 2)
+            sunk = np.matmul(kernel, sources).transpose(1, 0, 2)
+            correction += moments.T @ sunk.reshape(-1, 2 * wavenumbers)
+        return np.asarray(correction.view(np.complex128) * (phase / self.cell))
 
     @property
     def nbytes(self) -> int:

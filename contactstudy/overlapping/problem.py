@@ -124,7 +124,7 @@ class View:
 def views_of(
     modes: AxialModes, problem: EndProblem, loads: LateralAmplitudes, batch: slice, x: FloatArray
 ) -> list[View]:
-    """Return loads of a batch of wavenumbers and points `x` as `modes` see them, from each end on its own if need be."""
+    """Return a batch of loads and the points `x` as `modes` see them, from each end on its own if need be."""
     grid, length = problem.grid, problem.length
     edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
     integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
