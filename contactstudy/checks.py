@@ -12,6 +12,7 @@ import numpy.typing as npt
 from contactstudy.errors import InvalidInputError
 
 FloatArray = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 
 

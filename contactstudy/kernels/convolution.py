@@ -11,8 +11,7 @@ import numpy as np
 import pyfftw
 from scipy import fft
 
-from contactstudy.checks import FloatArray
-from contactstudy.overlapping.quadrature import ComplexArray
+from contactstudy.checks import ComplexArray, FloatArray
 
 
 def even_spectrum(kernel: FloatArray) -> FloatArray:

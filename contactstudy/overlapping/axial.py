@@ -18,8 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.checks import FloatArray
-from contactstudy.overlapping.quadrature import ComplexArray, Resolution, ray_nodes
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,14 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import special
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.grid import Grid
 from contactstudy.material import Material
 from contactstudy.overlapping.axial import AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
 from contactstudy.overlapping.quadrature import (
-    ComplexArray,
     Resolution,
     lateral_nodes,
 )

@@ -22,10 +22,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import linalg
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.quadrature import (
-    ComplexArray,
     Resolution,
     growing_edges,
     panel_nodes,

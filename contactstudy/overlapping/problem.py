@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import AxialModes
-from contactstudy.overlapping.quadrature import ComplexArray, Resolution, lateral_nodes
+from contactstudy.overlapping.quadrature import Resolution, lateral_nodes
 
 # Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
 # there, of which only the sum is finite.

@@ -6,11 +6,8 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-import numpy.typing as npt
 
-from contactstudy.checks import FloatArray
-
-ComplexArray = npt.NDArray[np.complex128]
+from contactstudy.checks import ComplexArray, FloatArray
 
 
 @lru_cache(maxsize=32)

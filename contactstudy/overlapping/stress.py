@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping.axial import DECAY_LENGTHS, axial_modes
 from contactstudy.overlapping.equations import EquationSet, slab_factors
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
@@ -22,7 +22,7 @@ from contactstudy.overlapping.problem import (
     lateral_synthesis,
     views_of,
 )
-from contactstudy.overlapping.quadrature import ComplexArray, Resolution
+from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
