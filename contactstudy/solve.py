@@ -77,7 +77,6 @@ def solve(
     clearance = case.gap(grid)
     if not np.isfinite(clearance).any():
         raise InvalidInputError("grid", grid, "a grid with cells under the roller")
-    # The nearest cell centre may lie beside the line of first touch; the gap is stated from first touch.
     gap = xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     result = solve_contact(case.body, gap, case.normal_load, case.friction, case.coupled, tolerance=tolerance)
     half_width = case.hertz_half_width
