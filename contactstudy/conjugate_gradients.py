@@ -111,9 +111,10 @@ def solve_complementarity(
         fresh = bool(clipped.any() or closed.any())
         if fresh:
             moved[clipped] = 0.0
-            # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
-            scaled = preconditioner(np.where(closed, height - approach, 0.0))
-            moved[closed] = np.maximum(-scaled[closed], 1e-12 * moved.max())
+            if closed.any():
+                # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
+                scaled = preconditioner(np.where(closed, height - approach, 0.0))
+                moved[closed] = np.maximum(-scaled[closed], 1e-12 * moved.max())
             moved *= total / moved.sum()
             pressure = moved
             contact = pressure > 0

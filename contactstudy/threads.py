@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 from contextlib import AbstractContextManager
+from functools import cache
 
-from threadpoolctl import threadpool_limits
+from threadpoolctl import ThreadpoolController
+
+
+@cache
+def _controller() -> ThreadpoolController:
+    """Find the loaded libraries, which takes a millisecond, once."""
+    return ThreadpoolController()
 
 
 def one_blas_thread() -> AbstractContextManager[object]:
     """Keep BLAS on one thread: the products here are many and small, and waiting for a second thread costs more."""
-    limit: AbstractContextManager[object] = threadpool_limits(1, user_api="blas")
+    limit: AbstractContextManager[object] = _controller().limit(limits=1, user_api="blas")
     return limit
