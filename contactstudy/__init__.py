@@ -21,7 +21,14 @@ if TYPE_CHECKING:
         WindowError,
     )
     from contactstudy.grid import Grid
-    from contactstudy.invariants import von_mises
+    from contactstudy.invariants import (
+        hydrostatic,
+        maximum_shear,
+        orthogonal_shear_range,
+        principal_stresses,
+        tresca,
+        von_mises,
+    )
     from contactstudy.material import Material
     from contactstudy.roller import Roller
     from contactstudy.solve import solve
@@ -52,8 +59,12 @@ _HOME = {
     "WindowError": "errors",
     "choose_grid": "case",
     "equivalent_loads": "equivalent",
+    "hydrostatic": "invariants",
+    "maximum_shear": "invariants",
     "open_study": "study.opened",
+    "orthogonal_shear_range": "invariants",
     "plots": "",
+    "principal_stresses": "invariants",
     "profiles": "",
     "run_study": "study.run",
     "solve": "solve",
@@ -61,6 +72,7 @@ _HOME = {
     "stress_field": "stress",
     "summarize": "summary",
     "surface_displacement": "surface",
+    "tresca": "invariants",
     "von_mises": "invariants",
 }
 
@@ -83,8 +95,12 @@ __all__ = [
     "WindowError",
     "choose_grid",
     "equivalent_loads",
+    "hydrostatic",
+    "maximum_shear",
     "open_study",
+    "orthogonal_shear_range",
     "plots",
+    "principal_stresses",
     "profiles",
     "run_study",
     "solve",
@@ -92,6 +108,7 @@ __all__ = [
     "stress_field",
     "summarize",
     "surface_displacement",
+    "tresca",
     "von_mises",
 ]
 
