@@ -1,4 +1,5 @@
 import csv
+import re
 import subprocess
 import sys
 
@@ -74,6 +75,14 @@ def test_status(study_file, capsys):
     capsys.readouterr()
     assert command("status", "results/small") == 0
     assert "4 ok" in capsys.readouterr().out
+
+
+def test_skipped_cases_are_listed_with_the_reason(study_file, capsys):
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, -9], "friction": [0.1]})))
+    reason = r"  skipped: .*e_over_a=-9 friction=0\.1: .*body length"
+    for arguments in (("plan", study_file), ("run", study_file, "--workers", 0), ("status", "results/small")):
+        assert command(*arguments) == 0
+        assert re.search(reason, capsys.readouterr().out), arguments[0]
 
 
 def test_collect(study_file, tmp_path):

@@ -35,6 +35,9 @@ WORKER_ENVIRONMENT = {
 Dask's own setting returns it to the system at once, which made cases twice as slow as in the parent's process.
 """
 
+SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
+"""Dask keeps its last thousands of messages, jobs and records in them, for its developers: 20 kB for every case."""
+
 
 def execute(
     jobs: list[Job], *, workers: int | None = None, scheduler: str | None = None, solver: Solver | None = None
@@ -99,7 +102,8 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
 
     if scheduler is not None:
         try:
-            client = Client(scheduler, timeout=START_SECONDS)
+            with dask.config.set(SHORT_LOGS):
+                client = Client(scheduler, timeout=START_SECONDS)
         except (OSError, ValueError) as error:
             raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
         with client:
@@ -107,6 +111,7 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         return
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     settings = {
+        **SHORT_LOGS,
         "distributed.scheduler.allowed-failures": 0,
         "distributed.comm.timeouts.connect": START_SECONDS,
         "distributed.worker.daemon": True,

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import json
 import os
+import sys
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -158,6 +159,9 @@ class Folder:
     def remember(self, path: Path, identity: str, run: dict[str, Any], scalars: dict[str, float]) -> None:
         """Enter a file, just written or checked, in the cache."""
         state = path.stat()
+        # Words that came from another process or a file are new ones each time: keep one of each.
+        run = {sys.intern(name): sys.intern(value) if isinstance(value, str) else value for name, value in run.items()}
+        scalars = {sys.intern(name): value for name, value in scalars.items()}
         self._manifest()[path.name] = {
             "size": state.st_size,
             "changed": state.st_mtime_ns,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 from contactstudy import checks
-from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.bodies import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.errors import InvalidInputError
 from contactstudy.material import Material
 from contactstudy.profiles import Cylinder, Lundberg, Profile
@@ -60,12 +60,19 @@ PROFILES: dict[str, ProfileKind] = {
 }
 """Kinds of profile by their name in a study."""
 
-BODIES: dict[str, Callable[[Material, float], Body]] = {
-    "finite-length": lambda material, length: FiniteLengthSpace(length=length, material=material),
-    "quarter-space": lambda material, length: QuarterSpace(material=material),
-    "half-space": lambda material, length: HalfSpace(material=material),
+
+def _half_space(material: Material, length: float, model: str) -> Body:
+    if model != MODELS[0]:
+        raise InvalidInputError("model", model, f"{MODELS[0]!r} for a half-space, which has no free end")
+    return HalfSpace(material=material)
+
+
+BODIES: dict[str, Callable[[Material, float, str], Body]] = {
+    "finite-length": lambda material, length, model: FiniteLengthSpace(length=length, material=material, model=model),
+    "quarter-space": lambda material, length, model: QuarterSpace(material=material, model=model),
+    "half-space": _half_space,
 }
-"""Makers of a body from its material and the length between the free ends, by their name in a study."""
+"""Makers of a body from its material, the length between the free ends and the model of these, by name."""
 
 PROFILE_CLASSES: dict[type, str] = {Cylinder: "cylinder", Lundberg: "lundberg"}
 """Profiles that may be given as objects, because their fields are the keys of their table."""

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.bodies import MODELS
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.kinds import BODIES, profile_table
 
@@ -38,6 +39,11 @@ def _flag(name: str, value: object) -> bool:
 def _body(name: str, value: object) -> str:
     checks.instance(name, value, str, "text")
     return checks.known_name(name, str(value), BODIES)
+
+
+def _model(name: str, value: object) -> str:
+    checks.instance(name, value, str, "text")
+    return checks.known_name(name, str(value), MODELS)
 
 
 def _profile(name: str, value: object) -> dict[str, Any]:
@@ -71,6 +77,7 @@ class Parameter(NamedTuple):
 
 PARAMETERS: dict[str, Parameter] = {
     "body": Parameter(_body, "finite-length", "", "kind of elastic body"),
+    "model": Parameter(_model, MODELS[0], "", "how free ends are treated: exactly, or by a quick fix for comparison"),
     "young": Parameter(_number, None, "Pa", "Young's modulus"),
     "poisson": Parameter(_number, None, "1", "Poisson's ratio"),
     "radius": Parameter(_number, None, "m", "roller radius"),

@@ -63,7 +63,8 @@ class PlannedCase:
     @property
     def cost(self) -> float:
         """Expected effort in arbitrary units; free ends take most of it."""
-        ends = 1.0 if self.parameters.get("body") == "half-space" else ENDS_EFFORT
+        freed = self.parameters.get("body") != "half-space" and "model" not in self.parameters
+        ends = ENDS_EFFORT if freed else 1.0
         return ends * (self.cells + 0.1 * self.points)
 
 

@@ -108,4 +108,4 @@ class Progress:
             self._bar.set_postfix_str(left, refresh=False)
             self._bar.update()
             if record.status != "ok":
-                self._bar.write(f"failed: {job.name}{detail}")
+                self._bar.write(f"failed: {job.name}{detail}", file=sys.stderr)

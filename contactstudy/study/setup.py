@@ -125,7 +125,7 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
             raise InvalidInputError(name, length, "positive (metres)", f"e = {distance:g} m, a = {half_width:g} m")
     around = Surroundings(radius, modulus, half_width * modulus / (2 * radius))
     case = Case(
-        body=BODIES[values["body"]](material, body_length),
+        body=BODIES[values["body"]](material, body_length, values["model"]),
         roller=Roller(radius=radius, length=roller_length, profile=build_profile(values["profile"], around)),
         max_pressure=values.get("max_pressure"),
         load=values.get("load"),

@@ -13,6 +13,7 @@ import re
 import shutil
 import socket
 from collections.abc import Iterator, Mapping
+from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
@@ -250,10 +251,14 @@ def scalar_attributes(path: Path) -> dict[str, dict[str, Any]]:
 
 def write_dataset(path: Path, dataset: xr.Dataset) -> None:
     """Write any Dataset, such as a merged summary, atomically."""
+    now = datetime.now(UTC).isoformat(timespec="seconds")
+    described = dataset.assign_attrs(history=f"{now} written by contactstudy")
+    # By CF a coordinate has no missing values, and so no mark for them.
+    encoding = {name: {"_FillValue": None} for name in dataset.coords if name in dataset.dims}
 
     def write(part: Path) -> None:
         with _netcdf(path, "write"):
-            dataset.to_netcdf(part, engine="netcdf4")
+            described.to_netcdf(part, engine="netcdf4", encoding=encoding)
 
     write_atomically(path, write)
 

@@ -42,12 +42,13 @@ def test_points_as_range_and_as_list_are_the_same():
 
 
 def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
-    before = case_id({"friction": 0.1})
+    before = "6c02e5292dae80f3"
+    assert case_id({"friction": 0.1})[:16] == before
     new = parameters.Parameter(parameters._number, 3.0, "1", "added later")
     monkeypatch.setitem(parameters.PARAMETERS, "roughness", new)
-    assert case_id({"friction": 0.1}) == before
-    assert case_id({"friction": 0.1, "roughness": 3}) == before
-    assert case_id({"friction": 0.1, "roughness": 4}) != before
+    assert case_id({"friction": 0.1})[:16] == before
+    assert case_id({"friction": 0.1, "roughness": 3})[:16] == before
+    assert case_id({"friction": 0.1, "roughness": 4})[:16] != before
 
 
 def test_identity_never_changes():

@@ -116,35 +116,3 @@ def test_killed_twenty_times_at_random_moments(large, tmp_path):
     assert killed.identical(calm)
     assert not list(folder.glob("**/*.part-*"))
     assert not (folder / "set-aside").exists()
-
-
-@pytest.mark.slow
-def test_a_cluster_of_separate_processes(tmp_path):
-    """The documented way: one scheduler, two workers, each started by its own command."""
-    import sys
-
-    from tests.study.conftest import ROOT
-
-    file = tmp_path / "scheduler.json"
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": ROOT}
-    commands = [
-        ["scheduler", "--scheduler-file", str(file), "--port", "0", "--no-dashboard"],
-        *[["worker", "--scheduler-file", str(file), "--nthreads", "1", "--no-dashboard"]] * 2,
-    ]
-    processes = [subprocess.Popen([sys.executable, "-m", "dask", *command], **quiet) for command in commands]
-    try:
-        wait_for(file.exists)
-        import json
-
-        address = json.loads(file.read_text())["address"]
-        study = small_study("large", sweep=LARGE)
-        report = run_study(study, tmp_path / "cluster", scheduler=address, solver=solve_fake)
-        assert report.counts == {"ok": 20}
-        run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
-        there, here = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("cluster", "calm"))
-        assert there.identical(here)
-    finally:
-        for process in processes:
-            process.terminate()
-        for process in processes:
-            process.wait(timeout=20)

@@ -1,16 +1,22 @@
+import contextlib
 import json
 import os
 import shutil
 import subprocess
+import tempfile
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study
 from contactstudy.study.folder import Folder
+from contactstudy.study.progress import Progress
 from contactstudy.study.store import load_case, read_header
 from tests.study.conftest import identity, small_study
 from tests.study.fakes import DIES, FAILS, IS_WRONG, solve_fake
+
+NOBODY = 65534
 
 
 def run(study, folder, **options):
@@ -132,14 +138,57 @@ def test_a_folder_that_cannot_be_made(study, tmp_path):
         run(study, tmp_path / "file")
 
 
-@pytest.mark.skipif(os.name == "nt" or (hasattr(os, "geteuid") and os.geteuid() == 0), reason="root may write anywhere")
-def test_a_folder_without_permission(study, tmp_path):
-    tmp_path.chmod(0o500)
+@contextlib.contextmanager
+def ordinary_user():
+    """Whoever runs the tests, without root's right to write anywhere."""
+    if os.geteuid() != 0:
+        yield
+        return
     try:
-        with pytest.raises(StoreError, match=r"[Pp]ermission"):
-            run(study, tmp_path / "new")
+        os.seteuid(NOBODY)
+    except OSError:
+        pytest.skip("root without the right to become another user")
+    try:
+        yield
     finally:
-        tmp_path.chmod(0o700)
+        os.seteuid(0)
+
+
+@pytest.fixture
+def open_place():
+    """A folder that every user may enter, as pytest's own is not."""
+    place = Path(tempfile.mkdtemp())
+    place.chmod(0o777)
+    yield place
+    for folder in (place, *place.glob("**/")):
+        folder.chmod(0o777)
+    shutil.rmtree(place)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
+@pytest.mark.parametrize("closed", ["", "cases"])
+def test_a_folder_without_permission(study, open_place, closed):
+    folder = open_place / "out"
+    run(study, folder)
+    with_more = small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]})
+    for path in (folder, *folder.glob("**/*")):
+        path.chmod(0o777)
+    (folder / closed).chmod(0o555)
+    with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
+        run(with_more, folder)
+    (folder / closed).chmod(0o777)
+    assert not (folder / "run.lock").exists()
+    for path in folder.glob("cases/*.nc"):
+        read_header(path, verify=True)
+    report = run(with_more, folder)
+    assert (report.counts, report.solved) == ({"ok": 6}, 2)
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
+def test_a_folder_that_may_not_be_made(study, open_place):
+    open_place.chmod(0o555)
+    with ordinary_user(), pytest.raises(StoreError, match=r"cannot make .*[Pp]ermission"):
+        run(study, open_place / "new")
 
 
 @pytest.fixture
@@ -188,6 +237,24 @@ def test_a_worker_that_dies_costs_its_case_only(tmp_path):
     assert report.failures[0][1].reason.startswith("WorkerDied")
 
 
-def test_memory_of_the_parent_holds_no_fields(study, tmp_path):
+def test_records_hold_no_fields(study, tmp_path):
     report = run(study, tmp_path)
     assert all(np.isscalar(value) for entry in report.entries for value in entry.scalars.values())
+
+
+@pytest.mark.slow
+def test_memory_of_the_parent_is_flat(tmp_path, monkeypatch):
+    """Over 500 cases of two workers that keep fields; what grows is the manifest, a few kilobytes for each."""
+    import psutil
+
+    sizes = []
+    finished = Progress.finished
+
+    def note(self, job, record):
+        finished(self, job, record)
+        sizes.append(psutil.Process().memory_info().rss)
+
+    monkeypatch.setattr(Progress, "finished", note)
+    sweep = {"e_over_a": [0, 1, 2, 3, 4], "max_pressure": [1e9 + 1e6 * number for number in range(100)]}
+    assert run(small_study(sweep=sweep), tmp_path, workers=2).counts == {"ok": 500}
+    assert max(sizes) - sizes[49] < 8e6

@@ -65,6 +65,7 @@ def test_cases_that_share_an_operator():
         ({"e_over_a": 1, "radius": -1}, "radius"),
         ({"e_over_a": 1, "poisson": 0.7}, "poisson"),
         ({"e_over_a": -9}, "body length"),
+        ({"e_over_a": 1, "body": "half-space", "model": "mirror"}, "no free end"),
         ({"e_over_a": 1, "field_x_over_a": [500]}, "field_x_over_a"),
         ({"e_over_a": 1, "field_z_over_a": [-1]}, "field_z_over_a"),
         ({"e_over_a": 1, "profile": {"kind": "cylinder", "fillet_radius": -1}}, "fillet_radius"),

@@ -1,0 +1,74 @@
+"""Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
+
+import pytest
+
+from contactstudy.study import open_study, run_study
+from contactstudy.study.folder import Folder
+from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
+from tests.study.conftest import ROOT, identity, small_study
+from tests.study.fakes import DIES, solve_fake
+
+LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
+
+
+def opened(folder):
+    """All that a study holds except how long it took."""
+    return open_study(folder).drop_vars("seconds").load()
+
+
+def test_the_documentation_names_these_commands():
+    text = (ROOT / "docs" / "studies.md").read_text()
+    assert SCHEDULER in text
+    assert WORKER in text
+    for name, value in ENVIRONMENT.items():
+        assert f"{name}={value}" in text
+
+
+@pytest.mark.slow
+def test_a_cluster_of_separate_processes(tmp_path):
+    study = small_study("large", sweep=LARGE)
+    with cluster(tmp_path) as address:
+        report = run_study(study, tmp_path / "cluster", scheduler=address, solver=solve_fake)
+    assert report.counts == {"ok": 20}
+    run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
+    assert opened(tmp_path / "cluster").identical(opened(tmp_path / "calm"))
+
+
+@pytest.mark.slow
+def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
+    study = small_study(
+        sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": 0, "friction": DIES}]
+    )
+    with cluster(tmp_path) as address:
+        report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
+    assert report.counts == {"ok": 3, "failed": 2}
+    assert all(entry.reason.startswith("WorkerDied") for _, entry in report.failures)
+
+
+@pytest.mark.slow
+def test_the_solvers_results_are_the_same_wherever_cases_are_solved(tmp_path):
+    """Bit for bit: in this process, with one and two workers, and on a cluster."""
+    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1], "max_pressure": [1.0e9, 1.5e9]})
+    for workers in (0, 1, 2):
+        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 8}
+    with cluster(tmp_path) as address:
+        run_study(study, tmp_path / "cluster", scheduler=address)
+    first = opened(tmp_path / "0")
+    assert float(first["von_mises"].max()) > 1e8
+    for name in ("1", "2", "cluster"):
+        assert opened(tmp_path / name).identical(first), name
+
+
+@pytest.mark.slow
+def test_a_case_solved_alone_is_the_same_as_in_a_study(tmp_path):
+    """What a worker keeps of one case for the next does not change a bit."""
+    run_study(small_study(), tmp_path / "all", workers=1)
+    alone = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
+    run_study(alone, tmp_path / "alone", workers=1)
+    from contactstudy.study.store import load_case
+
+    both = [
+        load_case(Folder(tmp_path / name).case_path(identity(e_over_a=1.0, friction=0.1))).drop_vars("seconds")
+        for name in ("all", "alone")
+    ]
+    assert both[0].equals(both[1])

@@ -1,0 +1,83 @@
+"""Studies with the package's own solver on small grids."""
+
+import numpy as np
+import pytest
+
+from contactstudy import solve, surface
+from contactstudy.study import open_study, run_study
+from contactstudy.study.folder import Folder
+from contactstudy.study.setup import build_setup
+from contactstudy.study.store import load_case
+from tests.study.conftest import BASE, small_study
+
+
+def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
+    study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [0.0, 2.0]})
+    assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
+    opened = open_study(tmp_path).sel(body="quarter-space")
+    for e_over_a in (0.0, 2.0):
+        case = opened.sel(e_over_a=e_over_a)
+        pressed = case["x_over_a"].where(case["pressure"].max("y_index" if "y_index" in case.dims else "y") > 0)
+        step = float(case["x_over_a"].isel(x_index=1) - case["x_over_a"].isel(x_index=0))
+        assert float(pressed.min()) == pytest.approx(e_over_a + step / 2, abs=step)
+        assert float(case["end_traction_residual"]) < 1e-4
+    # A sharp roller carries less at a free end than inside, where its edge presses into the face.
+    assert float(opened["end_pressure_first"].sel(e_over_a=0.0)) < 1.0
+    assert float(opened["end_pressure_first"].sel(e_over_a=2.0)) > 1.0
+
+
+def test_a_study_gives_what_the_solver_gives(tmp_path):
+    study = small_study(sweep={"body": ["quarter-space"], "e_over_a": [1.0], "friction": [0.1]})
+    run_study(study, tmp_path, workers=0)
+    (case,) = study.plan().cases
+    setup = build_setup(case.parameters)
+    alone = solve(setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z)
+    stored = load_case(Folder(tmp_path).case_path(case.id))
+    np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
+    np.testing.assert_array_equal(stored["tau_xz"], alone["tau_xz"].astype(np.float32))
+
+
+def test_comparison_models_beside_the_exact_ends(tmp_path):
+    study = small_study(
+        level="surface",
+        base=BASE | {"stresses": False},
+        sweep={
+            "model": ["exact", "mirror", "mirror-factor"],
+            "e_over_a": [0.0],
+            "body": ["finite-length", "half-space"],
+        },
+    )
+    report = run_study(study, tmp_path, workers=0)
+    assert report.counts == {"ok": 4, "skipped": 2}
+    opened = open_study(tmp_path).squeeze("e_over_a")
+    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
+    assert "no free end" in opened["message"].sel(body="half-space", model="mirror").item()
+    residual = opened["end_traction_residual"].sel(body="finite-length")
+    assert float(residual.sel(model="exact")) < 1e-4 < float(residual.sel(model="mirror"))
+    ends = opened["end_pressure"].sel(body="finite-length").values
+    assert len({round(value, 4) for value in ends.tolist()}) == 3
+
+
+def test_one_is_one_case(tmp_path):
+    base = BASE | {"body": "half-space", "stresses": False}
+    for number, one in enumerate([1, 1.0, np.int64(1), np.float32(1)]):
+        study = small_study(base=base, sweep={"e_over_a": [one], "friction": [0]})
+        assert run_study(study, tmp_path, workers=0).solved == (number == 0)
+
+
+def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
+    made = []
+
+    class Counted(surface.SurfaceOperator):
+        def __init__(self, body, grid, **options):
+            made.append((body, grid, tuple(sorted(options.items(), key=repr))))
+            super().__init__(body, grid, **options)
+
+    monkeypatch.setattr(surface, "SurfaceOperator", Counted)
+    # Friction outside: in the study's order the operators would alternate.
+    sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
+    study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
+    assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}
+    assert len([entry for entry in made if entry[0].model == "exact"]) == 2
+    assert len(made) == len(set(made))
+    assert surface._OPERATORS.limit <= 2**30
