@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     )
     from contactstudy.material import Material
     from contactstudy.roller import Roller
-    from contactstudy.solve import solve
+    from contactstudy.solution import solve
     from contactstudy.stress import stress_field
     from contactstudy.study.definition import Study
     from contactstudy.study.errors import LockedError, StoreError, StudyFileError
@@ -67,7 +67,7 @@ _HOME = {
     "principal_stresses": "invariants",
     "profiles": "",
     "run_study": "study.run",
-    "solve": "solve",
+    "solve": "solution",
     "solve_contact": "contact",
     "stress_field": "stress",
     "summarize": "summary",

@@ -35,3 +35,11 @@ def test_every_public_name_can_be_imported() -> None:
     for name in contactstudy.__all__:
         assert getattr(contactstudy, name) is not None
     assert sorted(contactstudy.__all__) == contactstudy.__all__
+
+
+def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
+    """Importing a submodule sets it as an attribute of the package, over a function of the same name."""
+    import contactstudy
+
+    modules = {path.stem for path in (ROOT / "contactstudy").iterdir()}
+    assert modules & set(contactstudy.__all__) == {"plots", "profiles"}

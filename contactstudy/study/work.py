@@ -121,7 +121,7 @@ def single_threaded() -> Iterator[None]:
 
 def default_solver() -> Solver:
     """Return the package's own solver."""
-    from contactstudy import solve  # not from its module, whose import would hide the function of the same name
+    from contactstudy import solve
 
     return solve
 
