@@ -1,0 +1,102 @@
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, solve_contact
+from contactstudy.edges import EDGE_UNCERTAINTY, contact_edges
+
+UNIT = HalfSpace(material=Material(0.75, 0.5))
+
+
+def ellipsoid(window: float, cells: int, slimness: float = 1.0) -> xr.Dataset:
+    """Contact of a unit sphere (contact radius 1), or of an ellipsoid with other curvature along x."""
+    centres = window * (2 * np.arange(cells) + 1 - cells) / cells
+    gap = xr.DataArray(
+        0.5 * (slimness * centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
+    )
+    return solve_contact(UNIT, gap, load=4 / 3)
+
+
+@settings(max_examples=12, deadline=None)
+@given(st.floats(1.7, 2.0))
+def test_hertz_circle_wherever_its_edge_lies_in_a_cell(window):
+    contact = ellipsoid(window, 64)
+    step = float(contact.y[1] - contact.y[0])
+    edges = contact_edges(contact)
+    column = np.abs(contact.x) < 0.5
+    expected = np.sqrt(1 - contact.x.values[column] ** 2)
+    assert np.abs(edges.half_width.values[column] - expected).max() < EDGE_UNCERTAINTY * step
+    assert abs(float(edges.contact_length) - 2) < 2 * EDGE_UNCERTAINTY * step
+    assert float(edges.contact_area) == pytest.approx(np.pi, rel=3e-3)
+
+
+def test_better_than_counting_cells_by_an_order_of_magnitude():
+    fitted, counted = [], []
+    for window in np.linspace(1.75, 1.85, 11):
+        contact = ellipsoid(float(window), 64)
+        middle = contact.isel(x=32)
+        step = float(contact.y[1] - contact.y[0])
+        expected = np.sqrt(1 - float(middle.x) ** 2)
+        fitted.append(float(contact_edges(contact).half_width[32]) - expected)
+        counted.append(0.5 * step * int((middle.pressure > 0).sum()) - expected)
+    assert np.abs(fitted).max() < 0.1 * np.abs(counted).max()
+
+
+def test_edges_mirror_with_the_contact():
+    contact = ellipsoid(1.8, 48, slimness=0.8)
+    shifted = contact.assign_coords(x=contact.x + 0.3, y=contact.y + 0.2)
+    mirrored = shifted.assign_coords(x=-shifted.x, y=-shifted.y).sortby(["x", "y"])
+    edges, turned = contact_edges(shifted), contact_edges(mirrored)
+    np.testing.assert_allclose(turned.y_left.values[::-1], -edges.y_right.values, atol=1e-12)
+    assert float(turned.x_first) == pytest.approx(-float(edges.x_last), abs=1e-12)
+
+
+def test_area_and_length_of_an_ellipse_follow_its_axes():
+    edges = contact_edges(ellipsoid(1.9, 96, slimness=0.7))
+    across, along = 2 * float(edges.half_width.max()), float(edges.contact_length)
+    assert float(edges.contact_area) == pytest.approx(np.pi / 4 * across * along, rel=2e-3)
+
+
+def test_a_contact_that_reaches_the_ends_of_the_body_ends_there(on_cells):
+    body = FiniteLengthSpace(length=4.0, material=Material(1.0, 0.3))
+    gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0.0, 4.0), (-2.0, 2.0), (32, 32))
+    edges = contact_edges(solve_contact(body, gap, load=2.0))
+    assert (float(edges.x_first), float(edges.x_last)) == pytest.approx((0.0, 4.0))
+    half_width = edges.half_width.values
+    assert np.ptp(half_width) < 0.5
+    assert float(edges.contact_area) == pytest.approx(2 * half_width.mean() * 4.0, rel=1e-3)
+
+
+def test_a_flat_shape_ends_at_the_face_of_its_last_cell(on_cells):
+    shape = on_cells(
+        lambda x, y: np.where((np.abs(x) < 1) & (np.abs(y) < 0.5), 0.0, np.inf), (-2.0, 2.0), (-2.0, 2.0), (32, 32)
+    )
+    edges = contact_edges(solve_contact(UNIT, shape, load=1.0))
+    assert float(edges.contact_length) == pytest.approx(2.0)
+    np.testing.assert_allclose(edges.half_width.dropna("x"), 0.5)
+    assert float(edges.contact_area) == pytest.approx(2.0)
+
+
+def test_no_contact_has_no_edges():
+    contact = ellipsoid(1.8, 16)
+    edges = contact_edges(contact.assign(pressure=0 * contact.pressure))
+    assert np.isnan(edges.half_width).all()
+    assert (float(edges.contact_length), float(edges.contact_area)) == (0.0, 0.0)
+
+
+def test_every_variable_has_a_unit():
+    edges = contact_edges(ellipsoid(1.8, 32))
+    assert {variable.attrs["units"] for variable in edges.data_vars.values()} == {"m", "m2"}
+
+
+@pytest.mark.parametrize("missing", ["pressure", "gap"])
+def test_needs_pressure_and_gap(missing):
+    with pytest.raises(InvalidInputError, match=missing):
+        contact_edges(ellipsoid(1.8, 16).drop_vars(missing))
+
+
+def test_refuses_what_is_not_a_dataset():
+    with pytest.raises(InvalidInputError, match="Dataset"):
+        contact_edges([1.0])
