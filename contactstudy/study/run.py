@@ -48,6 +48,12 @@ class RunReport:
     entries: list[Entry]
     solved: int
 
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
+        return (
+            f"RunReport({len(self.plan.cases)} cases: {counts}; {self.solved} solved now; folder={str(self.folder)!r})"
+        )
+
     @property
     def counts(self) -> dict[str, int]:
         """Number of cases of each status."""
