@@ -32,6 +32,7 @@ def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
     run(study, tmp_path)
     report = run(small_study(sweep={"e_over_a": [0, 1], "friction": [0, 0.1, 0.2]}), tmp_path)
     assert (report.solved, report.counts) == (2, {"ok": 6})
+    assert repr(report) == f"RunReport(6 cases: 6 ok; 2 solved now; folder={str(report.folder)!r})"
 
 
 def test_without_the_manifest_nothing_is_lost(study, tmp_path):
