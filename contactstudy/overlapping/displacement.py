@@ -39,7 +39,8 @@ class EndCorrection:
     Attributes
     ----------
     moments : list of array (position, cell)
-        Per parity, from cells to graded positions.
+        Per parity, from cells to graded positions. Two parities know the cells up to the middle only: those beyond
+        are folded onto them.
     normal : list of array (wavenumber, position, position)
         Per parity, displacement from pressure at the graded positions.
     tangential : list of array, or empty
@@ -59,12 +60,41 @@ class EndCorrection:
         cells, wavenumbers = transform.shape
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
-        correction = np.zeros((cells, 2 * wavenumbers))
-        for moments, kernel in zip(self.moments, kernels, strict=True):
-            sources = (moments @ pairs).reshape(-1, wavenumbers, 2).transpose(1, 0, 2)
-            sunk = np.matmul(kernel, sources).transpose(1, 0, 2)
-            correction += moments.T @ sunk.reshape(-1, 2 * wavenumbers)
-        return np.asarray(correction.view(np.complex128) * (phase / self.cell))
+        sunk = [
+            moments.T @ self._between(kernel, moments @ part)
+            for moments, kernel, part in zip(self.moments, kernels, self._folded(pairs), strict=True)
+        ]
+        return np.asarray(self._unfolded(sunk, cells).view(np.complex128) * (phase / self.cell))
+
+    @staticmethod
+    def _between(kernel: FloatArray, sources: FloatArray) -> FloatArray:
+        """Apply a kernel (wavenumber, position, position) to pairs (position, wavenumber and part)."""
+        positions = sources.shape[0]
+        sunk = np.matmul(kernel, sources.reshape(positions, -1, 2).transpose(1, 0, 2))
+        return np.asarray(sunk.transpose(1, 0, 2).reshape(positions, -1))
+
+    def _folded(self, values: FloatArray) -> list[FloatArray]:
+        """Sum and difference of the cells on either side of the middle; with one end, the cells themselves."""
+        if len(self.moments) == 1:
+            return [values]
+        cells = values.shape[0]
+        half = (cells + 1) // 2
+        near, far = values[:half], values[::-1][:half]
+        even, odd = near + far, near - far
+        if cells % 2:  # the middle cell has met itself
+            even[-1] *= 0.5
+        return [even, odd]
+
+    @staticmethod
+    def _unfolded(parts: list[FloatArray], cells: int) -> FloatArray:
+        """Undo `_folded`, up to its factor."""
+        if len(parts) == 1:
+            return parts[0]
+        even, odd = parts
+        values = np.empty((cells, even.shape[1]))
+        np.add(even, odd, out=values[: even.shape[0]])
+        np.subtract(even[: cells // 2], odd[: cells // 2], out=values[::-1][: cells // 2])
+        return values
 
     @property
     def nbytes(self) -> int:
@@ -143,7 +173,11 @@ def build_end_correction(
                 samples[abs(parity - 1) // 2 if parity else 0, :, i] = sampled
             else:  # ends that know nothing of each other: both parities see half of either quarter space
                 samples[:, :, i] = 0.5 * np.array(sampled)
-    moments = [one_side + parity * one_side[:, ::-1] if parity else one_side for parity in parities]
+    near = (grid.cells_x + 1) // 2
+    moments = [
+        np.ascontiguousarray((one_side + parity * one_side[:, ::-1])[:, :near]) if parity else one_side
+        for parity in parities
+    ]
     spread = [
         [np.tensordot(transform, samples[p, kind], axes=1) for p in range(len(parities))]
         for kind, transform in enumerate(to_grid[: 1 + tangential])
