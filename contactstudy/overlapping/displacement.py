@@ -57,7 +57,7 @@ class EndCorrection:
     def apply(self, transform: ComplexArray, tangential: bool = False) -> ComplexArray:
         """Correction from the transform (cell, wavenumber) of pressure or traction."""
         kernels, phase = (self.tangential, 1j) if tangential else (self.normal, 1.0)
-        cells, wavenumbers = transform.shape
+        cells = transform.shape[0]
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
         sunk = [
