@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
+from scipy import ndimage
 
 from contactstudy import checks
-from contactstudy.bodies import Body, EndedBody
+from contactstudy.bodies import Body
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.conjugate_gradients import ContactIterate, solve_complementarity
@@ -169,34 +170,46 @@ class _Problem:
     max_iterations: int
 
     def coarser(self) -> _Problem:
-        """Return the same contact on cells of twice the size, where mirrored ends are good enough."""
-        grid = self.grid
-        cells = self.gap.reshape(grid.cells_x // 2, 2, grid.cells_y // 2, 2)
+        """Return the same contact on cells of twice the size."""
+        grid = self.grid.coarsened()
+        cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
         possible = np.isfinite(cells)
         count = possible.sum(axis=(1, 3))
         mean = np.where(possible, cells, 0.0).sum(axis=(1, 3)) / np.maximum(count, 1)
-        return replace(
-            self,
-            body=replace(self.body, model="mirror") if isinstance(self.body, EndedBody) else self.body,
-            grid=Grid(grid.x_range, grid.y_range, grid.cells_x // 2, grid.cells_y // 2),
-            gap=np.where(count > 0, mean, np.inf),
-            total=self.total / 4,
-            tolerance=COARSE_TOLERANCE,
-        )
+        gap = np.where(count > 0, mean, np.inf)
+        return replace(self, grid=grid, gap=gap, total=self.total / 4, tolerance=COARSE_TOLERANCE)
 
 
-def _first_guess(problem: _Problem) -> FloatArray:
+def _first_guess(operator: SurfaceOperator, problem: _Problem) -> FloatArray:
     """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
     if gap.size >= NESTED_CELLS and problem.grid.cells_x % 2 == 0 and problem.grid.cells_y % 2 == 0:
         coarse = problem.coarser()
-        found = _solve_normal(surface_operator(coarse.body, coarse.grid, tangential=False), coarse)
-        guess = np.where(possible, _refined(_refined(found.pressure).T).T, 0.0)
-        return guess if guess.any() else possible.astype(np.float64)
-    level = np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
-    guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
+        squared = _continued_square(operator.coarse, coarse, _solve_normal(operator.coarse, coarse))
+        guess = np.sqrt(np.maximum(np.where(possible, _refined(_refined(squared).T).T, 0.0), 0.0))
+    else:
+        level = np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
+        guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
     return np.asarray(guess if guess.any() else possible.astype(np.float64))
+
+
+def _continued_square(operator: SurfaceOperator, problem: _Problem, found: ContactIterate) -> FloatArray:
+    """Squared pressure, and outside the contact what continues it smoothly below zero.
+
+    Close to an edge the squared pressure and the opening to the power 2/3 are both linear in the distance from it
+    (Johnson, Contact Mechanics, section 5.1), so the one continues the other but for a factor. Interpolated to finer
+    cells its zero puts the edge within a cell.
+    """
+    squared = found.pressure**2
+    contact = squared > 0
+    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator(found.pressure)
+    opening = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - found.approach, 0.0)) ** (2 / 3)
+    inner = contact & ndimage.binary_dilation(~contact)
+    outer = (opening > 0) & ndimage.binary_dilation(contact)
+    if not inner.any() or not outer.any():
+        return np.asarray(squared)
+    return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))
 
 
 def _refined(values: FloatArray) -> FloatArray:
@@ -213,7 +226,7 @@ def _solve_normal(operator: SurfaceOperator, problem: _Problem, start: FloatArra
         operator.precondition,
         problem.gap,
         problem.total,
-        _first_guess(problem) if start is None else start,
+        _first_guess(operator, problem) if start is None else start,
         tolerance=problem.tolerance,
         max_iterations=problem.max_iterations,
     )

@@ -102,3 +102,7 @@ class Grid:
         """Cell centres along y, metres; exactly symmetric when the range is."""
         middle = 0.5 * (self.y_range[0] + self.y_range[1])
         return np.asarray(middle + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
+
+    def coarsened(self) -> Grid:
+        """Return the grid of cells of twice the size; the numbers of cells must be even."""
+        return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)

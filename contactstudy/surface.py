@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from functools import cached_property
 
 import numpy as np
@@ -66,6 +67,13 @@ class SurfaceOperator:
         """Roughly the pressure that sinks the cells by `gap`."""
         return self.parts[0][1].precondition(gap)
 
+    @cached_property
+    def coarse(self) -> SurfaceOperator:
+        """The operator on cells of twice the size, roughly: what a first guess is solved with."""
+        coarse = copy(self)
+        coarse.parts = [(weight, part.coarsened()) for weight, part in self.parts]
+        return coarse
+
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
@@ -84,7 +92,7 @@ class PartOperator:
     """
 
     def __init__(self, material: Material, part: Part, grid: Grid, *, tangential: bool, resolution: Resolution) -> None:
-        self.extent, self.grid = part.extent, grid
+        self.material, self.extent, self.grid = material, part.extent, grid
         low, high = part.extent
         mirrored = bool(np.isfinite(low))
         padded = grid.cells_x if np.isfinite(high) else 2 * grid.cells_x
@@ -110,6 +118,13 @@ class PartOperator:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
         low, high = self.extent
         return REFERENCE_LENGTHS * (high - low)
+
+    def coarsened(self) -> PartOperator:
+        """Return the operator on cells of twice the size, without traction."""
+        mirrored = Part(1.0, self.extent, freed=False)
+        coarse = PartOperator(self.material, mirrored, self.grid.coarsened(), tangential=False, resolution=Resolution())
+        coarse._ends = self._ends.coarsened() if self._ends is not None else None
+        return coarse
 
     def _kernel(self, corner: CornerFunction, x: FloatArray, y: FloatArray) -> FloatArray:
         grid = self.grid

@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, Material, surface_displacement
+from contactstudy import (
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    surface_displacement,
+)
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.surface import SurfaceOperator
+from contactstudy.surface import SurfaceOperator, surface_operator
 
 
 def test_hertz_pressure_sinks_the_inside_as_a_paraboloid(on_cells, half_space: HalfSpace) -> None:
@@ -77,3 +85,14 @@ def test_bad_input_is_named(short_body: FiniteLengthSpace, strip_pressure) -> No
         surface_displacement(short_body, strip_pressure(8.0, (16, 16)), np.nan)
     with pytest.raises(InvalidInputError, match="end at the free end"):
         surface_displacement(short_body, strip_pressure(6.0, (16, 16)))
+
+
+@pytest.mark.parametrize("cells", [(64, 48), (50, 48)], ids=["even halves", "odd halves"])
+def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, unit_material, cells):
+    random = np.random.default_rng(3)
+    for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
+        operator = surface_operator(body, Grid((0.0, 8.0), (-3.0, 3.0), *cells), tangential=False)
+        built = surface_operator(body, Grid((0.0, 8.0), (-3.0, 3.0), cells[0] // 2, cells[1] // 2), tangential=False)
+        pressure = random.random((cells[0] // 2, cells[1] // 2))
+        expected = built(pressure)
+        assert np.abs(operator.coarse(pressure) - expected).max() < 5e-3 * np.ptp(expected)

@@ -96,6 +96,21 @@ class EndCorrection:
         np.subtract(even[: cells // 2], odd[: cells // 2], out=values[::-1][: cells // 2])
         return values
 
+    def coarsened(self) -> EndCorrection:
+        """Return the correction on cells of twice the size: good enough for a first guess, and made in no time.
+
+        The lower half of the wavenumbers is the coarse grid's, but for the small part that its cells alias.
+        """
+        moments = []
+        for parity, fine in zip((1, -1) if len(self.moments) == 2 else (0,), self.moments, strict=True):
+            if parity and fine.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
+                fine = np.hstack([fine, parity * fine[:, -1:]])
+            moments.append(fine[:, ::2] + fine[:, 1::2])
+        normal, tangential = (
+            [kernel[: (len(kernel) - 1) // 2 + 1] for kernel in kernels] for kernels in (self.normal, self.tangential)
+        )
+        return EndCorrection(moments, normal, tangential, 2 * self.cell)
+
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
