@@ -96,3 +96,18 @@ def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, u
         pressure = random.random((cells[0] // 2, cells[1] // 2))
         expected = built(pressure)
         assert np.abs(operator.coarse(pressure) - expected).max() < 5e-3 * np.ptp(expected)
+
+
+@pytest.mark.parametrize("model", ["exact", "mirror"])
+def test_displacement_is_zero_at_its_reference_whatever_the_window(unit_material: Material, model: str) -> None:
+    body = FiniteLengthSpace(length=1.0, material=unit_material, model=model)
+    sunk = []
+    for window, cells in ((10.5, 210), (2.5, 50)):
+        grid = Grid((0.0, 1.0), (-window, window), 8, cells)
+        load = np.zeros(grid.shape)
+        load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
+        pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+        sunk.append(surface_displacement(body, pressure))
+    far = sunk[0].interp(y=sunk[0].attrs["reference_distance"])
+    assert float(np.abs(far).max()) < 1e-3 * float(sunk[0].max())
+    np.testing.assert_allclose(sunk[0].sel(y=slice(-2.5, 2.5)), sunk[1], atol=1e-5 * float(sunk[0].max()))

@@ -216,13 +216,17 @@ def _lateral_transforms(
     averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
     cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
     if reference is not None:
-        cut = first * reference
+        # Relative to |y| = reference: cos(k y) - (1 - k r) exp(-k r), r = reference / e. For amplitudes c / k + d, which
+        # is what they are at wavenumbers that reach so far, this is cos(k y) - cos(k reference), but smooth in k.
+        decay = reference / np.e
+        cosine -= (1 - lateral * decay) * np.exp(-lateral * decay) * averaged
+        cut = first * decay
         argument = np.maximum(first * offsets, 1e-30)
-        pole = -(np.euler_gamma + np.log(argument) - special.sici(argument)[1])
-        pole += np.euler_gamma + np.log(cut) + special.exp1(cut)
+        pole = special.sici(argument)[1] - np.log(argument) + np.log(cut) + special.exp1(cut) - np.expm1(-cut)
+        level = -first * np.expm1(-cut)
         # c = first (C(first/2) - C(first)), d = 2 C(first) - C(first/2)
-        cosine[:, 0] += grid.dy / np.pi * (2 * first - first * pole)
-        cosine[:, 1] += grid.dy / np.pi * (first * pole - first)
+        cosine[:, 0] += grid.dy / np.pi * (2 * level - first * pole)
+        cosine[:, 1] += grid.dy / np.pi * (first * pole - level)
     size = grid.cells_y
     turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
     twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
