@@ -216,8 +216,8 @@ def _lateral_transforms(
     averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
     cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
     if reference is not None:
-        # Relative to |y| = reference: cos(k y) - (1 - k r) exp(-k r), r = reference / e. For amplitudes c / k + d, which
-        # is what they are at wavenumbers that reach so far, this is cos(k y) - cos(k reference), but smooth in k.
+        # Relative to |y| = reference: cos(k y) - (1 - k r) exp(-k r), r = reference / e. For amplitudes c / k + d, as
+        # they are at wavenumbers that reach so far, this is cos(k y) - cos(k reference), but smooth in k.
         decay = reference / np.e
         cosine -= (1 - lateral * decay) * np.exp(-lateral * decay) * averaged
         cut = first * decay
