@@ -216,17 +216,13 @@ def _lateral_transforms(
     averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
     cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
     if reference is not None:
-        # Relative to |y| = reference: cos(k y) - (1 - k r) exp(-k r), r = reference / e. For amplitudes c / k + d, as
-        # they are at wavenumbers that reach so far, this is cos(k y) - cos(k reference), but smooth in k.
-        decay = reference / np.e
-        cosine -= (1 - lateral * decay) * np.exp(-lateral * decay) * averaged
-        cut = first * decay
+        # The integral of cos(k y) / k over all k, relative to |y| = reference, less what the other samples add to it:
+        # only the pole, which is a rigid motion, is moved.
         argument = np.maximum(first * offsets, 1e-30)
-        pole = special.sici(argument)[1] - np.log(argument) + np.log(cut) + special.exp1(cut) - np.expm1(-cut)
-        level = -first * np.expm1(-cut)
+        pole = special.sici(argument)[1] - np.log(argument) + np.log(first * reference)
         # c = first (C(first/2) - C(first)), d = 2 C(first) - C(first/2)
-        cosine[:, 0] += grid.dy / np.pi * (2 * level - first * pole)
-        cosine[:, 1] += grid.dy / np.pi * (first * pole - level)
+        cosine[:, 0] += grid.dy / np.pi * (2 * first - first * pole)
+        cosine[:, 1] += grid.dy / np.pi * (first * pole - first)
     size = grid.cells_y
     turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
     twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
