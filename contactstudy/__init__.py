@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
+    from contactstudy.displacement import displacement_field
     from contactstudy.equivalent import equivalent_loads
     from contactstudy.errors import (
         ContactStudyError,
@@ -58,6 +59,7 @@ _HOME = {
     "StudyFileError": "study.errors",
     "WindowError": "errors",
     "choose_grid": "case",
+    "displacement_field": "displacement",
     "equivalent_loads": "equivalent",
     "hydrostatic": "invariants",
     "maximum_shear": "invariants",
@@ -94,6 +96,7 @@ __all__ = [
     "StudyFileError",
     "WindowError",
     "choose_grid",
+    "displacement_field",
     "equivalent_loads",
     "hydrostatic",
     "maximum_shear",

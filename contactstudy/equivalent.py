@@ -12,7 +12,7 @@ from contactstudy.labelled import labelled_cells
 from contactstudy.overlapping.loads import equivalent_loads_of
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.stress import Positions
+from contactstudy.positions import Positions
 from contactstudy.surface import check_span
 
 

@@ -11,7 +11,8 @@ from contactstudy.contact import solve_contact
 from contactstudy.dataset import describe
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
-from contactstudy.stress import Positions, end_traction_residual, stress_field
+from contactstudy.positions import Positions
+from contactstudy.stress import end_traction_residual, stress_field
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
@@ -13,17 +10,13 @@ from contactstudy.bodies import Body
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import STRESSES, describe
-from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.invariants import von_mises
 from contactstudy.kernels.stress import half_space_stress
-from contactstudy.labelled import labelled_cells
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
-from contactstudy.surface import check_span
-
-Positions = Sequence[float] | npt.ArrayLike
+from contactstudy.positions import Positions, field_positions
 
 
 def stress_field(
@@ -72,25 +65,11 @@ def stress_field(
     >>> float(stress.sigma_xx[0, 0, 0]), round(float(stress.sigma_zz[1, 0, 0]), 3)
     (0.0, -0.954)
     """
-    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    values, grid = labelled_cells("pressure", pressure)
-    check_span(body, grid)
+    grid, values, positions = field_positions(body, pressure, x, y, z)
     friction = checks.finite("friction", friction)
-    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", x), grid)
-    at_y = grid.y if y is None else checks.coordinates("y", y)
-    at_z = checks.coordinates("z", z)
-    if (at_z < 0).any():
-        raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
-    stresses = raw_stress(body, values, friction, grid, at_x, at_y, at_z)
-    _impose_free_ends(body, stresses, at_x)
-    fields = xr.Dataset(
-        {name: (("x", "y", "z"), stresses[i]) for i, name in enumerate(STRESSES)},
-        coords={
-            "x": pressure["x"].values if x is None else at_x,
-            "y": pressure["y"].values if y is None else at_y,
-            "z": at_z,
-        },
-    )
+    stresses = raw_stress(body, values, friction, grid, *positions.axes)
+    _impose_free_ends(body, stresses, positions.x)
+    fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
@@ -159,16 +138,6 @@ def end_traction_residual(
         return 0.0
     traction = raw_stress(body, pressure, friction, grid, ends, y, z)[[0, 3, 4]]
     return float(np.sqrt((traction**2).sum(axis=0)).max() / pressure.max())
-
-
-def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
-    """Positions clipped by rounding errors to the body; raise for any outside."""
-    low, high = body.extent
-    rounding = 1e-9 * grid.dx
-    outside = (x < low - rounding) | (x > high + rounding)
-    if outside.any():
-        raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
-    return np.clip(x, low, high)
 
 
 def _impose_free_ends(body: Body, stresses: FloatArray, x: FloatArray) -> None:

@@ -15,7 +15,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import special
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.grid import Grid
@@ -23,6 +22,7 @@ from contactstudy.material import Material
 from contactstudy.overlapping.axial import AxialModes, axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
+from contactstudy.overlapping.problem import cosine_moments
 from contactstudy.overlapping.quadrature import (
     Resolution,
     lateral_nodes,
@@ -209,20 +209,17 @@ def _lateral_transforms(
     the first two samples are at `first` and half of it, and stand for ``c / k + d`` on the interval below `first`,
     of which the integral is taken in closed form, relative to ``|y| = reference``.
     """
-    offsets = grid.dy * np.arange(grid.cells_y + 1)
+    offsets: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
     phase = np.outer(offsets, lateral)
     averaged = np.zeros(lateral.size)
     averaged[lateral.size - weights.size :] = weights / np.pi * grid.dy
     averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
     cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
     if reference is not None:
-        # The integral of cos(k y) / k over all k, relative to |y| = reference, less what the other samples add to it:
-        # only the pole, which is a rigid motion, is moved.
-        argument = np.maximum(first * offsets, 1e-30)
-        pole = special.sici(argument)[1] - np.log(argument) + np.log(first * reference)
+        _, pole, constant = cosine_moments(first, offsets, reference)
         # c = first (C(first/2) - C(first)), d = 2 C(first) - C(first/2)
-        cosine[:, 0] += grid.dy / np.pi * (2 * first - first * pole)
-        cosine[:, 1] += grid.dy / np.pi * (first * pole - first)
+        cosine[:, 0] += grid.dy / np.pi * (2 * constant - first * pole)
+        cosine[:, 1] += grid.dy / np.pi * (first * pole - constant)
     size = grid.cells_y
     turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
     twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)

@@ -9,14 +9,13 @@ import numpy as np
 from contactstudy.checks import FloatArray
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.field import BATCH
 from contactstudy.overlapping.problem import (
     EndProblem,
     lateral_amplitudes,
-    lateral_quadrature,
-    lateral_synthesis,
+    lateral_sum,
     views_of,
 )
-from contactstudy.overlapping.stress import BATCH
 from contactstudy.threads import one_blas_thread
 
 
@@ -46,9 +45,10 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
     x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, problem.length - offset), x)
     z = np.maximum(z, offset)
     shortest = float(min(problem.from_end(x).min(), z.min()))
-    lateral, weights = lateral_quadrature(problem, y, shortest)
+    sum_along_y = lateral_sum(problem, y, shortest)
+    lateral = sum_along_y.wavenumbers
     amplitudes = lateral_amplitudes(problem.pressure, problem.grid, lateral, tangential=problem.tangential)
-    synthesis, _ = lateral_synthesis(lateral, weights, y)
+    synthesis, _ = sum_along_y.synthesis(y)
     columns = amplitudes.pressure.shape[-1]
     top = np.zeros((x.size, lateral.size, columns))
     faces = np.zeros((2, z.size, lateral.size, columns))

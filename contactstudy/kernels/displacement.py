@@ -1,0 +1,73 @@
+"""Displacements in the half-space, alone or with all mirrored loads, under cell-wise uniform pressure and traction."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
+from contactstudy.grid import Grid
+from contactstudy.kernels.field import Influence, half_space_field
+from contactstudy.kernels.images import FAR_LIMIT
+from contactstudy.kernels.patch_displacement import normal_displacement_inside, tangential_displacement_inside
+from contactstudy.material import Material
+
+# Sign of the components x, y, z on the other side of the load along x.
+SIGN_ALONG_X = [-1.0, 1.0, 1.0]
+
+
+def half_space_displacement(
+    pressure: FloatArray,
+    material: Material,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    *,
+    extent: tuple[float, float],
+    reference: float,
+    tangential: bool,
+) -> FloatArray:
+    """Displacements of the half-space under a pressure and all its mirror images in the ends of `extent`.
+
+    Parameters
+    ----------
+    pressure : array (cell_x, cell_y)
+        Pressure, Pa.
+    material : Material
+        Elastic constants.
+    grid : Grid
+        Cells.
+    x, y, z : array
+        Points, as a tensor product, metres.
+    extent : tuple of float
+        Where the mirrors stand; infinite for none.
+    reference : float
+        With two mirrors the displacement in the direction of the load grows like a logarithm; it is taken relative to
+        the top at this distance along y, metres.
+    tangential : bool
+        Whether the displacements under a traction along +y, equal to the pressure, are wanted as well.
+
+    Returns
+    -------
+    array (load, 3, x, y, z)
+        Under the pressure and, if wanted, under the traction: along x, y, z in metres.
+    """
+    nu = material.poisson
+
+    def corner(at_x: FloatArray, at_y: FloatArray, depth: float) -> FloatArray:
+        normal = normal_displacement_inside(at_x, at_y, depth, nu)
+        if not tangential:
+            return normal
+        return np.concatenate([normal, tangential_displacement_inside(at_x, at_y, depth, nu)])
+
+    signs = np.tile(SIGN_ALONG_X, 1 + tangential)
+    level = np.zeros(signs.size)
+    length = extent[1]
+    if np.isfinite(length):
+        # Beside a row of loads 4 pi G u is 2 (1 - nu) / r in their direction, and y**2 / r**3 adds a constant.
+        row = 2 * (1 - nu) * np.log(2 * FAR_LIMIT * length / reference)
+        level[2] = -row / length
+        if tangential:
+            level[4] = -(row + 2 * nu) / length
+    field = half_space_field(pressure, Influence(corner, signs, level), grid, x, y, z, extent=extent)
+    return field.reshape(-1, 3, *field.shape[1:]) / (4 * np.pi * material.shear_modulus)

@@ -1,0 +1,191 @@
+"""A field that the free ends add to the mirrored half-space, from the equivalent loads.
+
+For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
+rays, where every factor decays with the distance from the loaded corner; the field is a sum of separable terms
+``f(k, x) g(k, z)``, taken as matrix products. Only points within reach of a corner take part at a high wavenumber.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.overlapping.axial import DECAY_LENGTHS, axial_modes
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
+from contactstudy.overlapping.problem import (
+    EndProblem,
+    LateralAmplitudes,
+    View,
+    lateral_amplitudes,
+    lateral_sum,
+    views_of,
+)
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.threads import one_blas_thread
+
+# Wavenumbers that share one set of points and one product along y.
+BATCH = 16
+
+
+@dataclass(frozen=True)
+class Harmonics:
+    """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y.
+
+    Attributes
+    ----------
+    below_equivalent_load : callable
+        From equation set, equivalent load (wavenumber, column), cosine and sine (wavenumber, x) and depths to
+        amplitudes (component, x, z, column).
+    beside_face_load : callable
+        From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
+        to the same.
+    even_in_y, odd_in_y : list of int
+        Components that under a pressure even in y are even or odd.
+    odd_along_x : list of int
+        Components that change sign when seen from the other end.
+    """
+
+    below_equivalent_load: Callable[[EquationSet, ComplexArray, ComplexArray, ComplexArray, FloatArray], FloatArray]
+    beside_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
+    even_in_y: list[int]
+    odd_in_y: list[int]
+    odd_along_x: list[int]
+
+    @property
+    def count(self) -> int:
+        """Number of components."""
+        return len(self.even_in_y) + len(self.odd_in_y)
+
+
+def end_field(
+    problem: EndProblem,
+    harmonics: Harmonics,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    *,
+    reference: float | None = None,
+) -> FloatArray:
+    """Field that the free ends add to the half-space with all mirrored loads.
+
+    Parameters
+    ----------
+    problem : EndProblem
+        Body and load.
+    harmonics : Harmonics
+        Which field.
+    x, y, z : array
+        Points, as a tensor product, inside the body, metres.
+    reference : float, optional
+        For a field whose amplitudes have a pole at wavenumber 0 along y, as displacements between two ends have:
+        where along y its rigid part is zero, metres.
+
+    Returns
+    -------
+    array (load, component, x, y, z)
+        Under the pressure and, if wanted, under the traction.
+    """
+    fewer = graded_interpolation(x, problem.length, POSITIONS_PER_PANEL)
+    if fewer is not None:
+        positions, interpolation = fewer
+        coarse = end_field(problem, harmonics, positions, y, z, reference=reference)
+        return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 2)), 0, 2))
+    offset = problem.corner_offset
+    with one_blas_thread():
+        result = _away_from_corner(problem, harmonics, x, y, z, reference)
+        rows, columns = np.flatnonzero(problem.from_end(x) < offset), np.flatnonzero(z < offset)
+        if rows.size and columns.size:
+            at_corner = _away_from_corner(problem, harmonics, x[rows], y, np.array([offset]), reference)
+            for place, row in enumerate(rows):
+                result[:, :, row][..., columns] = at_corner[:, :, place]
+    return result
+
+
+def _away_from_corner(
+    problem: EndProblem, harmonics: Harmonics, x: FloatArray, y: FloatArray, z: FloatArray, reference: float | None
+) -> FloatArray:
+    distance = np.hypot(problem.from_end(x)[:, None], z[None, :])
+    shortest = max(float(distance.min()), problem.corner_offset)
+    sum_along_y = lateral_sum(problem, y, shortest, reference)
+    if distance.min() > 0:
+        sum_along_y = sum_along_y.below(DECAY_LENGTHS / distance.min())
+    lateral = sum_along_y.wavenumbers
+    loads = lateral_amplitudes(problem.pressure, problem.grid, lateral, tangential=problem.tangential)
+    even, odd = sum_along_y.synthesis(y)
+    syntheses = ((harmonics.even_in_y, even), (harmonics.odd_in_y, odd))
+    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
+    for start in range(0, lateral.size, BATCH):
+        batch = slice(start, min(start + BATCH, lateral.size))
+        near = lateral[start] * distance < DECAY_LENGTHS
+        rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
+        amplitudes = _batch_amplitudes(problem, harmonics, loads, lateral[batch], batch, x[rows], z[columns], shortest)
+        for load, part in enumerate(np.split(amplitudes, len(result), axis=-1)):
+            for components, synthesis in syntheses:
+                flat = part[components].reshape(-1, 2 * part.shape[3])
+                values = (flat @ synthesis[batch].reshape(-1, y.size)).reshape(-1, rows.size, columns.size, y.size)
+                for component, value in zip(components, values, strict=True):
+                    result[load, component, rows[:, None], columns] += value
+    return np.ascontiguousarray(result.transpose(0, 1, 2, 4, 3))
+
+
+def _batch_amplitudes(
+    problem: EndProblem,
+    harmonics: Harmonics,
+    loads: LateralAmplitudes,
+    lateral: FloatArray,
+    batch: slice,
+    x: FloatArray,
+    z: FloatArray,
+    shortest: float,
+) -> FloatArray:
+    """Amplitudes for a batch of wavenumbers along y: array (component, x, z, wavenumber, column)."""
+    resolution = problem.resolution
+    views = [
+        view
+        for modes in axial_modes(problem.length, float(lateral[0]), shortest, resolution)
+        for view in views_of(modes, problem, loads, batch, x)
+    ]
+    amplitudes = np.zeros((harmonics.count, x.size, z.size, lateral.size, loads.pressure.shape[-1]))
+    for number, wavenumber in enumerate(lateral):
+        system = None
+        for view in views:
+            if system is None or system.modes is not view.modes:
+                system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
+            here = amplitudes[..., number, :]
+            here[:, view.rows] += _harmonic_field(harmonics, system, view, number, z, shortest, resolution)
+    return amplitudes
+
+
+def _harmonic_field(
+    harmonics: Harmonics,
+    system: EquationSet,
+    view: View,
+    number: int,
+    z: FloatArray,
+    shortest: float,
+    resolution: Resolution,
+) -> FloatArray:
+    """Amplitudes for the batch's wavenumber `number`: array (component, x, z, column)."""
+    pressure, traction = view.pressure[:, number], view.traction[:, number]
+    source = system.from_pressure(pressure)
+    if np.any(traction):
+        source = source + system.from_traction(traction)
+    equivalent = system.on_top(system.solve(source))
+    depth, weights, face_load = system.on_ray(pressure, traction, equivalent, shortest, resolution)
+    field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
+    field += harmonics.beside_face_load(system, depth, weights[:, None] * face_load, view.x, z)
+    if view.flipped:
+        field[harmonics.odd_along_x] *= -1.0
+    return field
+
+
+def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
+    """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
+    flat_left = left.reshape(-1, left.shape[-1])
+    flat_right = right.reshape(right.shape[0], -1)
+    product = np.hstack([flat_left.real, -flat_left.imag]) @ np.vstack([flat_right.real, flat_right.imag])
+    return np.asarray(product.reshape(*left.shape[:-1], *right.shape[1:]))

@@ -1,0 +1,104 @@
+"""Displacements inside the body: Hooke's law with the stresses, the top's own displacement, references."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    displacement_field,
+    stress_field,
+    surface_displacement,
+)
+
+MATERIAL = Material(young=0.91, poisson=0.3)
+BODIES = {
+    "half-space": HalfSpace(material=MATERIAL),
+    "quarter space": QuarterSpace(material=MATERIAL),
+    "finite length": FiniteLengthSpace(length=4.0, material=MATERIAL),
+    "mirror": FiniteLengthSpace(length=4.0, material=MATERIAL, model="mirror"),
+}
+
+
+@pytest.fixture(scope="module")
+def eccentric(on_cells) -> xr.DataArray:
+    """Hertz pressure about x = 1.3 on cells that span 0 to 4."""
+    return on_cells(lambda x, y: np.sqrt(np.maximum(1 - (x - 1.3) ** 2 - y**2, 0.0)), (0.0, 4.0), (-1.5, 1.5), (64, 48))
+
+
+def strain_of(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
+    """Strain tensor at a point, by central differences of the displacements."""
+    axes = [at + step * np.array([-1.0, 0.0, 1.0]) for at in point]
+    field = displacement_field(body, pressure, friction, *axes)
+    gradient = np.empty((3, 3))
+    for i, name in enumerate(("u_x", "u_y", "u_z")):
+        for j, axis in enumerate("xyz"):
+            along = field[name].isel({other: 1 for other in "xyz" if other != axis}).values
+            gradient[i, j] = (along[2] - along[0]) / (2 * step)
+    return 0.5 * (gradient + gradient.T)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("name", BODIES)
+def test_strains_obey_hookes_law_with_the_stresses(name: str, friction: float, eccentric: xr.DataArray) -> None:
+    body, shear, nu = BODIES[name], MATERIAL.shear_modulus, MATERIAL.poisson
+    for point in ((0.25, 0.2, 0.4), (1.5, -0.6, 0.8), (3.7, 0.1, 1.5)):
+        strain = strain_of(body, eccentric, friction, point)
+        expected = 2 * shear * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
+        stress = stress_field(body, eccentric, friction, *([at] for at in point)).squeeze()
+        for i, j, component in (
+            *((0, 0, "sigma_xx"), (1, 1, "sigma_yy"), (2, 2, "sigma_zz")),
+            *((0, 1, "tau_xy"), (0, 2, "tau_xz"), (1, 2, "tau_yz")),
+        ):
+            assert float(stress[component]) == pytest.approx(expected[i, j], abs=2e-4), (point, component)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+@pytest.mark.parametrize("name", BODIES)
+def test_on_the_top_it_is_the_tops_displacement(name: str, friction: float, eccentric: xr.DataArray) -> None:
+    sunk = surface_displacement(BODIES[name], eccentric, friction)
+    inside = displacement_field(BODIES[name], eccentric, friction)["u_z"].sel(z=0.0, drop=True)
+    tolerance = 1e-12 if name in ("half-space", "mirror") else 1e-3
+    assert float(np.abs(inside - sunk).max()) < tolerance * float(sunk.max() - sunk.min())
+
+
+def test_symmetric_load_displaces_symmetrically(on_cells) -> None:
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2) ** 2 - y**2, 0.0), (0.0, 4.0), (-1.5, 1.5), (32, 24))
+    field = displacement_field(BODIES["finite length"], pressure, z=[0.0, 0.7])
+    for name, sign_x, sign_y in (("u_x", -1, 1), ("u_y", 1, -1), ("u_z", 1, 1)):
+        values = field[name].values
+        np.testing.assert_allclose(values[::-1], sign_x * values, atol=1e-6)
+        np.testing.assert_allclose(values[:, ::-1], sign_y * values, atol=1e-6)
+
+
+def test_far_along_y_the_finite_body_is_at_rest_where_it_says_so(eccentric: xr.DataArray) -> None:
+    field = displacement_field(BODIES["finite length"], eccentric, y=[0.0, 40.0])
+    assert field.u_z.attrs["reference_distance"] == pytest.approx(40.0)
+    ratio = np.abs(field.u_z.sel(y=40.0)).max() / field.u_z.sel(y=0.0).max()
+    assert float(ratio) < 2e-3
+
+
+def test_every_component_has_its_unit(eccentric: xr.DataArray) -> None:
+    field = displacement_field(BODIES["half-space"], eccentric, x=[0.0], y=[0.0], z=[1.0])
+    assert [field[name].attrs["units"] for name in ("u_x", "u_y", "u_z")] == ["m"] * 3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({"x": [-0.1]}, "x"),
+        ({"x": [4.1]}, "x"),
+        ({"z": [-1.0]}, "z"),
+        ({"y": [np.nan]}, "y"),
+        ({"friction": np.inf}, "friction"),
+    ],
+)
+def test_bad_input(arguments, parameter: str, eccentric: xr.DataArray) -> None:
+    with pytest.raises(InvalidInputError, match=parameter):
+        displacement_field(BODIES["finite length"], eccentric, **arguments)
