@@ -7,7 +7,7 @@ rays, where every factor decays with the distance from the loaded corner; the fi
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,7 @@ from contactstudy.overlapping.problem import (
     View,
     lateral_amplitudes,
     lateral_sum,
+    parity_parts,
     views_of,
 )
 from contactstudy.overlapping.quadrature import Resolution
@@ -29,6 +30,8 @@ from contactstudy.threads import one_blas_thread
 
 # Wavenumbers that share one set of points and one product along y.
 BATCH = 16
+# Positions over the length that agree to this many digits are the same distance from either end.
+SAME_POSITION = 12
 
 
 @dataclass(frozen=True)
@@ -94,42 +97,77 @@ def end_field(
         positions, interpolation = fewer
         coarse = end_field(problem, harmonics, positions, y, z, reference=reference)
         return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 2)), 0, 2))
+    if np.isinf(problem.length):
+        return _first_half(problem, {0: problem.pressure}, harmonics, x, y, z, reference)[0]
+    # Parts of the load even and odd about mid-length make fields of which one half is the other's image.
+    half, where = np.unique(np.round(problem.from_end(x) / problem.length, SAME_POSITION), return_inverse=True)
+    parts = parity_parts(problem.pressure)
+    fields = _first_half(problem, parts, harmonics, problem.length * half, y, z, reference)
+    beyond = x > 0.5 * problem.length
+    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, y.size, z.size))
+    for parity, field in fields.items():
+        signs = np.where(beyond, parity, 1.0) * np.ones((harmonics.count, 1))
+        signs[harmonics.odd_along_x] *= np.where(beyond, -1.0, 1.0)
+        result += signs[:, :, None, None] * field[:, :, where]
+    return result
+
+
+def _first_half(
+    problem: EndProblem,
+    parts: Mapping[int, FloatArray],
+    harmonics: Harmonics,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    reference: float | None,
+) -> dict[int, FloatArray]:
+    """Fields of the load's parts, by parity, at points no farther from end I than from end II."""
     offset = problem.corner_offset
     with one_blas_thread():
-        result = _away_from_corner(problem, harmonics, x, y, z, reference)
-        rows, columns = np.flatnonzero(problem.from_end(x) < offset), np.flatnonzero(z < offset)
+        result = _away_from_corner(problem, parts, harmonics, x, y, z, reference)
+        rows, columns = np.flatnonzero(x < offset), np.flatnonzero(z < offset)
         if rows.size and columns.size:
-            at_corner = _away_from_corner(problem, harmonics, x[rows], y, np.array([offset]), reference)
-            for place, row in enumerate(rows):
-                result[:, :, row][..., columns] = at_corner[:, :, place]
+            at_corner = _away_from_corner(problem, parts, harmonics, x[rows], y, np.array([offset]), reference)
+            for parity, field in result.items():
+                for place, row in enumerate(rows):
+                    field[:, :, row][..., columns] = at_corner[parity][:, :, place]
     return result
 
 
 def _away_from_corner(
-    problem: EndProblem, harmonics: Harmonics, x: FloatArray, y: FloatArray, z: FloatArray, reference: float | None
-) -> FloatArray:
-    distance = np.hypot(problem.from_end(x)[:, None], z[None, :])
+    problem: EndProblem,
+    parts: Mapping[int, FloatArray],
+    harmonics: Harmonics,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    reference: float | None,
+) -> dict[int, FloatArray]:
+    distance = np.hypot(x[:, None], z[None, :])
     shortest = max(float(distance.min()), problem.corner_offset)
     sum_along_y = lateral_sum(problem, y, shortest, reference)
     if distance.min() > 0:
         sum_along_y = sum_along_y.below(DECAY_LENGTHS / distance.min())
     lateral = sum_along_y.wavenumbers
-    loads = lateral_amplitudes(problem.pressure, problem.grid, lateral, tangential=problem.tangential)
+    loads = lateral_amplitudes(parts, problem.grid, lateral, tangential=problem.tangential)
+    phases = np.array([column.phase for column in loads.columns])
     even, odd = sum_along_y.synthesis(y)
-    syntheses = ((harmonics.even_in_y, even), (harmonics.odd_in_y, odd))
-    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
+    syntheses = ((harmonics.even_in_y, even[:, phases]), (harmonics.odd_in_y, odd[:, phases]))
+    result = {parity: np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size)) for parity in parts}
     for start in range(0, lateral.size, BATCH):
         batch = slice(start, min(start + BATCH, lateral.size))
         near = lateral[start] * distance < DECAY_LENGTHS
         rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
         amplitudes = _batch_amplitudes(problem, harmonics, loads, lateral[batch], batch, x[rows], z[columns], shortest)
-        for load, part in enumerate(np.split(amplitudes, len(result), axis=-1)):
+        for parity, load in {(column.parity, column.load) for column in loads.columns}:
+            own = [i for i, column in enumerate(loads.columns) if (column.parity, column.load) == (parity, load)]
             for components, synthesis in syntheses:
-                flat = part[components].reshape(-1, 2 * part.shape[3])
-                values = (flat @ synthesis[batch].reshape(-1, y.size)).reshape(-1, rows.size, columns.size, y.size)
-                for component, value in zip(components, values, strict=True):
-                    result[load, component, rows[:, None], columns] += value
-    return np.ascontiguousarray(result.transpose(0, 1, 2, 4, 3))
+                flat = amplitudes[..., own][components].reshape(len(components) * rows.size * columns.size, -1)
+                values = flat @ synthesis[batch, own].reshape(-1, y.size)
+                for component, value in zip(components, values.reshape(len(components), -1), strict=True):
+                    shaped = value.reshape(rows.size, columns.size, y.size)
+                    result[parity][load, component, rows[:, None], columns] += shaped
+    return {parity: np.ascontiguousarray(field.swapaxes(3, 4)) for parity, field in result.items()}
 
 
 def _batch_amplitudes(
@@ -149,14 +187,13 @@ def _batch_amplitudes(
         for modes in axial_modes(problem.length, float(lateral[0]), shortest, resolution)
         for view in views_of(modes, problem, loads, batch, x)
     ]
-    amplitudes = np.zeros((harmonics.count, x.size, z.size, lateral.size, loads.pressure.shape[-1]))
-    for number, wavenumber in enumerate(lateral):
-        system = None
-        for view in views:
-            if system is None or system.modes is not view.modes:
-                system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
-            here = amplitudes[..., number, :]
-            here[:, view.rows] += _harmonic_field(harmonics, system, view, number, z, shortest, resolution)
+    amplitudes = np.zeros((harmonics.count, x.size, z.size, lateral.size, len(loads.columns)))
+    depths = np.arange(z.size)[:, None]
+    for view in views:
+        for number, wavenumber in enumerate(lateral):
+            system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
+            field = _harmonic_field(harmonics, system, view, number, z, shortest, resolution)
+            amplitudes[:, view.rows[:, None, None], depths, number, view.columns] = field
     return amplitudes
 
 
@@ -178,8 +215,6 @@ def _harmonic_field(
     depth, weights, face_load = system.on_ray(pressure, traction, equivalent, shortest, resolution)
     field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
     field += harmonics.beside_face_load(system, depth, weights[:, None] * face_load, view.x, z)
-    if view.flipped:
-        field[harmonics.odd_along_x] *= -1.0
     return field
 
 

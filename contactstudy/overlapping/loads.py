@@ -47,9 +47,9 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
     shortest = float(min(problem.from_end(x).min(), z.min()))
     sum_along_y = lateral_sum(problem, y, shortest)
     lateral = sum_along_y.wavenumbers
-    amplitudes = lateral_amplitudes(problem.pressure, problem.grid, lateral, tangential=problem.tangential)
+    amplitudes = lateral_amplitudes({0: problem.pressure}, problem.grid, lateral, tangential=problem.tangential)
     synthesis, _ = sum_along_y.synthesis(y)
-    columns = amplitudes.pressure.shape[-1]
+    columns = len(amplitudes.columns)
     top = np.zeros((x.size, lateral.size, columns))
     faces = np.zeros((2, z.size, lateral.size, columns))
     resolution = problem.resolution
@@ -76,8 +76,10 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
 
     def over_y(values: FloatArray) -> FloatArray:
         """From amplitudes (..., wavenumber, column) to values (load, ..., y)."""
-        parts = np.split(values, 1 + problem.tangential, axis=-1)
-        return np.stack([np.tensordot(part, synthesis, axes=2) for part in parts])
+        result = np.zeros((1 + problem.tangential, *values.shape[:-2], y.size))
+        for i, column in enumerate(amplitudes.columns):
+            result[column.load] += values[..., i] @ synthesis[:, column.phase]
+        return result
 
     on_faces = -over_y(faces).swapaxes(2, 3)
     return EquivalentLoads(over_y(top), on_faces[:, 0], on_faces[:, 1])

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from scipy import special
@@ -15,6 +17,8 @@ from contactstudy.overlapping.quadrature import Resolution, lateral_nodes
 # Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
 # there, of which only the sum is finite.
 CORNER_OFFSET = 1e-2
+# A part smaller than this, over the load, is left out: a contact symmetric but for its tolerance is symmetric.
+NEGLIGIBLE = 1e-9
 # Below this wavenumber along y, over the smallest length of the problem, an amplitude is its poles and a constant. The
 # double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is taken much lower.
 POLES_ALONE = 0.1
@@ -58,6 +62,24 @@ class EndProblem:
         return np.minimum(x, self.length - x)
 
 
+class Column(NamedTuple):
+    """One column of a load's amplitudes.
+
+    Attributes
+    ----------
+    load : int
+        0 for the pressure, 1 for an equal traction along y.
+    phase : int
+        0 if it makes components that are even in y follow ``cos(k_y y)``, 1 for ``sin(k_y y)``.
+    parity : int
+        1 or -1 for the part of the load even or odd about mid-length, 0 for a load that is not split.
+    """
+
+    load: int
+    phase: int
+    parity: int
+
+
 @dataclass(frozen=True, eq=False)
 class LateralAmplitudes:
     """Top loads as amplitudes along x for each wavenumber along y.
@@ -65,28 +87,42 @@ class LateralAmplitudes:
     Attributes
     ----------
     pressure, traction : array (cell, q, column)
-        Amplitudes. The first two columns are a pressure, whose part in one column makes stresses that are even in
-        y follow ``cos(k_y y)`` and in the other ``sin(k_y y)``; two more, if there, are an equal traction along y.
+        Amplitudes.
+    columns : list of Column
+        What each column is; those that are negligible are left out.
     """
 
     pressure: FloatArray
     traction: FloatArray
+    columns: list[Column]
+
+
+def parity_parts(pressure: FloatArray) -> dict[int, FloatArray]:
+    """Parts of a pressure (x, y) even (1) and odd (-1) about mid-length; one that is negligible is left out."""
+    parts = {parity: 0.5 * (pressure + parity * pressure[::-1]) for parity in (1, -1)}
+    least = NEGLIGIBLE * np.abs(pressure).max()
+    return {parity: part for parity, part in parts.items() if np.abs(part).max() > least}
 
 
 def lateral_amplitudes(
-    pressure: FloatArray, grid: Grid, wavenumbers: FloatArray, *, tangential: bool
+    parts: Mapping[int, FloatArray], grid: Grid, wavenumbers: FloatArray, *, tangential: bool
 ) -> LateralAmplitudes:
-    """Amplitudes of cell-wise uniform `pressure` (x, y) and, if asked, of an equal traction."""
+    """Amplitudes of the `parts` (by parity) of a cell-wise uniform pressure and, if asked, of an equal traction."""
     width = grid.dy * np.sinc(wavenumbers * grid.dy / (2 * np.pi))
-    cosine = pressure @ (np.cos(np.outer(grid.y, wavenumbers)) * width)
-    sine = pressure @ (np.sin(np.outer(grid.y, wavenumbers)) * width)
-    none = np.zeros_like(cosine)
-    if not tangential:
-        return LateralAmplitudes(np.stack([cosine, sine], axis=-1), np.stack([none, none], axis=-1))
-    # Kernels of a traction carry a factor i against those of a pressure, which turns cosine into sine.
-    return LateralAmplitudes(
-        np.stack([cosine, sine, none, none], axis=-1), np.stack([none, none, sine, -cosine], axis=-1)
-    )
+    waves = [function(np.outer(grid.y, wavenumbers)) * width for function in (np.cos, np.sin)]
+    pressures, tractions, columns = [], [], []
+    for parity, pressure in parts.items():
+        cosine, sine = (pressure @ wave for wave in waves)
+        none = np.zeros_like(cosine)
+        least = NEGLIGIBLE * max(np.abs(cosine).max(), np.abs(sine).max())
+        # Kernels of a traction carry a factor i against those of a pressure, which turns cosine into sine.
+        for load, amplitudes in enumerate([(cosine, sine), (sine, -cosine)][: 1 + tangential]):
+            for phase, amplitude in enumerate(amplitudes):
+                if np.abs(amplitude).max() > least:
+                    columns.append(Column(load, phase, parity))
+                    pressures.append(none if load else amplitude)
+                    tractions.append(amplitude if load else none)
+    return LateralAmplitudes(np.stack(pressures, axis=-1), np.stack(tractions, axis=-1), columns)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,12 +208,14 @@ def lateral_sum(problem: EndProblem, y: FloatArray, shortest: float, reference: 
 class View:
     """Loads and points as one set of axial modes sees them; from end II when `flipped`.
 
-    `rows` says which of the points are within reach, `x` is their distance from the end.
+    `columns` says which of the loads' columns they are, `rows` which of the points are within reach, `x` is the
+    points' distance from the end.
     """
 
     modes: AxialModes
     pressure: ComplexArray
     traction: ComplexArray
+    columns: IntArray
     rows: IntArray
     x: FloatArray
     cosine: ComplexArray
@@ -188,20 +226,28 @@ class View:
 def views_of(
     modes: AxialModes, problem: EndProblem, loads: LateralAmplitudes, batch: slice, x: FloatArray
 ) -> list[View]:
-    """Return a batch of loads and the points `x` as `modes` see them, from each end on its own if need be."""
+    """Return a batch of loads and the points `x` as `modes` see them.
+
+    Of loads that are split by parity, the field is wanted on the first half of the body only. Otherwise ends that know
+    nothing of each other are two quarter spaces, the second seen from its own end.
+    """
     grid, length = problem.grid, problem.length
+    parities = np.array([column.parity for column in loads.columns])
+    split = bool(parities.all())
+    columns = np.flatnonzero((parities == modes.parity) | (parities == 0) | (modes.parity == 0))
+    if not columns.size:
+        return []
     edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
     integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
-    # Ends that know nothing of each other are two quarter spaces, the second seen from its own end.
-    sides = (False, True) if np.isfinite(length) and not modes.parity else (False,)
+    sides = (False, True) if np.isfinite(length) and not modes.parity and not split else (False,)
     views = []
     for flipped in sides:
         facing = integrals[:, ::-1] if flipped else integrals
-        pressure = np.tensordot(facing, loads.pressure[:, batch], axes=1)
-        traction = np.tensordot(facing, loads.traction[:, batch], axes=1)
+        pressure = np.tensordot(facing, loads.pressure[:, batch, columns], axes=1)
+        traction = np.tensordot(facing, loads.traction[:, batch, columns], axes=1)
         distance = length - x if flipped else x
         rows = np.flatnonzero(distance <= modes.reach)
         distance = distance[rows]
         cosine, sine = modes.cosine(distance), modes.sine(distance)
-        views.append(View(modes, pressure, traction, rows, distance, cosine, sine, flipped))
+        views.append(View(modes, pressure, traction, columns, rows, distance, cosine, sine, flipped))
     return views
