@@ -6,9 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
 from contactstudy.checks import FloatArray
@@ -25,9 +26,10 @@ FITS = 1e-3
 FEWEST = 5
 """Smallest number of measured points."""
 
-SPIKE_SCALES, SPIKE_SHARE = 12.0, 0.02
-"""A point is an outlier if it stands out of its neighbours' median by more than this many medians of what all points
-do, and by more than this share of the profile's height without the outer tenth."""
+SPIKE_BENDS, SPIKE_SHARE = 8.0, 0.02
+"""A point is an outlier if it stands out of the median of five points by more than this many times the usual bend
+around it (median of half the second differences of eleven points), and by more than this share of the profile's
+height (without the outer tenth of its values)."""
 
 
 @dataclass(frozen=True)
@@ -42,9 +44,8 @@ class Measured(Shape):
     drops : sequence of float
         Drop at each position, metres, not negative.
     largest_spike : float, optional
-        How far (metres) a point, or two beside each other, may stand out of the median of five neighbours before it
-        is refused as an outlier. Default: 12 times the median of what all points do so, but at least 0.02 of the
-        height of the profile within the middle nine tenths of its points.
+        How far (metres) a point, or two beside each other, may stand out of the median of five points before it is
+        refused as an outlier. Default: 8 times the usual bend around it, at least 0.02 of the profile's height.
 
     Raises
     ------
@@ -57,7 +58,8 @@ class Measured(Shape):
     -----
     The interpolation is piecewise cubic with continuous slope (F. N. Fritsch, J. Butland, SIAM Journal on Scientific
     and Statistical Computing 5 (1984) 300-304): monotone between two points, so it adds no height of its own. A
-    median does not change where a profile only rises or falls, so steep ends are no outliers.
+    median does not change where a profile only rises or falls, so steep ends are no outliers. Of the very first and
+    last point nothing can be said.
 
     Examples
     --------
@@ -141,7 +143,8 @@ class Measured(Shape):
         from scipy.interpolate import PchipInterpolator
 
         x = np.asarray(self.positions)
-        return PchipInterpolator(x - 0.5 * (x[0] + x[-1]), np.asarray(self.drops))
+        with np.errstate(over="ignore"):  # steps of 1e-300 m, harmless in a harmonic mean
+            return PchipInterpolator(x - 0.5 * (x[0] + x[-1]), np.asarray(self.drops))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -188,16 +191,27 @@ def refuse_outliers(x: FloatArray, drops: FloatArray, largest: float | None = No
     InvalidInputError
         With the positions of the outliers.
     """
-    last = drops.size - 1
-    reach = np.minimum(2, np.minimum(np.arange(last + 1), last - np.arange(last + 1)))
-    medians = np.array([np.median(drops[at - r : at + r + 1]) for at, r in enumerate(reach)])
-    spikes = np.abs(drops - medians)
+    spikes = np.abs(drops - _running_median(drops, 2, "odd"))
     if largest is None:
         low, high = np.quantile(drops, [0.05, 0.95])
-        largest = max(SPIKE_SCALES * float(np.median(spikes)), SPIKE_SHARE * float(high - low))
-    outliers = np.flatnonzero(spikes > largest)
+        bends = np.pad(0.5 * np.abs(np.diff(drops, 2)), 1, mode="reflect")
+        limits = np.maximum(SPIKE_BENDS * _running_median(bends, 5, "even"), SPIKE_SHARE * (high - low))
+    else:
+        limits = np.full(drops.shape, largest)
+    # beside an outlier the median is that of other points: only the worst of neighbours is named
+    worst = sliding_window_view(np.pad(spikes, 2), 5).max(axis=-1)
+    outliers = np.flatnonzero((spikes > limits) & (spikes == worst))
     if outliers.size:
         shown = ", ".join(f"{spikes[at]:.2g} m at x = {x[at]:g} m" for at in outliers[:5])
         raise InvalidInputError(
-            "drops", f"{outliers.size} outliers: {shown}", f"within {largest:.2g} m of the median of their neighbours"
+            "drops",
+            f"{outliers.size} outliers: {shown}",
+            f"within {limits[outliers[0]]:.2g} m of the median of their neighbours",
         )
+
+
+def _running_median(values: FloatArray, reach: int, mirror: Literal["odd", "even"]) -> FloatArray:
+    """Median of each value and `reach` on either side; beyond its ends the series is its own mirror image."""
+    reach = min(reach, values.size - 1)
+    padded = np.pad(values, reach, mode="reflect", reflect_type=mirror)
+    return np.asarray(np.median(sliding_window_view(padded, 2 * reach + 1), axis=-1))
