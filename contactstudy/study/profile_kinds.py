@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -89,9 +89,11 @@ def _numbers(made: Any, *designed: str, of_radius: Mapping[str, float] | None = 
         if "design_pressure" in values:
             _require(values, *(name for name in needed if name not in designed))
             pressure = values.pop("design_pressure")
-            return made.for_pressure(pressure, radius=around.radius, modulus=around.modulus, **values)  # type: ignore[no-any-return]
+            designed_for: Profile = made.for_pressure(pressure, radius=around.radius, modulus=around.modulus, **values)
+            return designed_for
         _require(values, *needed)
-        return made(**{name: scale * around.radius for name, scale in scales.items()} | values)  # type: ignore[no-any-return]
+        profile: Profile = made(**{name: scale * around.radius for name, scale in scales.items()} | values)
+        return profile
 
     return ProfileKind(made, read, build)
 
@@ -188,8 +190,8 @@ def profile_table(value: object) -> Table:
     >>> profile_table(profiles.Cylinder() + profiles.Lundberg(1e-6))
     {'kind': 'sum', 'terms': [{'kind': 'cylinder'}, {'kind': 'lundberg', 'amplitude': 1e-06}]}
     """
-    if type(value) in KIND_OF:
-        given = {entry.name: getattr(value, entry.name) for entry in fields(value)}  # type: ignore[arg-type]
+    if is_dataclass(value) and type(value) in KIND_OF:
+        given = {entry.name: getattr(value, entry.name) for entry in fields(value)}
         value = {"kind": KIND_OF[type(value)], **given}
     if isinstance(value, str):
         value = {"kind": value}
