@@ -9,7 +9,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from contactstudy import plots, profiles
+    from contactstudy import plots, profiles, roughness, slices
     from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
@@ -68,7 +68,9 @@ _HOME = {
     "plots": "",
     "principal_stresses": "invariants",
     "profiles": "",
+    "roughness": "",
     "run_study": "study.run",
+    "slices": "",
     "solve": "solution",
     "solve_contact": "contact",
     "stress_field": "stress",
@@ -105,7 +107,9 @@ __all__ = [
     "plots",
     "principal_stresses",
     "profiles",
+    "roughness",
     "run_study",
+    "slices",
     "solve",
     "solve_contact",
     "stress_field",

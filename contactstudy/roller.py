@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles import Cylinder, Profile
+from contactstudy.profiles import Cylinder, Profile, local_radius
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,14 +46,17 @@ class Roller:
         object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
         object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
-        drop = self.profile.drop(np.array([0.0, 0.25 * self.length]), self.length)
+        tried = np.array([0.0, 0.25 * self.length])
+        local_radius(self.profile, tried, self.length, self.radius)
+        drop = self.profile.drop(tried, self.length)
         if drop.shape != (2,) or not np.all(drop >= 0):
             raise InvalidInputError("profile", self.profile, "a profile with a drop not below zero")
 
     def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the roller over the plane that its cylinder touches.
 
-        The circle is taken as the parabola ``y**2 / (2 radius)``, as in Hertz' theory.
+        The circle is taken as the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a
+        tapered roller.
 
         Parameters
         ----------
@@ -68,4 +71,5 @@ class Roller:
         inside = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)
         drop[inside] = self.profile.drop(x[inside], self.length)
-        return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * self.radius))
+        radius = local_radius(self.profile, x, self.length, self.radius)
+        return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

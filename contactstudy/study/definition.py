@@ -18,6 +18,7 @@ from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, checked
 from contactstudy.study.plan import LEVELS, Plan, label, make_plan
+from contactstudy.study.profile_kinds import with_files_in
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
@@ -153,7 +154,8 @@ class Study:
         Parameters
         ----------
         path : str or Path
-            TOML file with the keys :data:`KEYS`; `name` defaults to the file's name.
+            TOML file with the keys :data:`KEYS`; `name` defaults to the file's name. Files with measured profiles are
+            found from its folder.
 
         Raises
         ------
@@ -167,7 +169,7 @@ class Study:
             content = tomllib.loads(path.read_text(encoding="utf-8"))
         except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise StudyFileError(f"study file {path}: {error}") from error
-        return cls.from_mapping({"name": path.stem} | content)
+        return cls.from_mapping({"name": path.stem} | with_files_in(content, path.parent))
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any]) -> Study:

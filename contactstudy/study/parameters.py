@@ -10,7 +10,8 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.bodies import MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.kinds import BODIES, profile_table
+from contactstudy.study.kinds import BODIES
+from contactstudy.study.profile_kinds import profile_table
 
 DIGITS = 12
 """Significant digits of a number in a study: more would tell apart values that are the same."""
@@ -47,8 +48,18 @@ def _model(name: str, value: object) -> str:
 
 
 def _profile(name: str, value: object) -> dict[str, Any]:
-    table = profile_table(value)
-    return {key: entry if isinstance(entry, str) else rounded(entry) for key, entry in table.items()}
+    return {key: _rounded_within(entry) for key, entry in profile_table(value).items()}
+
+
+def _rounded_within(entry: Any) -> Any:
+    """Return an entry of a profile's table with all its numbers rounded."""
+    if isinstance(entry, float):
+        return rounded(entry)
+    if isinstance(entry, list):
+        return [_rounded_within(part) for part in entry]
+    if isinstance(entry, dict):
+        return {key: _rounded_within(part) for key, part in entry.items()}
+    return entry
 
 
 def _points(name: str, value: object) -> list[float]:

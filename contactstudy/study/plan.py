@@ -10,8 +10,8 @@ from typing import Any
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import case_id
-from contactstudy.study.kinds import profile_label
 from contactstudy.study.parameters import without_defaults
+from contactstudy.study.profile_kinds import profile_label
 from contactstudy.study.setup import build_setup
 
 Level = str

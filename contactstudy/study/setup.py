@@ -13,8 +13,9 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.material import Material
 from contactstudy.roller import Roller
-from contactstudy.study.kinds import BODIES, Surroundings, build_profile
+from contactstudy.study.kinds import BODIES
 from contactstudy.study.parameters import checked, with_defaults
+from contactstudy.study.profile_kinds import Surroundings, build_profile
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ def blocks(language):
 
 
 def test_the_example_is_a_study():
-    first, single = (tomllib.loads(block) for block in blocks("toml"))
+    first, single, _ = (tomllib.loads(block) for block in blocks("toml"))
     assert {*first, *single} == set(KEYS)
     plan = Study.from_mapping(first).plan()
     assert (plan.cube.dims, len(plan.cases), plan.skipped) == (("friction", "profile", "max_pressure"), 6, ())

@@ -1,0 +1,126 @@
+"""Figures of roller profiles: the drop, downwards, along the roller."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles import Profile
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+POINTS = 4001
+DASHES: tuple[Any, ...] = (
+    "-",
+    (0, (6, 1.5)),
+    (0, (1, 1)),
+    (0, (6, 1.5, 1, 1.5)),
+    (0, (3, 1.5)),
+    (0, (8, 2, 1, 2, 1, 2)),
+)
+
+
+def plot_profile(
+    profile: Profile, length: float, ax: Axes | None = None, *, deepest: float | None = None, **style: Any
+) -> Axes:
+    """Draw the generatrix of a roller: material that is missing lies downwards.
+
+    Parameters
+    ----------
+    profile : Profile
+        What to draw.
+    length : float
+        Length of the roller, metres.
+    ax : Axes, optional
+        Where to draw; default: a new figure.
+    deepest : float, optional
+        Largest drop on the axis, metres; default: what is drawn. Crowns of micrometres beside fillets of tenths of a
+        millimetre need it.
+    **style
+        For the line, as in matplotlib.
+
+    Returns
+    -------
+    Axes
+        With the line added. Where a drop is infinite the line ends.
+
+    Raises
+    ------
+    InvalidInputError
+        If `profile` is no profile, or does not fit the length, or a number is not positive.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Lundberg
+    >>> plot_profile(Lundberg(amplitude=0.2e-6), length=10e-3).get_ylabel()
+    'drop (µm)'
+    """
+    checks.instance("profile", profile, Profile, "a profile from contactstudy.profiles")
+    length = checks.positive("length", length, "metres")
+    x = 0.5 * length * np.linspace(-1, 1, POINTS)
+    drop = np.array(profile.drop(x, length), dtype=np.float64)
+    drop[~np.isfinite(drop)] = np.nan
+    if ax is None:
+        from matplotlib import pyplot
+
+        ax = pyplot.subplots(figsize=(6.4, 3.2), layout="constrained")[1]
+    ax.plot(1e3 * x, 1e6 * drop, **style)
+    if not ax.yaxis_inverted():
+        ax.invert_yaxis()
+    if deepest is not None:
+        deepest = checks.positive("deepest", deepest, "metres")
+        ax.set_ylim(1e6 * deepest, -0.05e6 * deepest)
+    ax.set_xlabel("distance from mid-length (mm)")
+    ax.set_ylabel("drop (µm)")
+    return ax
+
+
+def plot_profiles(
+    profiles: Mapping[str, Profile], length: float, ax: Axes | None = None, *, deepest: float | None = None
+) -> Axes:
+    """Compare the generatrices of several rollers of one length; dark to light, each with its own dashes.
+
+    Parameters
+    ----------
+    profiles : mapping of str to Profile
+        What to draw, by the names in the legend.
+    length : float
+        Length of the rollers, metres.
+    ax : Axes, optional
+        Where to draw; default: a new figure.
+    deepest : float, optional
+        Largest drop on the axis, metres; default: what is drawn.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InvalidInputError
+        If there is nothing to draw, or for the reasons of :func:`plot_profile`.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Cylinder, FullCrown
+    >>> ax = plot_profiles({"sharp": Cylinder(), "crowned": FullCrown(1.0)}, length=10e-3)
+    >>> [text.get_text() for text in ax.get_legend().get_texts()]
+    ['sharp', 'crowned']
+    """
+    checks.instance("profiles", profiles, Mapping, "a mapping of names to profiles")
+    if not profiles:
+        raise InvalidInputError("profiles", dict(profiles), "at least one profile")
+    import matplotlib
+
+    colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, len(profiles)))
+    for number, (name, profile) in enumerate(profiles.items()):
+        dashes = DASHES[number % len(DASHES)]
+        ax = plot_profile(profile, length, ax, deepest=deepest, label=name, color=colors[number], linestyle=dashes)
+    assert ax is not None
+    ax.legend(frameon=False, fontsize="small", ncols=2)
+    return ax

@@ -1,0 +1,39 @@
+"""Roller profiles: how much lower than the cylinder a roller's generatrix lies.
+
+A profile is a small object with one method ``drop(x, length)``: the material removed, in metres and not negative, at
+the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. docs/profiles.md has
+the conventions with a sketch, and a table of all profiles with formulas and sources.
+
+``length`` is the distance between the end faces, fillets included; formulas of the literature with an *effective*
+length (without corners) take this `length` for it. A drop may be infinite at the very ends (Lundberg, ISO/TS 16281):
+the roller does not touch there.
+"""
+
+from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
+from contactstudy.profiles.crowned import FullCrown, PartialCrown
+from contactstudy.profiles.ellipsoid import Ellipsoid, Sphere
+from contactstudy.profiles.halves import Halves
+from contactstudy.profiles.iso import IsoCylindrical, IsoTapered
+from contactstudy.profiles.logarithmic import FujiwaraKawase, JohnsGohar, Lundberg
+from contactstudy.profiles.measured import Measured
+from contactstudy.profiles.straight import Cylinder, Tapered
+
+__all__ = [
+    "Cylinder",
+    "Ellipsoid",
+    "FujiwaraKawase",
+    "FullCrown",
+    "Halves",
+    "IsoCylindrical",
+    "IsoTapered",
+    "JohnsGohar",
+    "Lundberg",
+    "Measured",
+    "PartialCrown",
+    "Profile",
+    "Shape",
+    "Sphere",
+    "Sum",
+    "Tapered",
+    "local_radius",
+]

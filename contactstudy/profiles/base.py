@@ -1,0 +1,124 @@
+"""What every profile can do: a drop, a local radius, and addition."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+
+
+@runtime_checkable
+class Profile(Protocol):
+    """What the solver needs of a profile."""
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length; ``|x| <= length / 2``."""
+        ...
+
+
+class Shape:
+    """Base of the profiles of this package: gives them ``+`` and a radius across.
+
+    A class of one's own needs only ``drop(x, length)``; derived from this one it can be a summand, and may have a
+    radius that varies along the roller.
+    """
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        raise NotImplementedError
+
+    def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+        """Radius of curvature across the roller (m) at `x`, for a roller with `radius` at mid-length: the same."""
+        return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
+
+    def __add__(self, other: object) -> Sum:
+        """Both profiles on one roller."""
+        if not isinstance(other, Profile):
+            return NotImplemented
+        return Sum((*_terms(self), *_terms(other)))
+
+    __radd__ = __add__
+
+
+def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
+    return profile.terms if isinstance(profile, Sum) else (profile,)
+
+
+def local_radius(profile: Profile, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+    """Radius of curvature across the roller (m) at distances `x` from mid-length.
+
+    Parameters
+    ----------
+    profile : Profile
+        Any profile; one that says nothing of it leaves `radius` as it is.
+    x : array
+        Distances from mid-length, metres.
+    length : float
+        Length of the roller, metres.
+    radius : float or array
+        Radius at mid-length (or, in a sum, what the other summands make of it), metres.
+
+    Returns
+    -------
+    array
+        Of the shape of `x`, metres.
+    """
+    if isinstance(profile, Shape):
+        return profile.local_radius(x, length, radius)
+    return Shape().local_radius(x, length, radius)
+
+
+@dataclass(frozen=True)
+class Sum(Shape):
+    """Profiles on top of each other, usually written ``one + other``: the drops add up.
+
+    Parameters
+    ----------
+    terms : tuple of Profile
+        At least one. Each must be valid for the roller's length.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no summand, or one is not a profile.
+
+    Notes
+    -----
+    Every summand is counted from its own highest point, so a sum is nowhere negative. Where the highest points differ
+    (a crown and a measured waviness) the sum is positive everywhere, and the approach of a contact, which is counted
+    from drop 0, contains that constant.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Cylinder, FullCrown
+    >>> crowned = FullCrown(crown_radius=1.25) + Cylinder(fillet_radius=1e-3)
+    >>> (1e6 * crowned.drop(np.array([0.0, 4e-3, 5e-3]), length=10e-3)).round(1).tolist()
+    [0.0, 6.4, 1010.0]
+    """
+
+    terms: tuple[Profile, ...]
+
+    def __post_init__(self) -> None:
+        """Check the summands."""
+        if not isinstance(self.terms, tuple) or not self.terms:
+            raise InvalidInputError("terms", self.terms, "a tuple of at least one profile")
+        for term in self.terms:
+            checks.instance("terms", term, Profile, "profiles from contactstudy.profiles")
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Sum of the drops (m) at distances `x` (m) from mid-length."""
+        total = self.terms[0].drop(x, length)
+        for term in self.terms[1:]:
+            total = total + term.drop(x, length)
+        return total
+
+    def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+        """Radius across the roller (m) after every summand in turn."""
+        for term in self.terms:
+            radius = local_radius(term, x, length, radius)
+        return np.asarray(radius)

@@ -1,0 +1,161 @@
+"""Crowns made of circular arcs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import Shape
+
+
+def _arc(distance: FloatArray, radius: float) -> FloatArray:
+    """Drop of a circle of `radius` at `distance` from its highest point, without cancellation."""
+    return np.asarray(distance**2 / (radius + np.sqrt(radius**2 - distance**2)))
+
+
+@dataclass(frozen=True)
+class FullCrown(Shape):
+    """Full crown: one circular arc from end to end, ``drop = R - sqrt(R**2 - (x - centre)**2)``.
+
+    Parameters
+    ----------
+    crown_radius : float
+        Radius ``R`` of the arc in the axial plane, metres. It must reach the farther end:
+        at least ``length / 2 + |centre|``.
+    centre : float
+        Distance of the highest point from mid-length, metres; within the roller.
+
+    Raises
+    ------
+    InvalidInputError
+        If the radius is not positive, or (on use) too small for the roller, or the centre is beyond its ends.
+
+    Notes
+    -----
+    The circle is exact. For ``x`` small against ``R`` it is the parabola of
+    :class:`~contactstudy.profiles.Ellipsoid`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> (1e6 * FullCrown(crown_radius=1.25).drop(np.array([0.0, 5e-3]), length=10e-3)).round(3).tolist()
+    [0.0, 10.0]
+    """
+
+    crown_radius: float
+    centre: float = 0.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
+        object.__setattr__(self, "centre", checks.finite("centre", self.centre, "metres"))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        if abs(self.centre) > length / 2:
+            raise InvalidInputError("centre", self.centre, f"within half the roller's length, {length / 2:g} m")
+        reach = length / 2 + abs(self.centre)
+        if self.crown_radius < reach:
+            raise InvalidInputError(
+                "crown_radius", self.crown_radius, f"at least {reach:g} m, the distance to the roller's farther end"
+            )
+        return _arc(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
+
+
+@dataclass(frozen=True)
+class PartialCrown(Shape):
+    """Partial crown: a straight middle, a crown of circular arcs, and if wanted a dub-off at each end.
+
+    The crown's arc leaves the straight middle tangentially. The dub-off is a second arc with a smaller radius that
+    leaves the first one tangentially, at the distance `dub_length` from the end ("two tangential radii"). With
+    ``straight_length = length - 2 * dub_length`` there is no first arc: a straight roller with dub-off.
+
+    Parameters
+    ----------
+    straight_length : float
+        Length of the straight middle, metres. Not negative, not more than the roller's length; 0 is a full crown.
+    crown_radius : float
+        Radius of the crown's arc, metres. At least the axial length of the crown at one end.
+    dub_length : float
+        Axial length of the dub-off at each end, metres; 0 is none.
+    dub_radius : float, optional
+        Radius of the dub-off's arc, metres; given with a `dub_length`, and at most `crown_radius`. The arc must
+        reach the end of the roller.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, or (on use) the parts do not fit the roller's length.
+
+    Notes
+    -----
+    A corner fillet is added as ``+ Cylinder(fillet_radius=...)``. With ``d`` the distance beyond the straight middle
+    and ``d1`` where the dub-off begins, ``drop = R1 - sqrt(R1**2 - d**2)`` up to ``d1``; from there the circle of
+    radius ``R2`` whose centre lies on the radius of the first one through ``d1``:
+    ``drop(d1) + R2 cos(a) - sqrt(R2**2 - (d - d1 + R2 sin(a))**2)`` with ``sin(a) = d1 / R1``.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> profile = PartialCrown(straight_length=6e-3, crown_radius=1.0, dub_length=0.5e-3, dub_radius=0.02)
+    >>> (1e6 * profile.drop(np.array([3e-3, 4.5e-3, 5e-3]), length=10e-3)).round(2).tolist()
+    [0.0, 1.13, 8.13]
+    """
+
+    straight_length: float
+    crown_radius: float
+    dub_length: float = 0.0
+    dub_radius: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "straight_length", checks.not_negative("straight_length", self.straight_length, "m"))
+        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
+        object.__setattr__(self, "dub_length", checks.not_negative("dub_length", self.dub_length, "metres"))
+        if (self.dub_length > 0) != (self.dub_radius is not None):
+            raise InvalidInputError(
+                "dub_length, dub_radius", (self.dub_length, self.dub_radius), "given both or neither"
+            )
+        if self.dub_radius is not None:
+            object.__setattr__(self, "dub_radius", checks.positive("dub_radius", self.dub_radius, "metres"))
+            if self.dub_radius > self.crown_radius:
+                raise InvalidInputError("dub_radius", self.dub_radius, f"at most crown_radius, {self.crown_radius:g} m")
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        begin, end = self._crown(length)
+        distance = np.clip(np.abs(x) - self.straight_length / 2, 0.0, end)
+        if self.dub_radius is None:
+            return _arc(distance, self.crown_radius)
+        sine = begin / self.crown_radius
+        shift = self.dub_radius * sine
+        if end - begin + shift > self.dub_radius:
+            raise InvalidInputError(
+                "dub_radius", self.dub_radius, f"at least {(end - begin) / (1 - sine):g} m, to reach the roller's end"
+            )
+        first = _arc(np.minimum(distance, begin), self.crown_radius)
+        second = _arc(np.maximum(distance - begin, 0.0) + shift, self.dub_radius) - _arc(
+            np.array(shift), self.dub_radius
+        )
+        return np.asarray(first + second)
+
+    def _crown(self, length: float) -> tuple[float, float]:
+        """Distances beyond the straight middle where the dub-off begins and where the roller ends."""
+        end = (length - self.straight_length) / 2
+        if end < 0:
+            raise InvalidInputError(
+                "straight_length", self.straight_length, f"at most the roller's length, {length:g} m"
+            )
+        begin = end - self.dub_length
+        if begin < -1e-9 * length:
+            raise InvalidInputError(
+                "dub_length", self.dub_length, f"at most {end:g} m, what the straight middle leaves of the roller"
+            )
+        begin = max(begin, 0.0)
+        if begin > self.crown_radius:
+            raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
+        return begin, end

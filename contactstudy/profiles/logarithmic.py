@@ -1,0 +1,247 @@
+"""Logarithmic profiles: Lundberg, Johns and Gohar, Fujiwara and Kawase."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy import checks, hertz
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import Shape
+
+EDGE_SHARE = 0.5 / math.sqrt(math.e)
+"""Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``."""
+
+
+def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) -> float:
+    """Amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` (m) of a logarithmic profile from its design pressure.
+
+    Parameters
+    ----------
+    max_pressure : float
+        Peak pressure ``p0`` of the Hertz line contact at the design load, Pa.
+    radius : float
+        Roller radius, metres (the relative radius of curvature if the raceway is curved).
+    modulus : float
+        Contact modulus ``E*``, Pa.
+
+    Examples
+    --------
+    >>> round(1e6 * lundberg_amplitude(1.5e9, radius=5e-3, modulus=230.77e9), 4)
+    0.2112
+    """
+    pressure = checks.positive("max_pressure", max_pressure, "Pa")
+    modulus = checks.positive("modulus", modulus, "Pa")
+    return checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2
+
+
+@dataclass(frozen=True)
+class Lundberg(Shape):
+    """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
+
+    At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller.
+
+    Parameters
+    ----------
+    amplitude : float
+        ``A = q / (pi E*)``, metres, with the design load per length ``q`` and the contact modulus ``E*``
+        (equivalently ``R (p0 / E*)**2``); see :meth:`for_pressure`. Not negative.
+    delta : float
+        Modification factor on the amplitude. Not negative; 0 is the cylinder.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is negative.
+
+    Notes
+    -----
+    The drop is infinite at the very ends: the roller does not touch there. Where exactly a factor ``delta`` enters
+    differs between authors; here it multiplies the amplitude.
+
+    References
+    ----------
+    G. Lundberg, Elastische Beruehrung zweier Halbraeume, Forschung auf dem Gebiet des Ingenieurwesens 10 (1939).
+
+    Examples
+    --------
+    >>> profile = Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=230.77e9)
+    >>> round(1e6 * profile.amplitude, 4)
+    0.2112
+    """
+
+    amplitude: float
+    delta: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
+        object.__setattr__(self, "delta", checks.not_negative("delta", self.delta))
+
+    @classmethod
+    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float, delta: float = 1.0) -> Lundberg:
+        """Profile whose design load gives the Hertz pressure `max_pressure` (Pa).
+
+        Parameters
+        ----------
+        max_pressure : float
+            Peak pressure of the Hertz line contact at the design load, Pa.
+        radius : float
+            Roller radius, metres.
+        modulus : float
+            Contact modulus ``E*``, Pa.
+        delta : float
+            Modification factor.
+        """
+        return cls(lundberg_amplitude(max_pressure, radius=radius, modulus=modulus), delta)
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
+        if self.delta * self.amplitude == 0:
+            return np.zeros(np.shape(x))
+        with np.errstate(divide="ignore"):
+            return np.asarray(-self.delta * self.amplitude * np.log1p(-np.minimum((2 * x / length) ** 2, 1.0)))
+
+
+@dataclass(frozen=True)
+class JohnsGohar(Shape):
+    """Johns and Gohar's profile: Lundberg's with a finite drop at the ends.
+
+    ``drop = A ln(1 / (1 - (1 - 0.3033 b / h) (x / h)**2))`` with half the length ``h`` and
+    ``0.3033 = 1 / (2 sqrt(e))``; the end drop is ``A ln(2 sqrt(e) h / b)``.
+
+    Parameters
+    ----------
+    amplitude : float
+        ``A = q / (pi E*)``, metres, as for :class:`Lundberg`. Not negative.
+    half_width : float
+        Hertz half-width ``b`` at the design load, metres. Not negative; 0 is Lundberg's profile. At most
+        ``2 sqrt(e) h``; sensible well below ``h``.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is negative, or (on use) the half-width is too large for the roller.
+
+    References
+    ----------
+    P. M. Johns, R. Gohar, Roller bearings under radial and eccentric loads, Tribology International 14 (1981)
+    131-136.
+
+    Examples
+    --------
+    >>> profile = JohnsGohar.for_pressure(1.5e9, radius=5e-3, modulus=230.77e9)
+    >>> round(1e6 * profile.edge_drop(length=10e-3), 3)
+    1.169
+    """
+
+    amplitude: float
+    half_width: float
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
+        object.__setattr__(self, "half_width", checks.not_negative("half_width", self.half_width, "metres"))
+
+    @classmethod
+    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float) -> JohnsGohar:
+        """Profile for the Hertz pressure `max_pressure`; see :func:`lundberg_amplitude` for the parameters."""
+        amplitude = lundberg_amplitude(max_pressure, radius=radius, modulus=modulus)
+        return cls(amplitude, hertz.line_half_width(max_pressure, radius, modulus))
+
+    def _share(self, length: float) -> float:
+        share = 1 - EDGE_SHARE * self.half_width / (length / 2)
+        if share < 0:
+            raise InvalidInputError(
+                "half_width", self.half_width, f"at most 3.3 half lengths of the roller, {length / 2 / EDGE_SHARE:g} m"
+            )
+        return float(share)
+
+    def edge_drop(self, length: float) -> float:
+        """Drop (m) at the ends of a roller of the given `length` (m)."""
+        return float(self.drop(np.array([length / 2]), length)[0])
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        share = self._share(length)
+        if self.amplitude == 0:
+            return np.zeros(np.shape(x))
+        with np.errstate(divide="ignore"):
+            return np.asarray(-self.amplitude * np.log1p(-share * np.minimum((2 * x / length) ** 2, 1.0)))
+
+
+@dataclass(frozen=True)
+class FujiwaraKawase(Shape):
+    """Fujiwara and Kawase's profile: a straight middle and a logarithmic crown with a chosen end drop.
+
+    ``drop = K1 A ln(1 / (1 - (1 - exp(-z_m / (K1 A))) t**2))`` with ``t = (|x| - h) / (K2 h) + 1`` and half the
+    length ``h``, and 0 where ``t < 0``; the end drop is ``z_m``.
+
+    Parameters
+    ----------
+    amplitude : float
+        ``A = q / (pi E*)``, metres, as for :class:`Lundberg`. Positive.
+    edge_drop : float
+        Drop ``z_m`` at the ends, metres. Not negative.
+    k1 : float
+        Factor ``K1`` on the design load. Positive.
+    k2 : float
+        Share ``K2`` of each half of the roller that is crowned; above 0, at most 1.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range.
+
+    Notes
+    -----
+    With ``k1 = k2 = 1`` and the end drop of Johns and Gohar it is their profile; with an end drop that grows without
+    bound it becomes Lundberg's.
+
+    References
+    ----------
+    H. Fujiwara, T. Kawase, Logarithmic profiles of rollers in roller bearings and optimization of the profiles,
+    NTN Technical Review 75 (2007) 140-148.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> profile = FujiwaraKawase(amplitude=0.2e-6, edge_drop=5e-6, k1=2.0, k2=0.5)
+    >>> profile.drop(np.array([0.0, 2.5e-3, 5e-3]), length=10e-3).round(12).tolist()
+    [0.0, 0.0, 5e-06]
+    """
+
+    amplitude: float
+    edge_drop: float
+    k1: float = 1.0
+    k2: float = 1.0
+
+    def __post_init__(self) -> None:
+        """Check the parameters."""
+        object.__setattr__(self, "amplitude", checks.positive("amplitude", self.amplitude, "metres"))
+        object.__setattr__(self, "edge_drop", checks.not_negative("edge_drop", self.edge_drop, "metres"))
+        object.__setattr__(self, "k1", checks.positive("k1", self.k1))
+        object.__setattr__(self, "k2", checks.positive("k2", self.k2))
+        if self.k2 > 1:
+            raise InvalidInputError("k2", self.k2, "at most 1, the whole half of the roller")
+
+    @classmethod
+    def for_pressure(
+        cls, max_pressure: float, *, radius: float, modulus: float, edge_drop: float, k1: float = 1.0, k2: float = 1.0
+    ) -> FujiwaraKawase:
+        """Profile for the Hertz pressure `max_pressure`; see :func:`lundberg_amplitude` for the parameters."""
+        return cls(lundberg_amplitude(max_pressure, radius=radius, modulus=modulus), edge_drop, k1, k2)
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        half = length / 2
+        scale = self.k1 * self.amplitude
+        t = np.clip((np.abs(x) - half) / (self.k2 * half) + 1, 0.0, 1.0)
+        left = np.exp(-self.edge_drop / scale)
+        # two ways to write 1 - (1 - left) t**2: exact where it is near 1, and where it is near 0
+        with np.errstate(divide="ignore"):
+            logarithm = np.where(t < 0.5, np.log1p((left - 1) * t**2), np.log((1 - t) * (1 + t) + left * t**2))
+        return np.asarray(np.clip(-scale * logarithm, 0.0, self.edge_drop))

@@ -1,0 +1,217 @@
+"""A profile as it was measured."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+
+from contactstudy import checks
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.measurements import check_positions, check_values, read_columns, unit_in_metres
+from contactstudy.profiles.base import Shape
+
+VALUES = ("drop", "height")
+"""What a file may say along x: material that is missing, or that is too much."""
+
+FITS = 1e-3
+"""Largest difference of a measured length from the roller's, over the latter."""
+
+FEWEST = 5
+"""Smallest number of measured points."""
+
+SPIKE_BENDS, SPIKE_SHARE = 8.0, 0.02
+"""A point is an outlier if it stands out of the median of five points by more than this many times the usual bend
+around it (median of half the second differences of eleven points), and by more than this share of the profile's
+height (without the outer tenth of its values)."""
+
+
+@dataclass(frozen=True)
+class Measured(Shape):
+    """A measured profile, interpolated without overshoot between its points.
+
+    Parameters
+    ----------
+    positions : sequence of float
+        Positions along the roller, metres, increasing. Only differences count: the middle of the measured range is
+        mid-length.
+    drops : sequence of float
+        Drop at each position, metres, not negative.
+    largest_spike : float, optional
+        How far (metres) a point, or two beside each other, may stand out of the median of five points before it is
+        refused as an outlier. Default: 8 times the usual bend around it, at least 0.02 of the profile's height.
+
+    Raises
+    ------
+    InvalidInputError
+        If positions and drops differ in number, positions are not increasing or have a gap, a value is negative or
+        not finite, a point is an outlier (with the positions), or (on use) the measured length differs from the
+        roller's by more than 0.1 %.
+
+    Notes
+    -----
+    The interpolation is piecewise cubic with continuous slope (F. N. Fritsch, J. Butland, SIAM Journal on Scientific
+    and Statistical Computing 5 (1984) 300-304): monotone between two points, so it adds no height of its own. A
+    median does not change where a profile only rises or falls, so steep ends are no outliers. Of the very first and
+    last point nothing can be said.
+
+    Examples
+    --------
+    >>> x = np.linspace(0.0, 10e-3, 101)
+    >>> profile = Measured(positions=x, drops=(x - 5e-3) ** 2 / (2 * 1.25))
+    >>> (1e6 * profile.drop(np.array([0.0, 5e-3]), length=10e-3)).round(3).tolist()
+    [0.0, 10.0]
+    """
+
+    positions: Sequence[float]
+    drops: Sequence[float]
+    largest_spike: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the points, and keep them as tuples so that equal profiles are equal."""
+        x = checks.coordinates("positions", self.positions, "metres")
+        try:
+            drops = np.asarray(self.drops, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise InvalidInputError("drops", self.drops, "numbers (metres)") from None
+        if drops.shape != x.shape:
+            raise InvalidInputError("drops", f"{drops.size} values", f"one for each of {x.size} positions")
+        check_positions("positions", x, FEWEST)
+        check_values("drops", drops, ("x", x))
+        if drops.min() < 0:
+            at = int(drops.argmin())
+            raise InvalidInputError(
+                "drops", f"{drops[at]:g} m at x = {x[at]:g} m", "not below zero", "remove_offset=True when reading"
+            )
+        if self.largest_spike is not None:
+            object.__setattr__(self, "largest_spike", checks.positive("largest_spike", self.largest_spike, "metres"))
+        refuse_outliers(x, drops, self.largest_spike)
+        object.__setattr__(self, "positions", tuple(x.tolist()))
+        object.__setattr__(self, "drops", tuple(drops.tolist()))
+
+    @classmethod
+    def from_file(
+        cls,
+        path: str | Path,
+        *,
+        remove_tilt: bool = False,
+        remove_offset: bool = False,
+        largest_spike: float | None = None,
+    ) -> Measured:
+        """Read a profile from a file.
+
+        Parameters
+        ----------
+        path : str or Path
+            CSV or netCDF (ending ``.nc``) with positions `x` and either `drop` (positive where material is missing)
+            or `height` (positive where it is too much), all with units of length.
+        remove_tilt : bool
+            Whether the slope of the straight line that fits the points best is taken off, about mid-length.
+        remove_offset : bool
+            Whether the drop is counted from the highest point. Needed for waviness about a mean line, for heights,
+            and mostly after removing a tilt.
+        largest_spike : float, optional
+            See the class.
+
+        Raises
+        ------
+        InvalidInputError
+            If the file cannot be read, has other columns or units, or its points are refused by the class.
+        """
+        path = Path(path)
+        columns = _read_netcdf(path) if path.suffix.lower() == ".nc" else read_columns(path, ("x",), VALUES)
+        x = columns["x"]
+        drop = columns["drop"] if "drop" in columns else -columns["height"]
+        if remove_tilt or remove_offset:
+            check_positions("x", x, FEWEST)
+            check_values(next(name for name in columns if name != "x"), drop, ("x", x))
+        if remove_tilt:
+            from_middle = x - 0.5 * (x[0] + x[-1])
+            drop = drop - np.polynomial.polynomial.polyfit(from_middle, drop, 1)[1] * from_middle
+        if remove_offset:
+            drop = drop - drop.min()
+        return cls(x.tolist(), drop.tolist(), largest_spike)
+
+    @cached_property
+    def _interpolation(self) -> Any:
+        from scipy.interpolate import PchipInterpolator
+
+        x = np.asarray(self.positions)
+        with np.errstate(over="ignore"):  # steps of 1e-300 m, harmless in a harmonic mean
+            return PchipInterpolator(x - 0.5 * (x[0] + x[-1]), np.asarray(self.drops))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        measured = self.positions[-1] - self.positions[0]
+        if abs(measured - length) > FITS * length:
+            word = "longer" if measured > length else "shorter"
+            raise InvalidInputError(
+                "positions", f"{measured:g} m from first to last", f"the roller's length, {length:g} m", f"it is {word}"
+            )
+        inside = np.clip(x, -measured / 2, measured / 2)
+        return np.asarray(np.maximum(self._interpolation(inside), 0.0))
+
+
+def _read_netcdf(path: Path) -> dict[str, FloatArray]:
+    """Positions and values of a netCDF file, in metres."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path) as opened:
+            dataset = opened.load()
+    except (OSError, ValueError) as error:
+        raise InvalidInputError("path", str(path), "a netCDF file that can be read", str(error)) from error
+    present = [name for name in VALUES if name in dataset.data_vars]
+    if len(present) != 1 or "x" not in dataset.variables or dataset[present[0]].dims != dataset["x"].dims:
+        raise InvalidInputError("path", str(path), f"a file with x and one of {', '.join(VALUES)} along it")
+    return {
+        name: unit_in_metres(name, dataset[name].attrs.get("units")) * dataset[name].values.astype(np.float64)
+        for name in ("x", present[0])
+    }
+
+
+def refuse_outliers(x: FloatArray, drops: FloatArray, largest: float | None = None) -> None:
+    """Raise if a point stands far out of its neighbours.
+
+    Parameters
+    ----------
+    x, drops : array
+        Positions and drops, metres.
+    largest : float, optional
+        How far is too far, metres; default as in :class:`Measured`.
+
+    Raises
+    ------
+    InvalidInputError
+        With the positions of the outliers.
+    """
+    spikes = np.abs(drops - _running_median(drops, 2, "odd"))
+    if largest is None:
+        low, high = np.quantile(drops, [0.05, 0.95])
+        bends = np.pad(0.5 * np.abs(np.diff(drops, 2)), 1, mode="reflect")
+        limits = np.maximum(SPIKE_BENDS * _running_median(bends, 5, "even"), SPIKE_SHARE * (high - low))
+    else:
+        limits = np.full(drops.shape, largest)
+    # beside an outlier the median is that of other points: only the worst of neighbours is named
+    worst = sliding_window_view(np.pad(spikes, 2), 5).max(axis=-1)
+    outliers = np.flatnonzero((spikes > limits) & (spikes == worst))
+    if outliers.size:
+        shown = ", ".join(f"{spikes[at]:.2g} m at x = {x[at]:g} m" for at in outliers[:5])
+        raise InvalidInputError(
+            "drops",
+            f"{outliers.size} outliers: {shown}",
+            f"within {limits[outliers[0]]:.2g} m of the median of their neighbours",
+        )
+
+
+def _running_median(values: FloatArray, reach: int, mirror: Literal["odd", "even"]) -> FloatArray:
+    """Median of each value and `reach` on either side; beyond its ends the series is its own mirror image."""
+    reach = min(reach, values.size - 1)
+    padded = np.pad(values, reach, mode="reflect", reflect_type=mirror)
+    return np.asarray(np.median(sliding_window_view(padded, 2 * reach + 1), axis=-1))

@@ -1,0 +1,132 @@
+"""Sums of profiles, and what every profile has in common."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, Roller
+from contactstudy.profiles import (
+    Cylinder,
+    Ellipsoid,
+    FujiwaraKawase,
+    FullCrown,
+    Halves,
+    IsoCylindrical,
+    IsoTapered,
+    JohnsGohar,
+    Lundberg,
+    Measured,
+    PartialCrown,
+    Profile,
+    Sphere,
+    Sum,
+    Tapered,
+    local_radius,
+)
+from tests.profiles.conftest import LENGTH, RADIUS
+
+FILLET = st.one_of(st.just(0.0), st.floats(1e-9, LENGTH / 2))
+EVEN = st.one_of(
+    st.builds(Cylinder, FILLET),
+    st.builds(Tapered, st.floats(-0.1, 0.1), FILLET),
+    st.builds(Lundberg, st.floats(0.0, 1e-5), st.floats(0.0, 3.0)),
+    st.builds(JohnsGohar, st.floats(0.0, 1e-5), st.floats(0.0, LENGTH / 2)),
+    st.builds(FujiwaraKawase, st.floats(1e-9, 1e-5), st.floats(0.0, 1e-4), st.floats(0.1, 10.0), st.floats(0.01, 1.0)),
+    st.builds(IsoCylindrical, st.floats(1e-3, 20e-3)),
+    st.builds(IsoTapered, st.floats(1e-3, 20e-3)),
+    st.builds(FullCrown, st.floats(LENGTH / 2, 100.0)),
+    st.builds(PartialCrown, st.floats(0.0, LENGTH / 2), st.floats(0.02, 10.0), st.just(1e-3), st.floats(5e-3, 0.02)),
+    st.builds(Ellipsoid, st.floats(1e-2, 100.0)),
+    st.just(Sphere(RADIUS)),
+)
+"""Every profile that is the same at both ends, over its valid range for a roller of length LENGTH."""
+
+
+@given(profile=EVEN, x=st.floats(0.0, LENGTH / 2))
+def test_drop_is_even_not_negative_and_grows_towards_the_ends(profile: Profile, x: float) -> None:
+    drop = profile.drop(np.array([-x, x, 0.9 * x, 0.0]), LENGTH)
+    assert drop.shape == (4,)
+    assert drop[0] == drop[1]
+    assert drop[1] >= drop[2] * (1 - 1e-12) - 1e-18
+    assert drop[2] >= drop[3] == 0.0
+
+
+@given(one=EVEN, two=EVEN, three=EVEN)
+def test_a_sum_is_the_sum_of_the_drops(one: Profile, two: Profile, three: Profile) -> None:
+    x = LENGTH * np.linspace(-0.49, 0.49, 15)
+    added = one + two + three  # type: ignore[operator]
+    assert added == Sum((one, two, three)) == one + (two + three)  # type: ignore[operator]
+    np.testing.assert_array_equal(
+        added.drop(x, LENGTH), one.drop(x, LENGTH) + two.drop(x, LENGTH) + three.drop(x, LENGTH)
+    )
+
+
+def test_a_profile_of_ones_own_needs_only_a_drop() -> None:
+    class Wedge:
+        def drop(self, x, length):
+            return 1e-4 * np.abs(x)
+
+    x = np.array([-1e-3, 2e-3])
+    roller = Roller(radius=RADIUS, length=LENGTH, profile=Wedge())
+    np.testing.assert_array_equal(roller.clearance(x, np.array([0.0]))[:, 0], 1e-4 * np.abs(x))
+    for added in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
+        np.testing.assert_allclose(added.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
+    np.testing.assert_array_equal(local_radius(Wedge(), x, LENGTH, RADIUS), [RADIUS, RADIUS])
+
+
+def test_the_radius_of_a_cone_survives_in_a_sum(places: np.ndarray) -> None:
+    cone = Tapered(half_angle=0.05)
+    for added in (cone + IsoTapered(LENGTH), IsoTapered(LENGTH) + cone):
+        np.testing.assert_array_equal(
+            added.local_radius(places, LENGTH, RADIUS), cone.local_radius(places, LENGTH, RADIUS)
+        )
+
+
+@pytest.mark.parametrize("profile", [Cylinder(), Tapered(0.1), Lundberg(1e-6), Measured((0, 1, 2, 3, 4), (0,) * 5)])
+def test_profiles_are_values(profile: Profile) -> None:
+    same = replace(profile)  # type: ignore[type-var]
+    assert same == profile
+    assert hash(same) == hash(profile)
+    assert profile + Cylinder() == same + Cylinder()  # type: ignore[operator]
+
+
+def test_halves_are_different_left_and_right(places: np.ndarray) -> None:
+    left, right = Cylinder(1e-3), FullCrown(2.0)
+    drop = Halves(left=left, right=right).drop(places, LENGTH)
+    np.testing.assert_array_equal(drop[:100], left.drop(places[:100], LENGTH))
+    np.testing.assert_array_equal(drop[100:], right.drop(places[100:], LENGTH))
+    mirrored = Halves(left=right, right=left).drop(-places, LENGTH)
+    np.testing.assert_array_equal(mirrored, drop)
+
+
+def test_halves_keep_their_radii(places: np.ndarray) -> None:
+    radius = Halves(left=Cylinder(), right=Tapered(0.1)).local_radius(places, LENGTH, RADIUS)
+    assert (radius[:100] == RADIUS).all()
+    assert (np.diff(radius[100:]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Sum(()), r"terms = \(\): must be a tuple of at least one profile"),
+        (lambda: Sum((Cylinder(), 3)), "terms = 3: must be profiles"),
+        (lambda: Halves(left=Cylinder(), right="crown"), "right = 'crown'"),
+        (
+            lambda: Halves(left=FullCrown(1.0, centre=1e-3), right=Cylinder()).drop(np.zeros(1), LENGTH),
+            "left, right.*equal drops at mid-length",
+        ),
+    ],
+)
+def test_bad_values_are_named(make, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        make()
+
+
+def test_only_profiles_can_be_added() -> None:
+    with pytest.raises(TypeError, match="unsupported operand"):
+        Cylinder() + 1e-6  # type: ignore[operator]

@@ -1,0 +1,84 @@
+"""Crowns of circular arcs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError
+from contactstudy.profiles import Cylinder, Ellipsoid, FullCrown, PartialCrown
+from tests.profiles.conftest import LENGTH
+
+HALF = LENGTH / 2
+
+
+@given(st.floats(HALF, 10.0), st.floats(-HALF, HALF))
+def test_full_crown_lies_on_its_circle(radius: float, x: float) -> None:
+    drop = float(FullCrown(radius).drop(np.array([x]), LENGTH)[0])
+    assert np.hypot(x, radius - drop) == pytest.approx(radius, rel=1e-12)
+
+
+def test_full_crown_has_its_highest_point_where_it_is_told(places: np.ndarray) -> None:
+    drop = FullCrown(1.0, centre=1e-3).drop(places, LENGTH)
+    assert places[drop.argmin()] == pytest.approx(1e-3)
+    assert drop.min() == pytest.approx(0.0, abs=1e-18)
+
+
+def test_full_crown_of_large_radius_is_the_parabola(places: np.ndarray) -> None:
+    np.testing.assert_allclose(FullCrown(50.0).drop(places, LENGTH), Ellipsoid(50.0).drop(places, LENGTH), rtol=1e-8)
+
+
+@given(straight=st.floats(0.0, 6e-3), crown=st.floats(0.05, 10.0), dub=st.floats(0.1e-3, 1.5e-3))
+def test_partial_crown_has_no_corner_between_its_arcs(straight: float, crown: float, dub: float) -> None:
+    """Curvature 0, 1/R1, 1/R2: its integral from mid-length is the slope, and that of the slope the drop."""
+    profile = PartialCrown(straight, crown, dub, dub_radius=0.02)
+    x = np.linspace(0.0, HALF, 4001)
+    middle = 0.5 * (x[1:] + x[:-1])
+    curved = np.where(middle < straight / 2, 0.0, np.where(middle < HALF - dub, 1 / crown, 1 / 0.02))
+    sine = np.concatenate([[0.0], np.cumsum(curved) * (x[1] - x[0])])
+    slope = sine / np.sqrt(1 - sine**2)
+    drop = np.concatenate([[0.0], np.cumsum(0.5 * (slope[1:] + slope[:-1])) * (x[1] - x[0])])
+    np.testing.assert_allclose(profile.drop(x, LENGTH), drop, rtol=0, atol=1e-2 * drop.max())
+
+
+def test_partial_crown_contains_the_full_crown_and_the_cylinder(places: np.ndarray) -> None:
+    np.testing.assert_array_equal(PartialCrown(0.0, 2.0).drop(places, LENGTH), FullCrown(2.0).drop(places, LENGTH))
+    np.testing.assert_array_equal(PartialCrown(LENGTH, 2.0).drop(places, LENGTH), 0.0)
+
+
+def test_dub_off_of_the_same_radius_is_no_dub_off(places: np.ndarray) -> None:
+    one, other = PartialCrown(2e-3, 0.5), PartialCrown(2e-3, 0.5, dub_length=1e-3, dub_radius=0.5)
+    np.testing.assert_allclose(other.drop(places, LENGTH), one.drop(places, LENGTH), rtol=1e-12, atol=1e-18)
+
+
+def test_corner_radius_is_added(places: np.ndarray) -> None:
+    crown, corner = PartialCrown(6e-3, 1.0, 0.5e-3, 0.02), Cylinder(fillet_radius=0.2e-3)
+    drop = (crown + corner).drop(places, LENGTH)
+    before = np.abs(places) <= HALF - 0.2e-3
+    np.testing.assert_array_equal(drop[before], crown.drop(places, LENGTH)[before])
+    assert drop[-1] == pytest.approx(crown.drop(places, LENGTH)[-1] + 0.2e-3)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: FullCrown(0.0), "crown_radius = 0.0"),
+        (lambda: FullCrown(4e-3).drop(np.zeros(1), LENGTH), "crown_radius = 0.004: must be at least 0.005 m"),
+        (lambda: FullCrown(1.0, centre="left"), "centre = 'left'"),
+        (lambda: FullCrown(1.0, centre=6e-3).drop(np.zeros(1), LENGTH), "centre = 0.006: must be within"),
+        (lambda: PartialCrown(-1e-3, 1.0), "straight_length = -0.001"),
+        (lambda: PartialCrown(11e-3, 1.0).drop(np.zeros(1), LENGTH), "straight_length = 0.011: must be at most"),
+        (lambda: PartialCrown(0.0, -1.0), "crown_radius = -1.0"),
+        (lambda: PartialCrown(0.0, 1e-3).drop(np.zeros(1), LENGTH), "crown_radius = 0.001: must be at least 0.005"),
+        (lambda: PartialCrown(0.0, 1.0, dub_length=1e-3), "dub_length, dub_radius = .*both or neither"),
+        (lambda: PartialCrown(0.0, 1.0, dub_radius=1e-3), "both or neither"),
+        (lambda: PartialCrown(0.0, 1.0, 1e-3, dub_radius=2.0), "dub_radius = 2.0: must be at most crown_radius"),
+        (lambda: PartialCrown(0.0, 1.0, 1e-3, 1e-4).drop(np.zeros(1), LENGTH), "dub_radius = 0.0001: must be at least"),
+        (lambda: PartialCrown(9e-3, 1.0, 1e-3, 0.1).drop(np.zeros(1), LENGTH), "dub_length = 0.001: must be at most"),
+    ],
+)
+def test_bad_values_are_named(make, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        make()

@@ -1,0 +1,136 @@
+"""Lundberg, Johns and Gohar, Fujiwara and Kawase: against their formulas, each other, and the solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, Material
+from contactstudy.profiles import Cylinder, FujiwaraKawase, JohnsGohar, Lundberg
+from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, along
+
+HALF = LENGTH / 2
+
+
+def test_lundberg_as_two_logarithms(places: np.ndarray) -> None:
+    """The distances to both ends, in logarithms of their own."""
+    profile = Lundberg(amplitude=2e-7, delta=1.5)
+    inner = places[1:-1]
+    expected = -1.5 * 2e-7 * (np.log(HALF - inner) + np.log(HALF + inner) - 2 * np.log(HALF))
+    np.testing.assert_allclose(profile.drop(inner, LENGTH), expected, rtol=1e-12, atol=1e-20)
+    assert np.isinf(profile.drop(places[[0, -1]], LENGTH)).all()
+
+
+def test_lundberg_amplitude_is_the_load_over_pi_and_modulus(steel: Material) -> None:
+    modulus = steel.plane_strain_modulus
+    half_width = 2 * PRESSURE * RADIUS / modulus
+    load_per_length = 0.5 * np.pi * half_width * PRESSURE
+    amplitude = Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=modulus).amplitude
+    assert amplitude == pytest.approx(load_per_length / (np.pi * modulus))
+
+
+def test_no_crown_is_no_drop_even_at_the_ends(places: np.ndarray) -> None:
+    for profile in (Lundberg(0.0), Lundberg(1e-6, delta=0.0), JohnsGohar(0.0, 1e-5)):
+        np.testing.assert_array_equal(profile.drop(places, LENGTH), 0.0)
+
+
+def test_lundberg_at_its_design_load_gives_a_flat_pressure(pressed, steel: Material) -> None:
+    """On a half-space, for a length of 62 half-widths: flat to 1.2 % over nine tenths of the length.
+
+    A sharp cylinder varies by 11 % there, a delta of 0.7 or 1.4 by more than twice as much.
+    """
+
+    def variation(profile) -> float:
+        place, peak, _ = along(pressed(profile, 4e-3))
+        inside = peak[np.abs(place) < 0.9]
+        return float(np.ptp(inside))
+
+    def crowned(delta: float) -> Lundberg:
+        return Lundberg.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus, delta=delta)
+
+    flat = variation(crowned(1.0))
+    assert flat < 0.012
+    assert variation(Cylinder()) > 0.1
+    assert min(variation(crowned(0.7)), variation(crowned(1.4))) > 2 * flat
+
+
+def test_lundberg_below_its_design_load_loses_pressure_towards_the_ends(pressed, steel: Material) -> None:
+    profile = Lundberg.for_pressure(2 * PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
+    place, peak, _ = along(pressed(profile, 4e-3))
+    right = place > 0
+    assert (np.diff(peak[right]) <= 0).all()
+    assert np.interp(0.9, place, peak) < 0.8
+    assert peak[-40] == 0.0
+
+
+def test_end_drop_of_johns_and_gohar(steel: Material) -> None:
+    """Their published form: the end drop is A ln(2 sqrt(e) h / b) = A (1.1932 + ln(h / b)), h half the length."""
+    profile = JohnsGohar.for_pressure(PRESSURE, radius=RADIUS, modulus=steel.plane_strain_modulus)
+    expected = profile.amplitude * (1.1932 + np.log(HALF / profile.half_width))
+    assert profile.edge_drop(LENGTH) == pytest.approx(expected, rel=1e-5)
+    assert profile.half_width == pytest.approx(65e-6)
+
+
+def test_johns_and_gohar_with_their_rounded_constant(places: np.ndarray) -> None:
+    profile = JohnsGohar(amplitude=2e-7, half_width=1e-4)
+    expected = 2e-7 * np.log(1 / (1 - (1 - 0.3033 * 1e-4 / HALF) * (2 * places / LENGTH) ** 2))
+    np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-4, atol=1e-22)
+
+
+@given(st.floats(1e-9, 1e-5), st.floats(1e-7, 1e-3))
+def test_fujiwara_and_kawase_contain_johns_and_gohar(amplitude: float, half_width: float) -> None:
+    x = HALF * np.linspace(-1, 1, 41)
+    johns = JohnsGohar(amplitude, half_width)
+    same = FujiwaraKawase(amplitude, edge_drop=johns.edge_drop(LENGTH))
+    np.testing.assert_allclose(same.drop(x, LENGTH), johns.drop(x, LENGTH), rtol=1e-7, atol=1e-9 * amplitude)
+
+
+@given(st.floats(1e-9, 1e-5))
+def test_both_contain_lundberg(amplitude: float) -> None:
+    x = HALF * np.linspace(-0.999, 0.999, 41)
+    lundberg = Lundberg(amplitude).drop(x, LENGTH)
+    np.testing.assert_allclose(JohnsGohar(amplitude, 0.0).drop(x, LENGTH), lundberg, rtol=1e-12)
+    deep = FujiwaraKawase(amplitude, edge_drop=60 * amplitude)
+    np.testing.assert_allclose(deep.drop(x, LENGTH), lundberg, rtol=1e-9, atol=1e-12 * amplitude)
+
+
+def test_fujiwara_and_kawase_as_printed(places: np.ndarray) -> None:
+    """With a' the crowned length of one side and y counted from the roller's end, as in the paper's figure."""
+    load, k1, k2, deepest = 1.3e-7, 2.0, 0.6, 4e-6
+    profile = FujiwaraKawase(load, deepest, k1, k2)
+    crowned = k2 * HALF
+    from_end = HALF - np.abs(places)
+    share = np.where(from_end < crowned, 1 - from_end / crowned, 0.0)
+    expected = k1 * load * np.log(1 / (1 - (1 - np.exp(-deepest / (k1 * load))) * share**2))
+    np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-7, atol=1e-20)
+    assert profile.drop(places, LENGTH)[[0, -1]] == pytest.approx(deepest)
+    assert (profile.drop(places, LENGTH)[from_end > crowned] == 0).all()
+
+
+def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
+    about = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
+    profile = FujiwaraKawase.for_pressure(PRESSURE, edge_drop=1e-6, k1=2.0, k2=0.5, **about)
+    assert profile == FujiwaraKawase(Lundberg.for_pressure(PRESSURE, **about).amplitude, 1e-6, 2.0, 0.5)
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: Lundberg(-1e-6), "amplitude = -1e-06"),
+        (lambda: Lundberg(1e-6, delta=np.inf), "delta = inf"),
+        (lambda: Lundberg.for_pressure(-1.0, radius=1.0, modulus=1.0), "max_pressure = -1.0"),
+        (lambda: Lundberg.for_pressure(1.0, radius=0.0, modulus=1.0), "radius = 0.0"),
+        (lambda: Lundberg.for_pressure(1.0, radius=1.0, modulus="steel"), "modulus = 'steel'"),
+        (lambda: JohnsGohar(1e-6, -1e-6), "half_width = -1e-06"),
+        (lambda: JohnsGohar(1e-6, 0.1).drop(np.zeros(1), LENGTH), "half_width = 0.1: must be at most"),
+        (lambda: FujiwaraKawase(0.0, 1e-6), "amplitude = 0.0"),
+        (lambda: FujiwaraKawase(1e-6, -1e-6), "edge_drop = -1e-06"),
+        (lambda: FujiwaraKawase(1e-6, 1e-6, k1=0.0), "k1 = 0.0"),
+        (lambda: FujiwaraKawase(1e-6, 1e-6, k2=1.5), "k2 = 1.5: must be at most 1"),
+    ],
+)
+def test_bad_values_are_named(make, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        make()

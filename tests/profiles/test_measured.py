@@ -1,0 +1,195 @@
+"""Measured profiles: what is read is what was measured, and what is wrong with a file is said with its place."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, Roller
+from contactstudy.profiles import Cylinder, FullCrown, Lundberg, Measured
+from tests.profiles.conftest import LENGTH, RADIUS
+
+X = np.linspace(0.0, LENGTH, 201)
+CROWN = FullCrown(1.25)
+DROP = CROWN.drop(X - LENGTH / 2, LENGTH)
+
+
+def csv_file(folder: Path, x=X, drop=DROP, header: str = "x [mm], drop [um]") -> Path:
+    path = folder / "trace.csv"
+    lines = [f"{1e3 * a:.9g}, {1e6 * b:.9g}" for a, b in zip(x, drop, strict=True)]
+    path.write_text("\n".join(["# stylus 2 um", header, *lines]))
+    return path
+
+
+def netcdf_file(folder: Path, units: tuple[str, str] = ("mm", "um"), name: str = "drop", sign: float = 1.0) -> Path:
+    path = folder / "trace.nc"
+    dataset = xr.Dataset({name: ("x", 1e6 * sign * DROP, {"units": units[1]})}, {"x": ("x", 1e3 * X, {"units": "mm"})})
+    dataset["x"].attrs["units"] = units[0]
+    dataset.to_netcdf(path)
+    return path
+
+
+def test_csv_and_netcdf_give_the_profile(tmp_path: Path, places: np.ndarray) -> None:
+    for path in (csv_file(tmp_path), netcdf_file(tmp_path), netcdf_file(tmp_path, name="height", sign=-1.0)):
+        profile = Measured.from_file(path)
+        np.testing.assert_allclose(profile.drop(places, LENGTH), CROWN.drop(places, LENGTH), rtol=1e-6, atol=1e-13)
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("brackets", ["[]", "()"])
+def test_ways_to_write_a_csv_file(tmp_path: Path, separator: str, brackets: str) -> None:
+    (left, right), path = brackets, tmp_path / "trace.txt"
+    rows = [f"{k}{separator}{0.001 * k}{separator}note" for k in range(7)]
+    path.write_text("\n".join([separator.join((f"X {left}mm{right}", f"Height {left}µm{right}", "remark")), "", *rows]))
+    profile = Measured.from_file(path, remove_offset=True)
+    np.testing.assert_allclose(profile.positions, 1e-3 * np.arange(7))
+    np.testing.assert_allclose(profile.drops, 1e-9 * np.arange(6, -1, -1), atol=1e-22)
+
+
+def test_tilt_and_offset_are_removed_on_request(tmp_path: Path, places: np.ndarray) -> None:
+    path = csv_file(tmp_path, drop=DROP + 3e-6 + 2e-4 * X)
+    as_measured = Measured.from_file(path)
+    np.testing.assert_allclose(as_measured.drops, DROP + 3e-6 + 2e-4 * X, rtol=1e-6)
+    straight = Measured.from_file(path, remove_tilt=True, remove_offset=True)
+    np.testing.assert_allclose(straight.drop(places, LENGTH), CROWN.drop(places, LENGTH), rtol=1e-6, atol=1e-13)
+    only_tilt = Measured.from_file(path, remove_tilt=True)
+    np.testing.assert_allclose(np.ptp(np.subtract(only_tilt.drops, straight.drops)), 0.0, atol=1e-18)
+
+
+@given(st.lists(st.floats(0.0, 1e-6), min_size=5, max_size=40), st.floats(-0.5, 0.5))
+def test_interpolation_adds_no_height(drops: list[float], place: float) -> None:
+    profile = Measured(np.linspace(0, LENGTH, len(drops)), drops, largest_spike=1.0)
+    at = place * LENGTH
+    below = min(int((place + 0.5) * (len(drops) - 1)), len(drops) - 2)
+    low, high = sorted(drops[below : below + 2])
+    assert low - 1e-15 <= float(profile.drop(np.array([at]), LENGTH)[0]) <= high + 1e-15
+
+
+def test_points_are_kept(places: np.ndarray) -> None:
+    profile = Measured(X, DROP)
+    np.testing.assert_allclose(profile.drop(X - LENGTH / 2, LENGTH), DROP, rtol=1e-12, atol=1e-20)
+    assert pickle.loads(pickle.dumps(profile)) == profile
+
+
+def test_crown_and_measured_waviness_add_up(places: np.ndarray) -> None:
+    wave = Measured(X, 0.1e-6 * (1 - np.cos(2 * np.pi * X / 2e-3)))
+    both = Lundberg(2e-7) + wave
+    inner = places[1:-1]
+    expected = Lundberg(2e-7).drop(inner, LENGTH) + 0.1e-6 * (1 - np.cos(2 * np.pi * (inner + 5e-3) / 2e-3))
+    np.testing.assert_allclose(both.drop(inner, LENGTH), expected, atol=1.5e-10)
+
+
+@pytest.mark.parametrize(
+    "drop",
+    [
+        Cylinder(fillet_radius=0.3e-3).drop(X - LENGTH / 2, LENGTH),
+        Lundberg(2e-7).drop(0.9999 * (X - LENGTH / 2), LENGTH),
+        np.zeros_like(X),
+        np.where(X < 4e-3, 1e-6, 0.0),
+        1e-7 + 2e-8 * np.random.default_rng(0).standard_normal(X.size),
+        1e-6 + 1e-6 * np.cos(2 * np.pi * X / 0.5e-3),
+    ],
+    ids=["fillet", "logarithmic", "straight", "step", "noise", "waves"],
+)
+def test_what_is_no_outlier(drop: np.ndarray) -> None:
+    Measured(X, drop)
+
+
+@pytest.mark.parametrize("at", [1, 3, 100, 199])
+@pytest.mark.parametrize("spike", [1e-6, 1e-5])
+@pytest.mark.parametrize("noise", [0.0, 2e-8])
+def test_outliers_are_refused_with_their_positions(at: int, spike: float, noise: float) -> None:
+    drop = DROP + 1e-7 + noise * np.abs(np.random.default_rng(at).standard_normal(X.size))
+    drop[at] += spike
+    with pytest.raises(InvalidInputError, match=rf"1 outliers: \S+ m at x = {X[at]:g} m"):
+        Measured(X, drop)
+    Measured(X, drop, largest_spike=2 * spike)
+
+
+@pytest.mark.parametrize("difference", [-0.2e-3, 0.2e-3])
+def test_longer_and_shorter_than_the_roller(difference: float) -> None:
+    word = "longer" if difference < 0 else "shorter"
+    with pytest.raises(InvalidInputError, match=f"0.01 m from first to last.*{word}"):
+        Roller(radius=RADIUS, length=LENGTH + difference, profile=Measured(X, DROP))
+
+
+def without(values: np.ndarray, *at: int) -> np.ndarray:
+    return np.delete(values, at)
+
+
+def changed(values: np.ndarray, at: int, value: float) -> np.ndarray:
+    result = values.copy()
+    result[at] = value
+    return result
+
+
+@pytest.mark.parametrize(
+    ("x", "drop", "message"),
+    [
+        (X[::-1], DROP, "positions = '0.00995 m at entry 2': must be increasing; 0.01 m is before it"),
+        (changed(X, 5, X[4]), DROP, "positions = '0.0002 m at entry 6': must be increasing; it is a duplicate"),
+        (without(X, *range(60, 65)), without(DROP, *range(60, 65)), r"1 gaps: 0.00295 to 0.00325 m"),
+        (X, changed(DROP, 7, np.nan), "missing or not finite at x = 0.00035 m"),
+        (changed(X, 7, np.inf), DROP, "positions = 'inf at position 7'"),
+        (X, DROP[:-1], "drops = '200 values': must be one for each of 201 positions"),
+        (X, DROP - 1e-6, r"drops = '-1e-06 m at x = 0.005 m': must be not below zero; remove_offset"),
+        (X, ["much"] * 201, "drops = .*numbers"),
+        ("long", DROP, "positions = 'long'"),
+        (X[:4], DROP[:4], "positions = '4 positions': must be at least 5"),
+    ],
+)
+def test_bad_points_are_named(x, drop, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        Measured(x, drop)
+
+
+def test_bad_spikes_are_named() -> None:
+    with pytest.raises(InvalidInputError, match="largest_spike = 0"):
+        Measured(X, DROP, largest_spike=0)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "a file with a header and data"),
+        ("x [mm], drop [um]\n0, 0\n1, high", "line 3, drop = 'high': must be a number"),
+        ("x [mm], drop [um]\n0, 0\n1, 1, 1", "line 3.*must be 2 fields"),
+        ("x [mm]; drop [um]\n0; 0,1", "line 2, drop = '0,1': must be a number with a decimal point"),
+        ("x [inch], drop [um]\n0, 0", "unit of x = 'inch': must be one of m, "),
+        ("x, drop [um]\n0, 0", "unit of x = None"),
+        ("x [mm], drop [deg]\n0, 0", "unit of drop = 'deg'"),
+        ("s [mm], drop [um]\n0, 0", r"columns = \['s', 'drop'\]: must be x and one of drop, height"),
+        ("x [mm], x [mm], drop [um]\n0, 0, 0", "columns"),
+        ("x [mm], drop [um], height [um]\n0, 0, 0", "columns"),
+        ("x [mm], drop [um]\n0, 0\n1,\n2, 0\n3, 0\n4, 0\n5, 0", "missing or not finite at x = 0.001 m"),
+        ("x [mm], drop [um]\n0, 0\n,0\n2, 0\n3, 0\n4, 0\n5, 0", "positions = 'nan at position 1'"),
+    ],
+)
+def test_bad_csv_files_are_named(tmp_path: Path, text: str, message: str) -> None:
+    path = tmp_path / "trace.csv"
+    path.write_text(text)
+    with pytest.raises(InvalidInputError, match=message):
+        Measured.from_file(path)
+
+
+def test_bad_netcdf_files_are_named(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match="unit of x = 'deg'"):
+        Measured.from_file(netcdf_file(tmp_path, units=("deg", "um")))
+    with pytest.raises(InvalidInputError, match="a file with x and one of drop, height"):
+        Measured.from_file(netcdf_file(tmp_path, name="depth"))
+    broken = tmp_path / "broken.nc"
+    broken.write_text("no netCDF")
+    with pytest.raises(InvalidInputError, match="a netCDF file that can be read"):
+        Measured.from_file(broken)
+
+
+@pytest.mark.parametrize("name", ["missing.csv", "missing.nc"])
+def test_missing_files_are_named(tmp_path: Path, name: str) -> None:
+    with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
+        Measured.from_file(tmp_path / name)

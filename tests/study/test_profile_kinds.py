@@ -1,0 +1,179 @@
+"""Profiles in studies: every kind, files of measured ones, and what they do to a case's identity."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contactstudy import profiles
+from contactstudy.errors import InvalidInputError
+from contactstudy.study import Study, open_study, run_study
+from contactstudy.study.identity import case_id
+from contactstudy.study.profile_kinds import PROFILES, profile_label, profile_table
+from contactstudy.study.setup import build_setup
+from tests.study.conftest import BASE, ROOT, as_toml, small_study
+from tests.study.fakes import solve_fake
+
+LENGTH = BASE["roller_length"]
+EXAMPLES = {
+    "cylinder": profiles.Cylinder(1e-5),
+    "tapered": profiles.Tapered(0.05, 1e-5),
+    "lundberg": profiles.Lundberg(1e-7, 1.5),
+    "johns-gohar": profiles.JohnsGohar(1e-7, 6e-5),
+    "fujiwara-kawase": profiles.FujiwaraKawase(1e-7, 1e-6, 2.0, 0.5),
+    "iso-cylindrical": profiles.IsoCylindrical(8e-3),
+    "iso-tapered": profiles.IsoTapered(8e-3),
+    "full-crown": profiles.FullCrown(0.5, 1e-5),
+    "partial-crown": profiles.PartialCrown(1e-4, 0.5, 5e-5, 0.1),
+    "ellipsoid": profiles.Ellipsoid(0.5),
+    "sphere": profiles.Sphere(BASE["radius"]),
+    "measured": profiles.Measured([0.0, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4], [1e-6, 5e-7, 0.0, 0.0, 5e-7, 1e-6], 1e-6),
+    "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
+    "sum": profiles.Tapered(0.05) + profiles.IsoTapered(8e-3),
+}
+
+
+def built(profile: object) -> profiles.Profile:
+    return build_setup(BASE | {"e_over_a": 1, "profile": profile}).case.roller.profile
+
+
+def trace(folder: Path, height: float = 1.0, name: str = "trace.csv") -> Path:
+    """File with a measured crown of `height` micrometres at the ends, as long as the roller of BASE."""
+    folder.mkdir(exist_ok=True)
+    path, x = folder / name, np.linspace(-1, 1, 51)
+    rows = [f"{1e3 * LENGTH * a / 2:.6f}, {height * a * a:.6f}" for a in x]
+    path.write_text("\n".join(["x [mm], drop [um]", *rows]))
+    return path
+
+
+def test_every_profile_has_a_kind() -> None:
+    public = {getattr(profiles, name) for name in profiles.__all__}
+    assert {kind.made for kind in PROFILES.values()} == {entry for entry in public if dataclasses.is_dataclass(entry)}
+    assert set(EXAMPLES) == set(PROFILES)
+
+
+@pytest.mark.parametrize("kind", EXAMPLES)
+def test_a_profile_as_object_as_table_and_after_json(kind: str) -> None:
+    profile = EXAMPLES[kind]
+    assert built(profile) == profile
+    table = profile_table(profile)
+    assert table["kind"] == kind
+    again = json.loads(json.dumps(table))
+    assert built(again) == profile
+    assert case_id({"profile": profile}) == case_id({"profile": again})
+    assert profile_label(table)
+
+
+@pytest.mark.parametrize("kind", PROFILES)
+def test_every_kind_and_key_is_documented(kind: str) -> None:
+    studies = (ROOT / "docs" / "studies.md").read_text()
+    row = next(line for line in studies.splitlines() if line.startswith(f"| `{kind}` "))
+    for entry in dataclasses.fields(PROFILES[kind].made):
+        assert f"`{entry.name}`" in row, entry.name
+
+
+def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
+    text = (ROOT / "docs" / "studies.md").read_text()
+    block = next(part for part in text.split("```toml\n") if part.startswith("[[sweep.profile]]")).split("```")[0]
+    trace(tmp_path / "traces", name="roller_7.csv")
+    file = tmp_path / "documented.toml"
+    file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
+    plan = Study.from_toml(file).plan()
+    assert (len(plan.cases), plan.skipped) == (2, ())
+
+
+def test_identity_of_profiles_never_changes() -> None:
+    """Results on disk depend on these values."""
+    assert case_id({"profile": {"kind": "cylinder", "fillet_radius": 5e-5}})[:16] == "5dad625aa5b6ab8f"
+    assert case_id({"profile": {"kind": "lundberg", "design_pressure": 1.5e9, "delta": 2}})[:16] == "20f2b4da00ad6e96"
+
+
+@pytest.mark.parametrize("kind", ["lundberg", "johns-gohar", "fujiwara-kawase"])
+def test_design_pressure(kind: str) -> None:
+    more = {"edge_drop": 1e-6} if kind == "fujiwara-kawase" else {}
+    modulus = BASE["young"] / (1 - BASE["poisson"] ** 2)
+    made = PROFILES[kind].made.for_pressure(2e9, radius=BASE["radius"], modulus=modulus, **more)  # type: ignore[attr-defined]
+    assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
+
+
+def test_sizes_that_follow_the_roller() -> None:
+    assert built("sphere") == profiles.Sphere(BASE["radius"])
+    assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
+    assert built({"kind": "iso-tapered", "diameter": 1e-2}) == profiles.IsoTapered(1e-2)
+
+
+def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> None:
+    def identity(path: Path, **options) -> str:
+        return case_id(BASE | {"profile": {"kind": "measured", "file": str(path), **options}})
+
+    first = identity(trace(tmp_path / "one"))
+    assert identity(trace(tmp_path / "two", name="moved.csv")) == first
+    assert identity(trace(tmp_path / "one", height=1.001)) != first
+    assert identity(trace(tmp_path / "one")) == first
+    assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
+    assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
+
+
+def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path, monkeypatch) -> None:
+    path = trace(tmp_path / "traces")
+    entries = [
+        {"kind": "measured", "file": "traces/trace.csv"},
+        {"kind": "sum", "name": "both", "terms": [{"kind": "measured", "file": "traces/trace.csv"}, "cylinder"]},
+    ]
+    file = tmp_path / "small.toml"
+    lines = [
+        "[[sweep.profile]]\nkind = 'measured'\nfile = 'traces/trace.csv'",
+        "[[sweep.profile]]\nkind = 'sum'\nname = 'both'",
+        "terms = [{ kind = 'measured', file = 'traces/trace.csv' }, 'cylinder']",
+    ]
+    file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + "\n".join(lines))
+    monkeypatch.chdir(ROOT)
+    study = Study.from_toml(file)
+    monkeypatch.chdir(tmp_path)
+    assert study == small_study(sweep={"e_over_a": [1.0], "profile": entries})
+    path.unlink()
+    report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
+    assert report.counts == {"ok": 2}
+    opened = open_study(tmp_path / "results")
+    assert opened["profile"].values.tolist() == ["trace", "both"]
+    assert (opened["status"] == "ok").all()
+
+
+def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
+    tables = [profile_table(profiles.Measured.from_file(trace(tmp_path, height))) for height in (1.0, 2.0)]
+    assert len({profile_label(table) for table in tables}) == 2
+    assert profile_label(profile_table(EXAMPLES["halves"])) == "cylinder | full-crown crown_radius=0.5"
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"kind": "taper"}, "profile.kind = 'taper'.*did you mean 'tapered'"),
+        ({"kind": "tapered", "angle": 0.1}, "profile key = 'angle'.*half_angle"),
+        ({"kind": "tapered"}, "given with half_angle"),
+        ({"kind": "tapered", "half_angle": "3 degrees"}, "profile.half_angle = '3 degrees'"),
+        ({"kind": "lundberg", "amplitude": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude and design_press"),
+        ({"kind": "johns-gohar", "amplitude": 1e-6}, "given with half_width"),
+        ({"kind": "johns-gohar", "half_width": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude with half_wid"),
+        ({"kind": "fujiwara-kawase", "design_pressure": 1e9}, "given with edge_drop"),
+        ({"kind": "sphere", "radius": 4e-3}, "radius = 0.004: must be the roller's radius"),
+        ({"kind": "measured"}, "given with positions"),
+        ({"kind": "measured", "file": 3}, "profile.file = 3"),
+        ({"kind": "measured", "file": "none.csv"}, "path = 'none.csv'"),
+        ({"kind": "measured", "file": "none.csv", "remove_tilt": 1}, "profile.remove_tilt = 1"),
+        ({"kind": "measured", "file": "a.csv", "drops": [0]}, "given with file, or with positions and drops"),
+        ({"kind": "measured", "positions": [0, 1], "drops": ["a", "b"]}, "profile.drops"),
+        ({"kind": "measured", "path": "a.csv"}, "profile key = 'path'"),
+        ({"kind": "halves", "left": "cylinder"}, "given with right"),
+        ({"kind": "halves", "left": "cylinder", "right": {"kind": "round"}}, "profile.kind = 'round'"),
+        ({"kind": "sum", "terms": "cylinder"}, "profile.terms = 'cylinder'"),
+        ({"kind": "sum", "terms": []}, "terms = "),
+    ],
+)
+def test_bad_tables_are_named(table, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        built(table)
