@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     )
     from contactstudy.material import Material
     from contactstudy.roller import Roller
-    from contactstudy.solution import solve
+    from contactstudy.solution import roller_stress, solve
     from contactstudy.stress import stress_field
     from contactstudy.study.definition import Study
     from contactstudy.study.errors import LockedError, StoreError, StudyFileError
@@ -68,6 +68,7 @@ _HOME = {
     "plots": "",
     "principal_stresses": "invariants",
     "profiles": "",
+    "roller_stress": "solution",
     "roughness": "",
     "run_study": "study.run",
     "slices": "",
@@ -107,6 +108,7 @@ __all__ = [
     "plots",
     "principal_stresses",
     "profiles",
+    "roller_stress",
     "roughness",
     "run_study",
     "slices",

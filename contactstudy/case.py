@@ -7,11 +7,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from contactstudy import checks, hertz
-from contactstudy.bodies import Body
+from contactstudy.bodies import Body, FiniteLengthSpace
 from contactstudy.checks import FloatArray
+from contactstudy.counterbody import Counterbody
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.roller import Roller
+
+LARGEST_TILT = 0.1
+"""Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
+
+MOST_CELLS = 1.25
+"""How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -38,6 +45,12 @@ class Case:
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
     coupled : bool
         Whether the friction also displaces the surface normally and so changes the pressure.
+    tilt : float
+        Misalignment, radians: by how much the roller is inclined about its mid-length against the undeformed top,
+        positive if larger x is pressed deeper. Whatever moment holds it there is applied.
+    load_position : float, optional
+        Position x on which the load acts, metres: a roller that is free to tilt takes the inclination, beyond `tilt`,
+        at which the pressure balances it. Default: the roller keeps its tilt.
 
     Raises
     ------
@@ -60,6 +73,8 @@ class Case:
     friction: float = 0.0
     end_distance: float | None = None
     coupled: bool = False
+    tilt: float = 0.0
+    load_position: float | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters and complete the load."""
@@ -68,6 +83,10 @@ class Case:
         object.__setattr__(self, "friction", checks.finite("friction", self.friction))
         if self.end_distance is not None:
             object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
+        tilt = checks.finite("tilt", self.tilt, "radians")
+        if abs(tilt) > LARGEST_TILT:
+            raise InvalidInputError("tilt", tilt, f"a small angle, at most {LARGEST_TILT} radians")
+        object.__setattr__(self, "tilt", tilt)
         if self.end_distance is None and self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
             raise InvalidInputError(
                 "roller.length",
@@ -83,6 +102,12 @@ class Case:
                 "such that the roller lies over the body",
                 f"the body spans x = {self.body.extent}",
             )
+        if self.load_position is not None:
+            position = checks.finite("load_position", self.load_position, "metres")
+            if not start < position < stop:
+                allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
+                raise InvalidInputError("load_position", position, allowed)
+            object.__setattr__(self, "load_position", position)
         if (self.max_pressure is None) == (self.load is None):
             raise InvalidInputError(
                 "max_pressure, load", (self.max_pressure, self.load), "exactly one of the two, the other None"
@@ -114,8 +139,17 @@ class Case:
 
     @property
     def modulus(self) -> float:
-        """Contact modulus ``E*``, Pa."""
-        return self.body.material.plane_strain_modulus
+        """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, the roller's 0 if rigid."""
+        own = self.body.material.plane_strain_modulus
+        if self.roller.material is None:
+            return own
+        return 1 / (1 / own + 1 / self.roller.material.plane_strain_modulus)
+
+    @property
+    def counterbody(self) -> Counterbody | None:
+        """The roller as an elastic body in its place; None if it is rigid."""
+        body = self.roller.body
+        return None if body is None else Counterbody(body, self.roller_start)
 
     @property
     def hertz_max_pressure(self) -> float:
@@ -137,9 +171,13 @@ class Case:
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:
-        """Return the gap before deformation at the cell centres of `grid`, metres; infinite beyond the roller."""
-        middle = self.roller_start + 0.5 * self.roller.length
-        return self.roller.clearance(grid.x - middle, grid.y)
+        """Return the gap before deformation at the cell centres of `grid`, metres; infinite beyond the roller.
+
+        A tilted roller turns about its mid-length, where its clearance stays as it is.
+        """
+        from_middle = grid.x - (self.roller_start + 0.5 * self.roller.length)
+        clearance = self.roller.clearance(from_middle, grid.y)
+        return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
 
 def choose_grid(
@@ -148,7 +186,8 @@ def choose_grid(
     """Grid that suits a case.
 
     A finite body is tiled from end to end; where a body has no end the grid stops `margin` half-widths beyond the
-    roller. The numbers of cells are rounded up to sizes that the fast Fourier transform likes.
+    roller. The numbers of cells are rounded up to sizes that the fast Fourier transform likes; of these, for an elastic
+    roller with ends of its own, the one that puts its ends nearest to borders between cells.
 
     Parameters
     ----------
@@ -188,10 +227,18 @@ def choose_grid(
         max(low, start - margin_x) if np.isinf(low) else low,
         min(high, stop + margin_x) if np.isinf(high) else high,
     )
-    counts = []
-    for span, cells in (
-        (x_range[1] - x_range[0], checks.positive("cells_x", cells_x)),
-        (2 * half_window, checks.positive("cells_y", cells_y)),
-    ):
-        counts.append(next_fast_len(max(4, int(np.ceil(span / half_width * cells - 1e-9))), real=True))
+    least = [
+        max(4, int(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
+        for name, span, cells in (
+            ("cells_x", x_range[1] - x_range[0], cells_x),
+            ("cells_y", 2 * half_window, cells_y),
+        )
+    ]
+    counts = [next_fast_len(count, real=True) for count in least]
+    if isinstance(case.roller.body, FiniteLengthSpace):
+        candidates = [counts[0]]
+        while candidates[-1] < MOST_CELLS * counts[0]:
+            candidates.append(next_fast_len(candidates[-1] + 1))
+        at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
+        counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))
     return Grid(x_range, (-half_window, half_window), *counts)

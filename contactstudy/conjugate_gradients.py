@@ -1,4 +1,4 @@
-"""Unilateral contact under a prescribed load by preconditioned conjugate gradients.
+"""Unilateral contact by preconditioned conjugate gradients, under prescribed resultants or a prescribed approach.
 
 The scheme of I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with two changes that save most of its iterations:
 the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
@@ -18,6 +18,45 @@ from contactstudy.checks import FloatArray
 Operator = Callable[[FloatArray], FloatArray]
 
 
+@dataclass(frozen=True, eq=False)
+class Resultants:
+    """What is prescribed of the pressure; the rigid motions conjugate to it follow.
+
+    Attributes
+    ----------
+    total : float or None
+        Sum over the cells, Pa, conjugate to the approach; None if the approach is prescribed (as part of the gap).
+    lever : array (x, 1), optional
+        Arm of each cell about the point where the load is to act, metres: the sum of arm times pressure is zero, and
+        the shape tilts about that point.
+    """
+
+    total: float | None
+    lever: FloatArray | None = None
+
+    @property
+    def motions(self) -> list[FloatArray]:
+        """Rigid motions that are free: arrays that broadcast to (x, y)."""
+        if self.total is None:
+            return []
+        return [np.ones((1, 1))] if self.lever is None else [np.ones((1, 1)), self.lever]
+
+    def restored(self, pressure: FloatArray) -> FloatArray:
+        """Return the pressure times the factor, linear in the arm, that gives it the resultants."""
+        if self.total is None:
+            return pressure
+        if self.lever is None:
+            return np.asarray(pressure * (self.total / pressure.sum()))
+        line = pressure.sum(axis=1)
+        arm = self.lever[:, 0]
+        sums = [float((line * arm**power).sum()) for power in (0, 1, 2)]
+        # One column of cells has no second moment: then only its sum can be restored.
+        if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
+            return np.asarray(pressure * (self.total / sums[0]))
+        constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
+        return np.asarray(pressure * np.maximum(constant + slope * self.lever, 0.1 * constant))
+
+
 @dataclass(frozen=True)
 class ContactIterate:
     """Where the iteration ended.
@@ -25,9 +64,9 @@ class ContactIterate:
     Attributes
     ----------
     pressure : array (x, y)
-        Pressure, Pa; its sum over the cells is the prescribed one.
-    approach : float
-        Rigid approach that the iteration arrived at, metres.
+        Pressure, Pa, with the prescribed resultants.
+    motion : tuple of float
+        The free rigid motions: approach, metres, and tilt about the point of application.
     applications : int
         Applications of the operator.
     converged : bool
@@ -35,7 +74,7 @@ class ContactIterate:
     """
 
     pressure: FloatArray
-    approach: float
+    motion: tuple[float, ...]
     applications: int
     converged: bool
 
@@ -44,13 +83,13 @@ def solve_complementarity(
     operator: Operator,
     preconditioner: Operator,
     gap: FloatArray,
-    total: float,
+    resultants: Resultants,
     start: FloatArray,
     *,
     tolerance: float,
     max_iterations: int,
 ) -> ContactIterate:
-    """Pressure ``p >= 0`` with gap ``g = gap + operator(p) - approach >= 0``, ``p g = 0`` and ``sum(p) = total``.
+    """Pressure ``p >= 0`` with gap ``g = gap + operator(p) - motion >= 0``, ``p g = 0`` and the prescribed resultants.
 
     Parameters
     ----------
@@ -58,8 +97,8 @@ def solve_complementarity(
         Symmetric positive operators on arrays (x, y): displacement from pressure, and roughly its inverse.
     gap : array (x, y)
         Initial gap, metres; infinite where contact is impossible.
-    total : float
-        Prescribed sum of the pressure over the cells, Pa.
+    resultants : Resultants
+        What the pressure has to sum up to, and so which rigid motions are free.
     start : array (x, y)
         First guess of the pressure; not negative, zero where the gap is infinite, not zero everywhere.
     tolerance : float
@@ -73,23 +112,37 @@ def solve_complementarity(
     ContactIterate
     """
     possible = np.isfinite(gap)
-    pressure = start * (total / start.sum())
+    pressure = resultants.restored(start)
     applications = 1
     sunk = operator(pressure)
+    if resultants.total is None:
+        # The best multiple of the guess: the one that the prescribed approach does as much work on as the displacement.
+        factor = -float((pressure * np.where(possible, gap, 0.0)).sum()) / float((pressure * sunk).sum())
+        pressure, sunk = factor * pressure, factor * sunk
+    motions = resultants.motions
     direction = np.zeros_like(pressure)
     previous = np.zeros_like(pressure)
     slope = 0.0
     contact = pressure > 0
-    weight = np.zeros_like(pressure)
-    approach, converged, fresh = 0.0, False, True
+    weights: list[FloatArray] = []
+    gram = np.zeros((len(motions), len(motions)))
+    motion: FloatArray = np.zeros(len(motions))
+    converged, fresh = False, True
     for _ in range(max_iterations):
         if fresh:
-            weight = np.where(contact, preconditioner(contact.astype(np.float64)), 0.0)
+            weights = [np.where(contact, preconditioner(np.where(contact, each, 0.0)), 0.0) for each in motions]
+            gram = np.array([[float((weight * each).sum()) for each in motions] for weight in weights])
         height = np.where(possible, gap + sunk, np.inf)
         inside = np.where(contact, height, 0.0)
-        approach = float((weight * inside).sum() / weight.sum())
-        residual = np.where(contact, height - approach, 0.0)
-        violation = np.where(contact, np.abs(residual), np.maximum(approach - height, 0.0)).max()
+        # Weighted so, the descent has no resultants: the prescribed ones stay as they are.
+        if motions:
+            work = [float((weight * inside).sum()) for weight in weights]
+            # Least squares, for a contact of one column of cells cannot tilt.
+            motion = np.asarray(np.array(work) / gram[0] if len(motions) == 1 else np.linalg.lstsq(gram, work)[0])
+        level = sum((amount * each for amount, each in zip(motion, motions, strict=True)), np.zeros((1, 1)))
+        opening = height - level
+        residual = np.where(contact, opening, 0.0)
+        violation = np.where(contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
         scale = np.ptp(sunk)
         descent = np.where(contact, preconditioner(residual), 0.0)
         new_slope = float((residual * descent).sum())
@@ -105,18 +158,17 @@ def solve_complementarity(
         curvature = float((direction * along).sum())
         step = float((residual * direction).sum()) / curvature if curvature > 0 else 0.0
         moved = pressure - step * direction
-        closed = ~contact & (height < approach - 0.1 * tolerance * scale)
+        closed = ~contact & (opening < -0.1 * tolerance * scale)
         clipped = moved < 0
-        change = abs(step) * float(np.abs(direction).sum()) / total
+        change = abs(step) * float(np.abs(direction).sum() / pressure.sum())
         fresh = bool(clipped.any() or closed.any())
         if fresh:
             moved[clipped] = 0.0
             if closed.any():
                 # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
-                scaled = preconditioner(np.where(closed, height - approach, 0.0))
+                scaled = preconditioner(np.where(closed, opening, 0.0))
                 moved[closed] = np.maximum(-scaled[closed], 1e-12 * moved.max())
-            moved *= total / moved.sum()
-            pressure = moved
+            pressure = resultants.restored(moved)
             contact = pressure > 0
             sunk = operator(pressure)
             applications += 1
@@ -128,5 +180,5 @@ def solve_complementarity(
             break
         if curvature <= 0:
             break
-    pressure = pressure * (total / pressure.sum())
-    return ContactIterate(pressure, approach, applications, converged)
+    pressure = resultants.restored(pressure)
+    return ContactIterate(pressure, tuple(float(amount) for amount in motion), applications, converged)

@@ -1,32 +1,29 @@
-"""Contact of a rigid shape with a body: pressure and gap under a prescribed load, with their certificate."""
+"""Contact of a body with a rigid shape or a second body: pressure and gap, with their certificate."""
 
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
-from scipy import ndimage
 
 from contactstudy import checks
 from contactstudy.bodies import Body
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
-from contactstudy.conjugate_gradients import ContactIterate, solve_complementarity
+from contactstudy.conjugate_gradients import ContactIterate, Resultants
+from contactstudy.contact_problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
+from contactstudy.counterbody import Counterbody
 from contactstudy.dataset import describe
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
 from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
-from contactstudy.surface import SurfaceOperator, surface_operator
+from contactstudy.pair import PairOperator
+from contactstudy.surface import surface_operator
 from contactstudy.threads import one_blas_thread
 
 # A gap counts as open when it exceeds this many tolerances of the displacement's variation.
 OPEN_TOLERANCES = 10.0
-COUPLED_ROUNDS = 60
-# From this many cells on, the contact is first solved on coarser ones, to a tolerance that serves as a guess.
-NESTED_CELLS = 4096
-COARSE_TOLERANCE = 1e-3
 
 _CONTACTS: BoundedCache[ContactIterate] = BoundedCache(2**26, lambda iterate: iterate.pressure.nbytes)
 
@@ -34,14 +31,17 @@ _CONTACTS: BoundedCache[ContactIterate] = BoundedCache(2**26, lambda iterate: it
 def solve_contact(
     body: Body,
     gap: xr.DataArray,
-    load: float,
+    load: float | None = None,
     friction: float = 0.0,
     coupled: bool = False,
     *,
+    approach: float | None = None,
+    load_position: float | None = None,
+    counterbody: Counterbody | None = None,
     tolerance: float = 1e-6,
     max_iterations: int = 500,
 ) -> xr.Dataset:
-    """Press a rigid shape on a body.
+    """Press a rigid shape, or a second elastic body, on a body.
 
     Parameters
     ----------
@@ -51,13 +51,20 @@ def solve_contact(
         Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite where there is nothing
         to touch. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
         around the contact.
-    load : float
-        Normal load, N.
+    load : float, optional
+        Normal load, N. Either this or `approach` is given.
     friction : float
         Coefficient ``f``; the shear traction on the body is ``f`` times the pressure along +y.
     coupled : bool
-        Whether the friction also displaces the surface normally, which changes pressure and contact (it cannot when
-        Poisson's ratio is 1/2).
+        Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
+        Poisson's ratio is 1/2, nor between half-spaces of one material).
+    approach : float, optional
+        How far the shape is pressed down from first touch, metres, relative to the reference of `displacement_z`.
+    load_position : float, optional
+        Position x on which the load acts, metres: the shape tilts until the pressure balances it. Default: the shape
+        keeps its inclination, whatever moment that takes.
+    counterbody : Counterbody, optional
+        Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
     tolerance : float
         Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
         of the pressure, over its sum.
@@ -67,14 +74,14 @@ def solve_contact(
     Returns
     -------
     Dataset
-        `pressure`, `shear_traction`, `gap`, `displacement_z` (x, y); `load`, `approach`, `iterations`, `converged`;
-        and the certificate, recomputed from the pressure alone: `load_error`, `penetration_error`,
-        `open_pressure_error`.
+        `pressure`, `shear_traction`, `gap`, `displacement_z` (of `body`) (x, y); `load`, `approach` (where the load
+        acts, or at ``x = 0``), `tilt`, `load_position` of the resultant, `iterations`, `converged`; and the
+        certificate, recomputed from the pressure alone: `load_error`, `penetration_error`, `open_pressure_error`.
 
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind or out of range, or the grid does not fit the body.
+        If an argument is of the wrong kind or out of range, or the grid does not fit a body.
     WindowError
         If the contact reaches an edge of the grid where the body goes on.
 
@@ -82,6 +89,12 @@ def solve_contact(
     -----
     ConvergenceWarning
         If the iteration stopped before its tolerance; `converged` is then False.
+
+    Notes
+    -----
+    A finite-length body has no absolute displacement, nor an absolute tilt: an eccentric load tilts it by an amount
+    that grows like the logarithm of the distance from which it is seen. `approach` and `tilt` are those of the shape
+    relative to the body's top at the distance along y stated in the attributes of `displacement_z`.
 
     Examples
     --------
@@ -97,25 +110,32 @@ def solve_contact(
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     clearance, grid = labelled_cells("gap", gap, infinite=True)
-    load = checks.positive("load", load, "N")
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
+    resultants, lowered = _prescribed(clearance, grid, load, approach, load_position)
     friction = checks.finite("friction", friction)
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
     tolerance = checks.positive("tolerance", tolerance)
     max_iterations = checks.count("max_iterations", max_iterations)
-    if not np.isfinite(clearance).any():
-        raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     bends = bool(coupled) and friction != 0
-    total = load / grid.cell_area
     with one_blas_thread():
-        operator = surface_operator(body, grid, tangential=bends)
+        if counterbody is None:
+            own = surface_operator(body, grid, tangential=bends)
+            operator: ContactOperator = own
+        else:
+            checks.instance("counterbody", counterbody, Counterbody, "a Counterbody")
+            pair = PairOperator(body, counterbody, grid, tangential=bends)
+            operator, own = pair, pair.body
+        problem = ContactProblem(grid, clearance - lowered, resultants, friction, tolerance, max_iterations)
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        key = (body, grid, digest(clearance), total, friction if bends else 0.0, tolerance, max_iterations)
-        problem = _Problem(body, grid, clearance, total, friction, tolerance, max_iterations)
-        solve = _solve_coupled if bends else _solve_normal
+        prescribed = (load, approach, load_position, friction if bends else 0.0, tolerance, max_iterations)
+        key = (body, counterbody, grid, digest(clearance), prescribed)
+        solve = solve_coupled if bends else solve_normal
         iterate = _CONTACTS.get(key, lambda: solve(operator, problem))
         pressure = iterate.pressure.copy()
         traction = friction * pressure
-        displacement = operator(pressure, traction if bends else None)
+        displacement = own(pressure, traction if bends else None)
+        approached = displacement if counterbody is None else operator(pressure, traction if bends else None)
     _check_window(body, pressure, np.isfinite(clearance))
     if not iterate.converged:
         warnings.warn(
@@ -124,20 +144,26 @@ def solve_contact(
             ConvergenceWarning,
             stacklevel=2,
         )
-    height = clearance + displacement
-    approach = float((pressure * np.where(pressure > 0, height, 0.0)).sum() / pressure.sum())
-    opening = height - approach
-    variation = float(np.ptp(displacement))
     touching = pressure > 0
+    height = clearance + approached
+    tilt = iterate.motion[1] if load_position is not None else 0.0
+    if resultants.lever is not None:
+        height = height - tilt * resultants.lever
+    total = pressure.sum()
+    sunk = float((pressure * np.where(touching, height, 0.0)).sum() / total) if approach is None else lowered
+    opening = height - sunk
+    variation = float(np.ptp(approached))
     violation = max(float(np.abs(opening[touching]).max()), float(-opening.min()))
     at_open_gap = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
-    dims = ("x", "y")
+    carried = float(total * grid.cell_area)
     scalars: dict[str, float | int | bool] = {
-        "load": load,
-        "approach": approach,
+        "load": carried if load is None else float(load),
+        "approach": sunk,
+        "tilt": tilt,
+        "load_position": float((pressure * grid.x[:, None]).sum() / total),
         "iterations": iterate.applications,
         "converged": iterate.converged,
-        "load_error": float(pressure.sum() * grid.cell_area / load - 1),
+        "load_error": 0.0 if load is None else carried / load - 1,
         "penetration_error": violation / variation,
         "open_pressure_error": float(at_open_gap.max(initial=0.0) / pressure.max()),
     }
@@ -148,106 +174,42 @@ def solve_contact(
         "displacement_z": displacement,
     }
     result = xr.Dataset(
-        {name: (dims, values) for name, values in fields.items()} | scalars,
+        {name: (("x", "y"), values) for name, values in fields.items()} | scalars,
         coords={"x": gap["x"].values, "y": gap["y"].values},
     )
-    if np.isfinite(operator.reference):
-        result["displacement_z"].attrs["reference_distance"] = operator.reference
+    if np.isfinite(own.reference):
+        result["displacement_z"].attrs["reference_distance"] = own.reference
         result["displacement_z"].attrs["reference"] = "zero at |y| = reference_distance (m) on the top"
-    return describe(result, "contact of a rigid shape with an elastic body")
+    return describe(result, "contact of a shape with an elastic body")
 
 
-@dataclass(frozen=True, eq=False)
-class _Problem:
-    """A contact to solve, checked."""
-
-    body: Body
-    grid: Grid
-    gap: FloatArray
-    total: float
-    friction: float
-    tolerance: float
-    max_iterations: int
-
-    def coarser(self) -> _Problem:
-        """Return the same contact on cells of twice the size."""
-        grid = self.grid.coarsened()
-        cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
-        possible = np.isfinite(cells)
-        count = possible.sum(axis=(1, 3))
-        mean = np.where(possible, cells, 0.0).sum(axis=(1, 3)) / np.maximum(count, 1)
-        gap = np.where(count > 0, mean, np.inf)
-        return replace(self, grid=grid, gap=gap, total=self.total / 4, tolerance=COARSE_TOLERANCE)
-
-
-def _first_guess(operator: SurfaceOperator, problem: _Problem) -> FloatArray:
-    """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
-    gap = problem.gap
-    possible = np.isfinite(gap)
-    if gap.size >= NESTED_CELLS and problem.grid.cells_x % 2 == 0 and problem.grid.cells_y % 2 == 0:
-        coarse = problem.coarser()
-        squared = _continued_square(operator.coarse, coarse, _solve_normal(operator.coarse, coarse))
-        guess = np.sqrt(np.maximum(np.where(possible, _refined(_refined(squared).T).T, 0.0), 0.0))
-    else:
-        level = np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
-        guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
-    return np.asarray(guess if guess.any() else possible.astype(np.float64))
-
-
-def _continued_square(operator: SurfaceOperator, problem: _Problem, found: ContactIterate) -> FloatArray:
-    """Squared pressure, and outside the contact what continues it smoothly below zero.
-
-    Close to an edge the squared pressure and the opening to the power 2/3 are both linear in the distance from it
-    (Johnson, Contact Mechanics, section 5.1), so the one continues the other but for a factor. Interpolated to finer
-    cells its zero puts the edge within a cell.
-    """
-    squared = found.pressure**2
-    contact = squared > 0
-    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator(found.pressure)
-    opening = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - found.approach, 0.0)) ** (2 / 3)
-    inner = contact & ndimage.binary_dilation(~contact)
-    outer = (opening > 0) & ndimage.binary_dilation(contact)
-    if not inner.any() or not outer.any():
-        return np.asarray(squared)
-    return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))
-
-
-def _refined(values: FloatArray) -> FloatArray:
-    """Values on cells of half the size along the first axis, by linear interpolation between the centres."""
-    before, after = np.vstack([values[:1], values[:-1]]), np.vstack([values[1:], values[-1:]])
-    halves = np.stack([0.75 * values + 0.25 * before, 0.75 * values + 0.25 * after], axis=1)
-    return halves.reshape(-1, values.shape[1])
-
-
-def _solve_normal(operator: SurfaceOperator, problem: _Problem, start: FloatArray | None = None) -> ContactIterate:
-    """Contact without the displacement from friction."""
-    return solve_complementarity(
-        operator,
-        operator.precondition,
-        problem.gap,
-        problem.total,
-        _first_guess(operator, problem) if start is None else start,
-        tolerance=problem.tolerance,
-        max_iterations=problem.max_iterations,
-    )
-
-
-def _solve_coupled(operator: SurfaceOperator, problem: _Problem) -> ContactIterate:
-    """Contact with the displacement from friction: the traction of one round shapes the gap of the next.
-
-    The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``, so a few are enough.
-    """
-    iterate = _solve_normal(operator, problem)
-    applications = iterate.applications
-    for _ in range(COUPLED_ROUNDS):
-        previous = iterate.pressure
-        bent = operator(np.zeros_like(previous), problem.friction * previous)
-        iterate = _solve_normal(operator, replace(problem, gap=problem.gap + bent), previous)
-        applications += iterate.applications + 1
-        change = float(np.abs(iterate.pressure - previous).sum() / problem.total)
-        if change <= 3 * problem.tolerance or not iterate.converged:
-            return ContactIterate(iterate.pressure, iterate.approach, applications, iterate.converged)
-    return ContactIterate(iterate.pressure, iterate.approach, applications, False)
+def _prescribed(
+    clearance: FloatArray, grid: Grid, load: float | None, approach: float | None, load_position: float | None
+) -> tuple[Resultants, float]:
+    """Return what is prescribed of the pressure, and how far the shape is lowered before the iteration, metres."""
+    if (load is None) == (approach is None):
+        raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
+    if approach is not None:
+        lowered = checks.finite("approach", approach, "metres")
+        if load_position is not None:
+            raise InvalidInputError(
+                "load_position", load_position, "None where the approach is prescribed", "prescribe the load instead"
+            )
+        if lowered <= clearance.min():
+            raise InvalidInputError("approach", lowered, f"more than the least gap, {clearance.min():g} m")
+        return Resultants(None), lowered
+    total = checks.positive("load", load, "N") / grid.cell_area
+    if load_position is None:
+        return Resultants(total), 0.0
+    at = checks.finite("load_position", load_position, "metres")
+    columns = grid.x[np.isfinite(clearance).any(axis=1)]
+    if not columns[0] < at < columns[-1]:
+        raise InvalidInputError(
+            "load_position",
+            at,
+            f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there",
+        )
+    return Resultants(total, grid.x[:, None] - at), 0.0
 
 
 def _check_window(body: Body, pressure: FloatArray, possible: np.ndarray) -> None:

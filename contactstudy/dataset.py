@@ -57,6 +57,8 @@ VARIABLES = {
     "hertz_max_pressure": Variable(SCALAR, "Pa", "peak pressure of the Hertz line contact of the same load per length"),
     "load": Variable(SCALAR, "N", "normal load"),
     "approach": Variable(SCALAR, "m", "approach of roller and body, relative to the reference of displacement_z"),
+    "tilt": Variable(SCALAR, "rad", "tilt that balances the load, positive if larger x is pressed deeper"),
+    "load_position": Variable(SCALAR, "m", "position x of the pressure's resultant"),
     "iterations": Variable(SCALAR, "1", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "resultant of the pressure minus the load, over the load"),

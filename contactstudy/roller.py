@@ -7,14 +7,16 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.material import Material
 from contactstudy.profiles import Cylinder, Profile, local_radius
 
 
 @dataclass(frozen=True, kw_only=True)
 class Roller:
-    """A rigid roller with its axis along x.
+    """A roller with its axis along x, rigid or elastic.
 
     Parameters
     ----------
@@ -24,6 +26,10 @@ class Roller:
         Length ``L_c`` from end to end, metres.
     profile : Profile
         How the generatrix departs from the cylinder.
+    material : Material, optional
+        What the roller is made of; default: it is rigid.
+    ends : str
+        How an elastic roller's ends are treated: "free", as a body of its own length, or "none", as a half-space.
 
     Raises
     ------
@@ -40,17 +46,32 @@ class Roller:
     radius: float
     length: float
     profile: Profile = field(default_factory=Cylinder)
+    material: Material | None = None
+    ends: str = "free"
 
     def __post_init__(self) -> None:
         """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
         object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
         object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
+        if self.material is not None:
+            checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")
+        checks.instance("ends", self.ends, str, "a name")
+        checks.known_name("ends", self.ends, ("free", "none"))
         tried = np.array([0.0, 0.25 * self.length])
         local_radius(self.profile, tried, self.length, self.radius)
         drop = self.profile.drop(tried, self.length)
         if drop.shape != (2,) or not np.all(drop >= 0):
             raise InvalidInputError("profile", self.profile, "a profile with a drop not below zero")
+
+    @property
+    def body(self) -> Body | None:
+        """The roller as an elastic body seen from its own end I; None if it is rigid."""
+        if self.material is None:
+            return None
+        if self.ends == "free":
+            return FiniteLengthSpace(length=self.length, material=self.material)
+        return HalfSpace(material=self.material)
 
     def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the roller over the plane that its cylinder touches.

@@ -9,13 +9,18 @@ from contactstudy import checks
 from contactstudy.case import Case, choose_grid
 from contactstudy.contact import solve_contact
 from contactstudy.dataset import describe
+from contactstudy.discretisation import discretisation_error
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
+from contactstudy.labelled import labelled_cells
 from contactstudy.positions import Positions
 from contactstudy.stress import end_traction_residual, stress_field
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
+
+LEAST_CELLS = 8
+"""Along each axis, for an estimate of the discretisation error."""
 
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 RESIDUAL_POSITIONS = (0.0, 0.5, 0.9, 1.1)
@@ -29,6 +34,8 @@ def solve(
     y: Positions | None = None,
     z: Positions | None = None,
     stresses: bool = True,
+    roughness: xr.DataArray | None = None,
+    error_estimate: bool = False,
     tolerance: float = 1e-6,
 ) -> xr.Dataset:
     """Solve a case: the contact, then the stresses in the body.
@@ -45,6 +52,12 @@ def solve(
         Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths.
     stresses : bool
         Whether to compute the stresses at all.
+    roughness : DataArray (x, y), optional
+        Heights of the surfaces in metres, positive out of them, as from `contactstudy.roughness`: they are taken off
+        the gap, interpolated linearly to the cell centres, which they must cover.
+    error_estimate : bool
+        Whether to solve the contact on half the cells as well, and state peak and end pressure and half-width with
+        their discretisation error, see `contactstudy.discretisation.discretisation_error`.
     tolerance : float
         Tolerance of the contact, see `solve_contact`.
 
@@ -75,11 +88,15 @@ def solve(
     if grid is None:
         grid = choose_grid(case)
     checks.instance("grid", grid, Grid, "a Grid")
-    clearance = case.gap(grid)
-    if not np.isfinite(clearance).any():
-        raise InvalidInputError("grid", grid, "a grid with cells under the roller")
-    gap = xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    result = solve_contact(case.body, gap, case.normal_load, case.friction, case.coupled, tolerance=tolerance)
+    gap = _initial_gap(case, grid, roughness)
+    result = _contact(case, gap, tolerance)
+    if error_estimate:
+        if min(grid.shape) < LEAST_CELLS:
+            raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
+        if roughness is not None:
+            raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
+        coarse = _contact(case, _initial_gap(case, grid.coarsened(), None), tolerance)
+        result = result.assign(discretisation_error(result, coarse).data_vars)
     half_width = case.hertz_half_width
     result["initial_gap"] = gap
     result["hertz_half_width"] = half_width
@@ -100,3 +117,85 @@ def solve(
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
     return describe(result, "roller on an elastic body: contact and stresses")
+
+
+def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.DataArray:
+    """Gap of a case before deformation, less the heights of its rough surfaces."""
+    clearance = case.gap(grid)
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError("grid", grid, "a grid with cells under the roller")
+    if roughness is not None:
+        heights, own = labelled_cells("roughness", roughness)
+        if own.shape != grid.shape or not (np.allclose(own.x, grid.x) and np.allclose(own.y, grid.y)):
+            cells = f"the {grid.shape} cells of the pressure"
+            raise InvalidInputError(
+                "roughness", f"{own.shape} cells", cells, "make it on choose_grid(case), or give grid"
+            )
+        clearance = clearance - heights
+    return xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+
+
+def _contact(case: Case, gap: xr.DataArray, tolerance: float) -> xr.Dataset:
+    """Contact of a case with a given gap."""
+    result = solve_contact(
+        case.body,
+        gap,
+        case.normal_load,
+        case.friction,
+        case.coupled,
+        load_position=case.load_position,
+        counterbody=case.counterbody,
+        tolerance=tolerance,
+    )
+    result["tilt"] = result["tilt"] + case.tilt
+    return result
+
+
+def roller_stress(
+    case: Case,
+    pressure: xr.DataArray,
+    x: Positions | None = None,
+    y: Positions | None = None,
+    z: Positions = (0.0,),
+) -> xr.Dataset:
+    """Stresses in an elastic roller.
+
+    Parameters
+    ----------
+    case : Case
+        The case; its roller has a material.
+    pressure : DataArray (x, y)
+        Contact pressure on the body's cells, Pa, as in the result of `solve`.
+    x, y : sequence of float, optional
+        Positions, metres: x from the roller's own end I, y as on the body; default: the roller's cell centres.
+    z : sequence of float
+        Depths into the roller, metres, not negative.
+
+    Returns
+    -------
+    Dataset
+        As from `stress_field`. The traction on the roller is opposite to that on the body.
+
+    Raises
+    ------
+    InvalidInputError
+        If the roller is rigid, or an argument is of the wrong kind or outside the roller.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller
+    >>> steel = Material(210e9, 0.3)
+    >>> body = FiniteLengthSpace(length=0.5e-3, material=steel)
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, material=steel), max_pressure=1.5e9)
+    >>> result = solve(case, y=[0.0], z=[5e-5])
+    >>> inside = roller_stress(case, result.pressure, y=[0.0], z=[5e-5])  # two equal bodies carry equal stresses
+    >>> bool(np.allclose(inside.von_mises.values, result.von_mises.values, rtol=1e-6))
+    True
+    """
+    checks.instance("case", case, Case, "a Case")
+    if case.counterbody is None:
+        raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
+    values, grid = labelled_cells("pressure", pressure)
+    own = case.counterbody.own_grid(grid)
+    carried = xr.DataArray(case.counterbody.load_on(grid, values), coords={"x": own.x, "y": own.y}, dims=("x", "y"))
+    return stress_field(case.counterbody.body, carried, -case.friction, x, y, z)

@@ -21,8 +21,17 @@ def result():
 def test_everything_the_interface_promises_is_there_with_its_unit(result) -> None:
     promised = (
         *("pressure", "shear_traction", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
-        *("hertz_half_width", "hertz_max_pressure", "load", "approach", "iterations", "converged"),
-        *("load_error", "penetration_error", "open_pressure_error", "end_traction_residual"),
+        *(
+            "hertz_half_width",
+            "hertz_max_pressure",
+            "load",
+            "approach",
+            "tilt",
+            "load_position",
+            "iterations",
+            "converged",
+        ),
+        *("iterations", "converged", "load_error", "penetration_error", "open_pressure_error", "end_traction_residual"),
     )
     assert set(promised) == set(result.data_vars)
     for name in promised:
