@@ -32,8 +32,8 @@ from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import end_traction_residual
 from contactstudy.study.setup import build_setup
 from contactstudy.surface import surface_operator
+from contactstudy.verification import closed_forms as ref
 from tests import finite_elements
-from tests import references as ref
 
 T = TypeVar("T")
 LINE_LOAD = 0.5 * np.pi

@@ -17,7 +17,7 @@ from contactstudy import (
     WindowError,
     solve_contact,
 )
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
 from tests.conftest import LINE_LOAD
 
 

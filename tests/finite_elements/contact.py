@@ -24,7 +24,7 @@ from scipy import linalg, optimize
 
 from contactstudy.verification.load_cases import ContactCase
 from tests.finite_elements.harmonics import HarmonicBody, Line
-from tests.finite_elements.superpose import PANELS, Resolution
+from tests.finite_elements.superpose import Resolution
 
 Array = NDArray[np.float64]
 STEPS = (0.01, 0.025, 0.05, 0.085, 0.13, 0.19, 0.27, 0.38, 0.52, 0.7, 1.0)
@@ -142,7 +142,7 @@ def solve(case: ContactCase, flexible: Flexibility, step: float, window: float, 
     # Integral of y**2 times a hat: step (y**2 + step**2 / 6).
     gaps += np.outer(twice * step * (y**2 + step**2 / 6), merge @ flexible.weights)
     pressure = _complementarity(matrix, gaps.ravel(), weights, case.load)
-    half = (merge.T @ pressure.reshape(y.size, -1).T)
+    half = merge.T @ pressure.reshape(y.size, -1).T
     whole = np.concatenate([half, half[: flexible.nodes.size // 2][::-1]])
     return FoundContact(flexible.nodes, y, whole)
 

@@ -126,4 +126,3 @@ def write(path: Path) -> None:
                 {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in each.items()},
                 flush=True,
             )
-

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
 
 NU = 0.3
 Field = Callable[[np.ndarray, np.ndarray, np.ndarray], ref.Stress]
