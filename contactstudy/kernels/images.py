@@ -20,6 +20,8 @@ CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 NEAR_IMAGES = 5
 FAR_LIMIT = 1e6  # of the spread load, over the length; beyond it nothing counts
 CHEBYSHEV_X, CHEBYSHEV_Y = 16, 28
+# The images vary over distances of the order of the length: a wider span along y takes more points per length.
+POINTS_PER_LENGTH = 14
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
@@ -69,8 +71,10 @@ def mirrored_kernel(
         add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
     at_x, from_points_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
-    if y.size > CHEBYSHEV_Y:
-        at_y, from_points_y = _chebyshev_points(y, float(np.abs(y).max()) + dy, CHEBYSHEV_Y)
+    span_y = float(np.abs(y).max()) + dy
+    count_y = max(CHEBYSHEV_Y, int(np.ceil(POINTS_PER_LENGTH * span_y / length)))
+    if y.size > count_y:
+        at_y, from_points_y = _chebyshev_points(y, span_y, count_y)
     else:
         at_y, from_points_y = y, np.eye(y.size)
     positions = np.add.outer(shifts, at_x)[..., None]

@@ -117,7 +117,7 @@ def circle_checks() -> Iterator[Check]:
 def line_checks() -> Iterator[Check]:
     """Stresses in the middle of a long strip under a line contact's pressure."""
     length = 400.0
-    pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (80, 80))
+    pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (80, 160))
     y, z = np.linspace(-2, 2, 33), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
     source = "McEwen (1949); Smith and Liu (1953)"
     for friction in (0.0, 0.3):

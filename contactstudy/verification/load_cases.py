@@ -105,7 +105,7 @@ class LoadCase:
 
 @dataclass(frozen=True)
 class ContactCase:
-    """A rigid roller, centred over a body of `length` with two free ends, in the gap ``y**2 + crown (x - length/2)**2``.
+    """A rigid roller centred over a body with two free ends: the gap is ``y**2 + crown (x - length / 2)**2``.
 
     Parameters
     ----------
@@ -157,6 +157,7 @@ LOAD_CASES: dict[str, LoadCase] = {
     "full_sliding": LoadCase(8.0, Uniform(), friction=0.3),
     "eccentric_sliding": LoadCase(8.0, Bump(1.5, 1.0), friction=0.3),
     "thin": LoadCase(2.5, Uniform()),
+    "plate_sliding": LoadCase(0.5, Uniform(), friction=0.3),
     "wedge_sliding": LoadCase(4.0, Linear(0.2), friction=0.2, poisson=0.1),
 }
 

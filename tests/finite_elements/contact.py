@@ -1,4 +1,4 @@
-"""Contact of a rigid roller on the finite-element body, as a complementarity problem that shares nothing with the package.
+"""Contact of a rigid roller on the finite-element body, as a complementarity problem.
 
 The pressure is a product of hat functions: along x on nodes graded to where the roller or the body ends, along y on
 uniform nodes. For each wavenumber along y the finite elements give the flexibility of the top between the hats along

@@ -11,7 +11,9 @@ from contactstudy.verification.closed_forms.point_load import point_load
 
 
 def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: float, modulus: float) -> FloatArray:
-    """Normal displacement of the surface under a unit pressure on ``|x| < half_x``, ``|y| < half_y`` (Johnson 3.25).
+    """Return the normal displacement of the surface under a unit pressure (Johnson 3.25).
+
+    The pressure covers ``|x| < half_x``, ``|y| < half_y``.
 
     Each of the four corners gives ``u ln(v + r) + v ln(u + r)`` with its distances `u`, `v` and ``r = hypot(u, v)``,
     over ``pi E*``; `modulus` is ``E*``. Not on the lines through an edge.
@@ -26,7 +28,6 @@ def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: fl
     for side_x in (-1, 1):
         for side_y in (-1, 1):
             u, v = side_x * xs + half_x, side_y * ys + half_y
-            r = np.hypot(u, v)
             # ln(v + r) by asinh, which does not cancel for negative v; the rest, ln |u|, goes out with its opposite.
             total += u * np.arcsinh(v / np.abs(u)) + v * np.arcsinh(u / np.abs(v))
     return np.asarray(total / (np.pi * modulus))
