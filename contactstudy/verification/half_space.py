@@ -171,7 +171,7 @@ def rectangle_checks() -> Iterator[Check]:
 
 
 def point_checks() -> Iterator[Check]:
-    """A small loaded cell, seen from far away."""
+    """Stresses of a small loaded cell, seen from far away."""
     grid = Grid((-0.06, 0.06), (-0.06, 0.06), 3, 3)
     at = {"x": np.array([-3.0, 0.4, 2.0]), "y": np.array([-1.0, 0.0, 2.5]), "z": np.array([0.8, 2.0, 4.0])}
     points = np.meshgrid(*at.values(), indexing="ij")

@@ -164,5 +164,6 @@ LOAD_CASES: dict[str, LoadCase] = {
 CONTACT_CASES: dict[str, ContactCase] = {
     "flush": ContactCase(8.0, 0.0),
     "inside": ContactCase(8.0, 1.0),
+    "crowned": ContactCase(8.0, 0.5, crown=0.15),
     "overhanging": ContactCase(8.0, -2.0, crown=0.03),
 }

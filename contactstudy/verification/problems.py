@@ -71,7 +71,7 @@ def strip_integral(y: FloatArray) -> FloatArray:
 
 
 def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:
-    """Unit load on one cell."""
+    """Pressure of a unit load on one cell."""
 
     def pressure(grid: Grid) -> FloatArray:
         values = np.zeros(grid.shape)
