@@ -1,9 +1,9 @@
 """Checks against numbers that were published, with what is known about those that disagree.
 
 * Johnson, *Contact Mechanics* (1985): the shear stresses below point and line contacts that every designer uses.
-* Michell, *Proc. London Math. Soc.* 34 (1902) 134; Timoshenko and Goodier, *Theory of Elasticity*, force at the vertex of
-  a wedge: the one exact solution of a loaded quarter plane. A quarter space under a long line load on its edge must
-  agree with it.
+* Michell, *Proc. London Math. Soc.* 34 (1902) 134; Timoshenko and Goodier, *Theory of Elasticity*, force at the vertex
+  of a wedge: the exact solution of a quarter plane loaded at its corner. A quarter space under a long line load on its
+  edge must agree with it.
 * Guilbault, *J. Tribology* 133 (2011) 031402, quoted second-hand: errors of the largest edge displacement of a mirrored
   load against his finite elements, -21.90 % for Poisson's ratio 0.3 and -11.30 % for 0.15. The exact solution gives
   these errors for a narrow load (they depend on its proportions, and grow to -30 % for a wide one). With his factor he
@@ -54,7 +54,7 @@ def johnson_checks() -> Iterator[Check]:
 
 
 def wedge_checks() -> Iterator[Check]:
-    """A line load P on the edge: ``sigma_r = P (8 cos t - 4 pi sin t) / ((pi**2 - 4) r)``, t from the top."""
+    """Line load P on the edge: ``sigma_r = P (8 cos t - 4 pi sin t) / ((pi**2 - 4) r)``, t from the top."""
     poisson, cell, width = 0.3, 0.01, 60.0
     body = QuarterSpace(material=unit_material(poisson))
     pressure = on_cells(lambda x, y: (x < cell) / cell + 0 * y, (0, 4 * cell), (-width, width), (4, 12))
