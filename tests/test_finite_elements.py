@@ -112,3 +112,18 @@ def test_stored_friction_is_a_superposition() -> None:
 
 def test_stored_file_is_small() -> None:
     assert data_file(STRESS_FILE).stat().st_size < 300_000
+
+
+def test_contact_of_a_body_without_lateral_contraction_is_the_line_contact() -> None:
+    """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
+    contact = pytest.importorskip("tests.finite_elements.contact")
+    case = fe.ContactCase(2.0, 0.0, poisson=0.0)
+    flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))
+    found = contact.solve(case, flexible, 1 / 12, 1.25)
+    half_width, peak = ref.hertz_line(case.load / case.length, 0.5, 1.0)
+    exact = peak * np.sqrt(np.clip(1 - (found.y / half_width) ** 2, 0, None))
+    inside = found.y < 0.7 * half_width
+    assert found.pressure[:, inside] == pytest.approx(np.broadcast_to(exact, found.pressure.shape)[:, inside], abs=0.01)
+    assert np.ptp(found.pressure[:, 0]) < 1e-3
+    carried = np.trapezoid(2 * np.trapezoid(found.pressure, found.y, axis=1), found.x)
+    assert carried == pytest.approx(case.load, rel=1e-6)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,6 +28,11 @@ def _panels(count: int) -> tuple[Figure, list[Axes]]:
     return figure, [figure.add_subplot(rows, min(count, COLUMNS), place + 1) for place in range(count)]
 
 
+def _with_symbols(text: str) -> str:
+    """Names of stress components as symbols."""
+    return re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", text)
+
+
 def plot_profiles(checks: list[Check]) -> Figure:
     """Draw the profile of every check that has one: line for what is computed, circles for the reference."""
     shown = [check for check in checks if check.curve is not None]
@@ -48,7 +54,7 @@ def plot_profiles(checks: list[Check]) -> Figure:
         )
         ax.set_title("\n".join(textwrap.wrap(check.case, 48)), fontsize="small")
         ax.set_xlabel(curve.along)
-        ax.set_ylabel(curve.quantity)
+        ax.set_ylabel(_with_symbols(curve.quantity), fontsize="small")
         ax.grid(alpha=0.3)
     if axes:
         axes[0].legend(fontsize="small")

@@ -47,11 +47,11 @@ def stress_checks(name: str) -> Iterator[Check]:
     stress = stress_field(body, pressure_of(case), case.friction, **points)
     computed = np.array([stress[component].values for component in STRESSES])
     expected = np.array([below[component].transpose("x", "y", "z").values for component in STRESSES])
-    label = f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}, nu = {case.poisson:g}"
-    profile = {"x": 0.0, "y": 0.0}
+    label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
+    profile = {"x": 0.0, "y": 0.75}
     curve = Curve(
         "z / a",
-        "sigma_yy / p0 on the end, y = 0",
+        "sigma_yy / p0, x = 0, y = 0.75a",
         points["z"],
         stress["sigma_yy"].sel(profile).values,
         below["sigma_yy"].sel(profile).values,

@@ -8,7 +8,6 @@ import numpy as np
 
 from contactstudy.bodies import HalfSpace
 from contactstudy.contact import solve_contact
-from contactstudy.dataset import STRESSES
 from contactstudy.grid import Grid
 from contactstudy.stress import stress_field
 from contactstudy.surface import surface_displacement
@@ -17,6 +16,7 @@ from contactstudy.verification.check import Check, Curve, compare, compare_field
 from contactstudy.verification.load_cases import LINE_LOAD
 from contactstudy.verification.problems import (
     cell_means,
+    components,
     on_cells,
     point_pressure,
     strip_integral,
@@ -100,13 +100,14 @@ def circle_checks() -> Iterator[Check]:
     )
     x, y, z = np.array([0.0, 0.5, 1.2]), np.linspace(-1.5, 1.5, 13), np.array([0.1, 0.25, 0.5, 1.0, 2.0])
     stress = stress_field(body, circle, 0.25, x=x, y=y, z=z)
-    exact = closed_forms.hertz_circle(*np.meshgrid(x, y, z, indexing="ij"), 1.0, 1.0, POISSON, 0.25)
+    at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
+    exact = closed_forms.hertz_circle(at_x, at_y, at_z, 1.0, 1.0, POISSON, 0.25)
     yield compare_fields(
         "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a",
         "six stresses / p0",
         "Hamilton (1983); Hamilton and Goodman (1966)",
-        [stress[name] for name in STRESSES],
-        [exact[name] for name in STRESSES],
+        components(stress),
+        components(exact),
         3e-3,
         curve=Curve(
             "y / a", "tau_yz / p0, x = 0, z = 0.25a", y, stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1]
@@ -129,8 +130,8 @@ def line_checks() -> Iterator[Check]:
             case,
             "six stresses / p0",
             source,
-            [stress[name] for name in STRESSES],
-            [exact[name] for name in STRESSES],
+            components(stress),
+            components(exact),
             1e-3,
             curve=curve,
         )
@@ -152,13 +153,14 @@ def rectangle_checks() -> Iterator[Check]:
     )
     x, y = np.array([-0.4, 0.3, 1.5]), np.array([-0.9, 0.1, 0.4])
     stress = stress_field(body, pressure, 0.3, x=x, y=y, z=z)
-    exact = closed_forms.rectangle(*np.meshgrid(x, y, z, indexing="ij"), half_x, half_y, POISSON, 0.3)
+    at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
+    exact = closed_forms.rectangle(at_x, at_y, at_z, half_x, half_y, POISSON, 0.3)
     yield compare_fields(
         "uniform pressure and traction (f = 0.3) on a rectangle 2 x 1",
         "six stresses / p",
         "Boussinesq and Cerruti, integrated by Gauss quadrature",
-        [stress[name] for name in STRESSES],
-        [exact[name] for name in STRESSES],
+        components(stress),
+        components(exact),
         1e-8,
     )
     sunk = surface_displacement(body, pressure)
@@ -174,21 +176,21 @@ def point_checks() -> Iterator[Check]:
     """Stresses of a small loaded cell, seen from far away."""
     grid = Grid((-0.06, 0.06), (-0.06, 0.06), 3, 3)
     at = {"x": np.array([-3.0, 0.4, 2.0]), "y": np.array([-1.0, 0.0, 2.5]), "z": np.array([0.8, 2.0, 4.0])}
-    points = np.meshgrid(*at.values(), indexing="ij")
+    x, y, z = np.meshgrid(*at.values(), indexing="ij")
     pressure = point_pressure(grid, 1, 1)
     for friction, source in (
         (0.0, "Boussinesq (1885); Johnson 3.2"),
         (1.0, "Boussinesq and Cerruti; Johnson 3.2, 3.6"),
     ):
         stress = stress_field(_body(), pressure, friction, **at)
-        exact = closed_forms.point_load(*points, POISSON, 1.0, friction)
+        exact = closed_forms.point_load(x, y, z, POISSON, 1.0, friction)
         scale = max(float(np.abs(value).max()) for value in exact.values())
         yield compare_fields(
             "load on one cell of 0.04a, 0.9a and more away" + (", f = 1" if friction else ""),
             "six stresses over the largest",
             source,
-            np.array([stress[name] for name in STRESSES]) / scale,
-            np.array([exact[name] for name in STRESSES]) / scale,
+            components(stress) / scale,
+            components(exact) / scale,
             1e-3,
         )
 

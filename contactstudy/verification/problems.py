@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from numpy.typing import ArrayLike
 
 from contactstudy.checks import FloatArray
+from contactstudy.dataset import STRESSES
 from contactstudy.grid import Grid
 from contactstudy.material import Material
 
@@ -57,6 +60,11 @@ def cell_means(
         return np.asarray(np.diff(integral_y(edges)) / grid.dy)[None, :]
 
     return on_grid(means, Grid(x_range, y_range, *cells))
+
+
+def components(fields: Mapping[Any, ArrayLike]) -> FloatArray:
+    """Six stresses as one array, components first."""
+    return np.array([fields[name] for name in STRESSES])
 
 
 def strip(x: FloatArray, y: FloatArray) -> FloatArray:

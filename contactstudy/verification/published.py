@@ -20,12 +20,17 @@ from collections.abc import Iterator
 import numpy as np
 
 from contactstudy.bodies import HalfSpace, QuarterSpace
-from contactstudy.dataset import STRESSES
 from contactstudy.invariants import maximum_shear
 from contactstudy.stress import stress_field
 from contactstudy.surface import surface_displacement
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
-from contactstudy.verification.problems import cell_means, on_cells, strip_integral, unit_material
+from contactstudy.verification.problems import (
+    cell_means,
+    components,
+    on_cells,
+    strip_integral,
+    unit_material,
+)
 
 POISSON = 0.3
 MIRROR_ERRORS = {0.3: -0.2190, 0.15: -0.1130}
@@ -75,8 +80,8 @@ def wedge_checks() -> Iterator[Check]:
         "line load P on the edge of a quarter space, a and more away",
         "six stresses a / P",
         "Michell (1902); Timoshenko and Goodier, wedge",
-        [stress[name] for name in STRESSES],
-        [exact[name] for name in STRESSES],
+        components(stress),
+        components(exact),
         0.02,
         curve=Curve("z / a", "sigma_zz a / P, x = 0", z, stress["sigma_zz"].values[0], exact["sigma_zz"][0]),
     )

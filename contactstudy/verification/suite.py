@@ -118,6 +118,7 @@ def run(level: str = "quick", report: Callable[[str, Check], None] | None = None
     tables: list[Table] = []
 
     def convergence_checks() -> Iterator[Check]:
+        yield from convergence.quadrature_checks()
         for table in convergence.tables():
             tables.append(table)
             yield from table.checks()
