@@ -15,6 +15,7 @@ from contactstudy.cache import BoundedCache
 from contactstudy.dataset import STRESSES
 from contactstudy.material import Material
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import (
     consistency,
     convergence,
@@ -75,7 +76,7 @@ def no_friction(patch: Patch) -> None:
 
 def first_round_only(patch: Patch) -> None:
     """What the top asks of the ends is answered, what the ends then ask of the top is not."""
-    patch.setattr(EquationSet, "solve", lambda system, source: system.scale[:, None].reshape(-1) * source)
+    patch.setattr(EquationSet, "solve", lambda system, source: (system.scale * source.T).T)
 
 
 def shear_that_needs_ends(patch: Patch) -> None:
@@ -125,18 +126,32 @@ def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
         return {(check.case, check.quantity): not check.passed for check in checks}
 
 
+def coarse_quadratures(patch: Patch) -> None:
+    coarse = Resolution(order=3, ratio=6.0, reach=12.5, lateral_order=4, lateral_reach=2.5)
+    patch.setattr(convergence, "Resolution", lambda: coarse)
+
+
+def grid_without_effect(patch: Patch) -> None:
+    real = finite_elements.pressure_of
+    patch.setattr(convergence, "pressure_of", lambda case, count: real(case, 8))
+
+
 EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "half-space": (wrong_poisson, softer, no_friction, distorted),
     "limits": (ends_only_mirrored, wrong_poisson, distorted_between_ends),
     "quarter space": (ends_only_mirrored, no_ends, first_round_only, shear_that_needs_ends),
     "finite elements": (ends_only_mirrored, no_ends),
-    "published": (ends_only_mirrored, distorted),
+    "published": (ends_only_mirrored, wrong_poisson, distorted),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("group", EVERY_WAY)
+SLOW = ("limits", "quarter space", "consistency")
+
+
+@pytest.mark.parametrize(
+    "group", [pytest.param(group, marks=[pytest.mark.slow] * (group in SLOW)) for group in EVERY_WAY]
+)
 def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
     caught: dict[tuple[str, str], bool] = {}
     for physics in EVERY_WAY[group]:
@@ -145,3 +160,14 @@ def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
                 caught[key] = caught.get(key, False) or fails
     assert caught
     assert [key for key, fails in caught.items() if not fails] == []
+
+
+def test_checks_of_convergence_fail_when_refinement_does_nothing() -> None:
+    with switched_off(coarse_quadratures):
+        assert all(failed(convergence.quadrature_checks()).values())
+    with switched_off(grid_without_effect):
+        assert all(failed(convergence.stress_grid().checks()).values())
+
+
+def test_every_group_is_tried() -> None:
+    assert set(EVERY_WAY) == set(suite.GROUPS)
