@@ -1,4 +1,4 @@
-"""The closed forms of `references.py`, checked by themselves: equilibrium, boundary values, known numbers."""
+"""The closed forms of the verification, checked by themselves: equilibrium, boundary values, known numbers."""
 
 from __future__ import annotations
 

@@ -162,9 +162,13 @@ def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
     assert [key for key, fails in caught.items() if not fails] == []
 
 
-def test_checks_of_convergence_fail_when_refinement_does_nothing() -> None:
+@pytest.mark.slow
+def test_checks_of_the_quadratures_fail_when_they_are_coarse() -> None:
     with switched_off(coarse_quadratures):
         assert all(failed(convergence.quadrature_checks()).values())
+
+
+def test_checks_of_convergence_fail_when_refinement_does_nothing() -> None:
     with switched_off(grid_without_effect):
         assert all(failed(convergence.stress_grid().checks()).values())
 
