@@ -6,6 +6,7 @@ import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 import xarray as xr
 
@@ -136,6 +137,17 @@ def grid_without_effect(patch: Patch) -> None:
     patch.setattr(convergence, "pressure_of", lambda case, count: real(case, 8))
 
 
+def results_that_depend_on_the_grid(patch: Patch) -> None:
+    real = contact.solve_contact
+
+    def wrong(body, gap, load, **named):
+        found = real(body, gap, load, **named)
+        factor = 1 + 0.05 * np.sin(gap.size)
+        return found.assign(pressure=factor * found["pressure"], approach=factor * found["approach"])
+
+    patch.setattr(convergence, "solve_contact", wrong)
+
+
 EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "half-space": (wrong_poisson, softer, no_friction, distorted),
     "limits": (ends_only_mirrored, wrong_poisson, distorted_between_ends),
@@ -160,6 +172,13 @@ def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
                 caught[key] = caught.get(key, False) or fails
     assert caught
     assert [key for key, fails in caught.items() if not fails] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("table", [convergence.point_contact, convergence.contact_grid, convergence.window])
+def test_checks_of_convergence_fail_when_results_depend_on_the_grid(table: Callable[[], convergence.Table]) -> None:
+    with switched_off(results_that_depend_on_the_grid):
+        assert all(failed(table().checks()).values())
 
 
 @pytest.mark.slow
