@@ -18,7 +18,7 @@ from contactstudy import (
     solve_contact,
 )
 from contactstudy.verification import closed_forms as ref
-from tests.conftest import LINE_LOAD
+from contactstudy.verification.load_cases import LINE_LOAD
 
 
 def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
