@@ -286,6 +286,8 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.verification import report, run
     from contactstudy.verification.check import Check
 
+    folder = options.out if options.out is not None else Path("results/verification")
+    report.make_folder(folder)  # before the work, not after
     shown: set[str] = set()
 
     def show(group: str, check: Check) -> None:
@@ -298,7 +300,7 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
     for table in verification.tables:
         print(f"\n{report.convergence_table(table)}")
     print(f"\n{report.summary(verification)}")
-    for path in report.write(verification, options.out if options.out is not None else Path("results/verification")):
+    for path in report.write(verification, folder):
         print(f"wrote {_shown(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
 

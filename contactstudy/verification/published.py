@@ -1,7 +1,7 @@
 """Checks against numbers that were published, with what is known about those that disagree.
 
 * Johnson, *Contact Mechanics* (1985): the shear stresses below point and line contacts that every designer uses.
-* Michell, *Proc. London Math. Soc.* 34 (1902) 134; Timoshenko and Goodier, *Theory of Elasticity*, force at the vertex
+* Michell, *Proc. London Math. Soc.* 32 (1900) 35; Timoshenko and Goodier, *Theory of Elasticity*, force at the vertex
   of a wedge: the exact solution of a quarter plane loaded at its corner. A quarter space under a long line load on its
   edge must agree with it.
 * Guilbault, *J. Tribology* 133 (2011) 031402, quoted second-hand: errors of the largest edge displacement of a mirrored
@@ -20,6 +20,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from contactstudy.bodies import HalfSpace, QuarterSpace
+from contactstudy.checks import FloatArray
 from contactstudy.invariants import maximum_shear
 from contactstudy.stress import stress_field
 from contactstudy.surface import surface_displacement
@@ -58,15 +59,26 @@ def johnson_checks() -> Iterator[Check]:
     yield compare("circular Hertz pressure", "largest radial tension / p0", source, float(radial), tension, 5e-3)
 
 
+def wedge_stress(angle: FloatArray) -> FloatArray:
+    """Radial stress ``sigma_r r / P`` in a quarter plane under a force P at its corner, at angles from the loaded face.
+
+    Examples
+    --------
+    >>> round(float(wedge_stress(np.array(0.5 * np.pi))), 3)
+    -2.141
+    """
+    return np.asarray((8 * np.cos(angle) - 4 * np.pi * np.sin(angle)) / (np.pi**2 - 4))
+
+
 def wedge_checks() -> Iterator[Check]:
-    """Line load P on the edge: ``sigma_r = P (8 cos t - 4 pi sin t) / ((pi**2 - 4) r)``, t from the top."""
+    """Line load on the edge of a quarter space."""
     poisson, cell, width = 0.3, 0.01, 60.0
     body = QuarterSpace(material=unit_material(poisson))
     pressure = on_cells(lambda x, y: (x < cell) / cell + 0 * y, (0, 4 * cell), (-width, width), (4, 12))
     x, z = np.array([0.0, 0.5, 1.0, 2.0]), np.array([1.0, 1.5, 2.0])
     stress = stress_field(body, pressure, x=x, y=[0.0], z=z).isel(y=0)
     distance, angle = np.hypot(x[:, None], z), np.arctan2(z, x[:, None])
-    radial = (8 * np.cos(angle) - 4 * np.pi * np.sin(angle)) / ((np.pi**2 - 4) * distance)
+    radial = wedge_stress(angle) / distance
     zero = np.zeros_like(radial)
     exact = {
         "sigma_xx": radial * np.cos(angle) ** 2,
@@ -79,7 +91,7 @@ def wedge_checks() -> Iterator[Check]:
     yield compare_fields(
         "line load P on the edge of a quarter space, a and more away",
         "six stresses a / P",
-        "Michell (1902); Timoshenko and Goodier, wedge",
+        "Michell (1900); Timoshenko and Goodier, wedge",
         components(stress),
         components(exact),
         0.02,

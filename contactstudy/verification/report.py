@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from contactstudy.errors import InvalidInputError
 from contactstudy.study.store import write_dataset, write_text
 from contactstudy.verification.check import Check
 from contactstudy.verification.convergence import Table
@@ -101,11 +102,25 @@ def _row(cells: list[str]) -> str:
     return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells).replace("|  |", "| |") + " |"
 
 
+def make_folder(folder: Path) -> None:
+    """Make the folder of a report, or raise `InvalidInputError` if it cannot be one."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidInputError("out", str(folder), "a folder that can be written", str(error)) from None
+
+
 def write(verification: Verification, folder: Path) -> list[Path]:
-    """Write ``verification.nc``, ``verification.md`` and its figures, and return their paths."""
+    """Write ``verification.nc``, ``verification.md`` and its figures, and return their paths.
+
+    Raises
+    ------
+    InvalidInputError
+        If the folder cannot be made.
+    """
     from contactstudy.verification.figures import draw
 
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
     data = verification.to_dataset()
     data["passed"] = data["passed"].astype(np.int8)
     write_dataset(folder / "verification.nc", data)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES, ContactCase, LoadCase
 
 STRESS_FILE = "finite_elements_stress.nc"
@@ -53,7 +54,26 @@ class StressReference:
 
 
 def load_stress(name: str, path: Path | None = None) -> StressReference:
-    """One stored load case, by its name in `LOAD_CASES`."""
+    """Load a stored load case.
+
+    Parameters
+    ----------
+    name : str
+        Its name in `LOAD_CASES`.
+    path : Path, optional
+        File to read instead of the package's own.
+
+    Raises
+    ------
+    InvalidInputError
+        If the name is unknown.
+
+    Examples
+    --------
+    >>> load_stress("thin").stress.sigma_zz.dims
+    ('x', 'y', 'z')
+    """
+    checks.known_name("name", name, LOAD_CASES)
     stress = xr.load_dataset(path or data_file(STRESS_FILE), group=name)
     attributes = stress.attrs
     return StressReference(
@@ -82,5 +102,24 @@ class ContactReference:
 
 
 def load_contact(name: str, path: Path | None = None) -> ContactReference:
-    """One stored contact, by its name in `CONTACT_CASES`."""
+    """Load a stored contact.
+
+    Parameters
+    ----------
+    name : str
+        Its name in `CONTACT_CASES`.
+    path : Path, optional
+        File to read instead of the package's own.
+
+    Raises
+    ------
+    InvalidInputError
+        If the name is unknown.
+
+    Examples
+    --------
+    >>> load_contact("flush").contact.pressure.dims
+    ('x', 'y')
+    """
+    checks.known_name("name", name, CONTACT_CASES)
     return ContactReference(CONTACT_CASES[name], xr.load_dataset(path or data_file(CONTACT_FILE), group=name))

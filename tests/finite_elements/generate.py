@@ -1,6 +1,6 @@
 """Make the stored references anew: `python -m tests.finite_elements.generate stress|contact [--out FOLDER]`.
 
-`stress` takes about ten minutes, `contact` about five, on one core.
+On one core `stress` takes ten to fifteen minutes, `contact` about six.
 """
 
 from __future__ import annotations

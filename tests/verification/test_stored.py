@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 import xarray as xr
 
+from contactstudy import InvalidInputError
 from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES
 from contactstudy.verification.stored import CONTACT_FILE, STRESS_FILE, data_file, load_contact, load_stress
 
@@ -37,6 +40,12 @@ def test_stored_stresses_belong_to_the_cases(name: str) -> None:
         str(case.g),
     ]
     assert reference.median_error < reference.error < 5e-4
+
+
+@pytest.mark.parametrize("load", [load_stress, load_contact])
+def test_unknown_names_are_errors(load: Callable[[str], object]) -> None:
+    with pytest.raises(InvalidInputError, match="nothing"):
+        load("nothing")
 
 
 @pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE])

@@ -107,6 +107,16 @@ def test_unknown_levels_are_errors(level: object) -> None:
         verify(level)  # type: ignore[arg-type]
 
 
+def test_a_folder_that_cannot_be_made_is_refused_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "file").write_text("")
+    assert main(["verify", "--out", str(tmp_path / "file")]) == 2
+    captured = capsys.readouterr()
+    assert "a folder that can be written" in captured.err
+    assert captured.out == ""
+
+
 def test_command_knows_its_levels(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit):
         main(["verify", "--level", "thorough"])

@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy import optimize, special
 
+from contactstudy.errors import InvalidInputError
+
 
 def composite_modulus(young: float, poisson: float, young_2: float = np.inf, poisson_2: float = 0.0) -> float:
     """`E*` of two bodies; the second one is rigid unless given."""
@@ -55,11 +57,18 @@ def hertz_ellipse(load: float, long_radius: float, short_radius: float, modulus:
     modulus : float
         Contact modulus ``E*``.
 
+    Raises
+    ------
+    InvalidInputError
+        If the first radius is the smaller.
+
     Examples
     --------
     >>> [round(float(value), 4) for value in hertz_ellipse(4 / 3, 1.0, 1.0, 1.0)]
     [1.0, 1.0, 0.6366, 1.0]
     """
+    if not long_radius >= short_radius:
+        raise InvalidInputError("long_radius", long_radius, f"at least short_radius, {short_radius:g}", "exchange them")
     if np.isclose(long_radius, short_radius, rtol=1e-9):
         a, peak, approach = hertz_point(load, long_radius, modulus)
         return EllipticContact(a, a, peak, approach)
