@@ -48,19 +48,21 @@ ROWS = {  # what the README calls it: group, part of the case, part of the quant
         "p0",
     ),
     "... median of the worst case": ("finite elements", "", "median", "p0"),
-    "contact pressure against finite elements, away from the last cell": (
+    "contact pressure against finite elements, flush roller, away from the last cell": (
         "finite elements",
-        "contact",
+        "flush",
         "away from the last cell",
         "p0",
     ),
-    "... in the last cell at the free end": ("finite elements", "contact", "in the last cell", "p0"),
-    "... of a sharp roller inside the face, 0.5a and more from its end": (
+    "... roller longer than the body": ("finite elements", "overhanging", "away from the last cell", "p0"),
+    "... in the last cell at the free end": ("finite elements", "roller from -2a", "in the last cell", "p0"),
+    "... of a sharp roller inside the face (e = a), 0.5a and more from its end": (
         "finite elements",
         "inside",
-        "pressure",
+        "0.5a and more",
         "p0",
     ),
+    "... nearer to its end, but for the last cell": ("finite elements", "inside", "away from the last cell", "p0"),
     "traction left on loaded ends, z >= 0.02a": ("consistency", "both ends", "traction", "p0"),
     "reciprocity (Betti)": ("consistency", "two loads", "work", ""),
     "Hetenyi's alternation, 200 rounds, against the explicit solution": ("consistency", "alternations", "", ""),

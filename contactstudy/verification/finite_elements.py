@@ -89,8 +89,9 @@ def displacement_checks(name: str) -> Iterator[Check]:
 def contact_checks(name: str) -> Iterator[Check]:
     """Contact of a roller: pressure along its middle line, away from its last cell and in it.
 
-    Both pressures are averaged over the cells. At a sharp roller's end inside the top's face the pressure is singular:
-    there the cells from half a half-width on are compared, and the load that the others carry.
+    Both pressures are averaged over the cells. At the sharp end of a cylinder inside the top's face the pressure is
+    singular, and neither solution resolves it: there 1 % holds from half a half-width on only, the cells before are
+    held to 5 %, and the load that they carry is compared.
     """
     reference = load_contact(name)
     case, stored = reference.case, reference.contact
@@ -103,22 +104,28 @@ def contact_checks(name: str) -> Iterator[Check]:
     expected = _cell_means(stored["x"].values, stored["pressure"].sel(y=0).values, edges)
     computed = under.sel(y=0, method="nearest").values
     error = float(np.median(stored["pressure_error"].sel(y=0)))
-    source, label = SOURCE.format(error, "p0"), f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a"
+    source, label = (
+        SOURCE.format(error, "p0 (median)"),
+        f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a",
+    )
     label += f", crown {case.crown:g}" if case.crown else ""
     curve = Curve("x / a", "p / p0 at y = 0", x, computed, expected)
-    sharp = case.distance > 0 and expected[0] > 0
-    kept = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2) if sharp else slice(1, -1)
-    where = "0.5a and more from the roller's end" if sharp else "away from the last cell"
-    quantity = f"pressure / p0 at y = 0, {where}"
-    yield compare_fields(label, quantity, source, computed[kept], expected[kept], 0.01, curve=curve)
-    if sharp:
+    singular = case.distance > 0 and not case.crown
+    away = slice(1, -1)
+    quantity = "pressure / p0 at y = 0, away from the last cell"
+    tolerance = 0.05 if singular else 0.01
+    yield compare_fields(label, quantity, source, computed[away], expected[away], tolerance, curve=curve)
+    if singular:
+        far = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
+        quantity = "pressure / p0 at y = 0, 0.5a and more from the roller's end"
+        yield compare_fields(label, quantity, source, computed[far], expected[far], 0.01)
         load = stored["line_load"].values
         near = slice(None, CONTACT_CELLS // 2)
         found = float(under.isel(x=near).sum()) * grid.cell_area
         right = float((_cell_means(stored["x"].values, load, edges)[near]).sum()) * grid.dx
         quantity = "load on the roller's last 0.5a / (p0 a^2)"
         yield compare_fields(label, quantity, source, found, right, 0.03)
-    elif expected[0] > 0:
+    else:
         quantity = "pressure / p0 at y = 0 in the last cell"
         yield compare_fields(label, quantity, source, computed[[0, -1]], expected[[0, -1]], 0.03)
 
