@@ -6,7 +6,7 @@
   edge must agree with it.
 * Guilbault, *J. Tribology* 133 (2011) 031402, quoted second-hand: errors of the largest edge displacement of a mirrored
   load against his finite elements, -21.90 % for Poisson's ratio 0.3 and -11.30 % for 0.15. They depend on the load's
-  proportions, which are not known here: the exact solution gives -21 % to -30 % for 0.3. A narrow load that fits both
+  proportions, which are not known here: the exact solution gives -21 % to -31 % for 0.3. A narrow load that fits both
   numbers was chosen, so the check says only that one load explains both, within a percentage point. With his factor he
   states -9.55 % and +0.60 %; the formula of the factor as it is known here, which cannot be compared with the paper,
   gives -7.5 % and -0.2 %, and the published errors themselves ask for factors of 1.32 and 1.27 where the formula has
