@@ -25,7 +25,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="contactstudy",
         description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
-        epilog="Exit codes: 0 all cases ok, 1 some failed or are not done, 2 wrong usage or input, "
+        epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
         "130 after Ctrl-C, 143 after SIGTERM.",
     )
     parser.add_argument("--version", action="store_true", help="show the version and end")
@@ -55,6 +55,10 @@ def _parser() -> argparse.ArgumentParser:
     parallel(command("rerun", "Solve failed, stale and missing cases again.", takes_study=False))
     added = command("export", "Write the summaries of all cases as a table (CSV).", takes_study=False)
     added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.csv; - for the screen")
+    text = "Check the solver against closed forms, finite elements and published numbers."
+    added = commands.add_parser("verify", help=text, description=text)
+    added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
+    added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
     return parser
 
 
@@ -93,6 +97,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
             "status": _status,
             "collect": _collect,
             "export": _export,
+            "verify": _verify,
         }
         return actions[options.command](options, solver)
     except ContactStudyError as error:
@@ -275,6 +280,29 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     write_text(path, table)
     print(f"wrote {_shown(path.resolve())}")
     return ALL_OK
+
+
+def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.verification import report, run
+    from contactstudy.verification.check import Check
+
+    folder = options.out if options.out is not None else Path("results/verification")
+    report.make_folder(folder)  # before the work, not after
+    shown: set[str] = set()
+
+    def show(group: str, check: Check) -> None:
+        if group not in shown:
+            print(f"\n{group}\n{report.HEADING}")
+        shown.add(group)
+        print(report.line(check), flush=True)
+
+    verification = run(options.level, show)
+    for table in verification.tables:
+        print(f"\n{report.convergence_table(table)}")
+    print(f"\n{report.summary(verification)}")
+    for path in report.write(verification, folder):
+        print(f"wrote {_shown(path.resolve())}")
+    return ALL_OK if verification.passed else SOME_FAILED
 
 
 if __name__ == "__main__":

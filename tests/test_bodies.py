@@ -17,7 +17,7 @@ from contactstudy import (
 )
 from contactstudy.bodies import guilbault_factor
 from contactstudy.stress import end_traction_residual
-from tests.conftest import LINE_LOAD
+from contactstudy.verification.load_cases import LINE_LOAD
 
 
 def test_order_of_the_end_pressures_under_a_cylinder(cylinder_gap, unit_material: Material) -> None:

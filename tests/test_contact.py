@@ -17,8 +17,8 @@ from contactstudy import (
     WindowError,
     solve_contact,
 )
-from tests import references as ref
-from tests.conftest import LINE_LOAD
+from contactstudy.verification import closed_forms as ref
+from contactstudy.verification.load_cases import LINE_LOAD
 
 
 def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:

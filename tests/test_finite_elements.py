@@ -7,8 +7,9 @@ from functools import partial
 import numpy as np
 import pytest
 
-from tests import finite_elements as fe
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
+from contactstudy.verification import load_cases as fe
+from contactstudy.verification.stored import STRESS_FILE, data_file, load_stress
 
 pytest.importorskip("skfem")
 superpose = pytest.importorskip("tests.finite_elements.superpose")
@@ -65,7 +66,7 @@ def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
     harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4))
     found = superpose.stresses(harmonic, 0, 1, 0.3, Y)
     node, weight = np.polynomial.legendre.leggauss(60)
-    loads = np.outer(weight * bump(6 + node), weight * fe.profile_y(node))
+    loads = np.outer(weight * bump(6 + node), weight * fe.quartic(node))
     dx = np.array(x)[:, None, None, None, None] - 6 - node[:, None]
     dy = np.array(Y)[:, None, None, None] - node
     point = ref.point_load(dx, dy, np.array(z)[:, None, None], 0.3, 1.0, 0.3)
@@ -75,10 +76,10 @@ def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
         assert found[name] - exact == pytest.approx(0, abs=1e-3 if shear else 5e-3), name
 
 
-@pytest.mark.parametrize("name", fe.CASES)
+@pytest.mark.parametrize("name", fe.LOAD_CASES)
 def test_stored_case(name: str) -> None:
     """Free ends, symmetry, and an error estimate that is worth comparing with."""
-    reference = fe.load(name)
+    reference = load_stress(name)
     stress, case = reference.stress, reference.case
     assert reference.error < 5e-4
     assert reference.median_error < 1e-5
@@ -100,7 +101,7 @@ def test_stored_case(name: str) -> None:
 
 def test_stored_friction_is_a_superposition() -> None:
     """What is even in y of the sliding case is the frictionless one (and odd, of `tau_xy` and `tau_yz`)."""
-    plain, sliding = fe.load("full").stress, fe.load("full_sliding").stress
+    plain, sliding = load_stress("full").stress, load_stress("full_sliding").stress
     mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
     for component in ref.COMPONENTS:
         sign = -1 if component in ("tau_xy", "tau_yz") else 1
@@ -110,4 +111,19 @@ def test_stored_friction_is_a_superposition() -> None:
 
 
 def test_stored_file_is_small() -> None:
-    assert fe.DATA.stat().st_size < 300_000
+    assert data_file(STRESS_FILE).stat().st_size < 300_000
+
+
+def test_contact_of_a_body_without_lateral_contraction_is_the_line_contact() -> None:
+    """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
+    contact = pytest.importorskip("tests.finite_elements.contact")
+    case = fe.ContactCase(2.0, 0.0, poisson=0.0)
+    flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))
+    found = contact.solve(case, flexible, 1 / 12, 1.25)
+    half_width, peak = ref.hertz_line(case.load / case.length, 0.5, 1.0)
+    exact = peak * np.sqrt(np.clip(1 - (found.y / half_width) ** 2, 0, None))
+    inside = found.y < 0.7 * half_width
+    assert found.pressure[:, inside] == pytest.approx(np.broadcast_to(exact, found.pressure.shape)[:, inside], abs=0.01)
+    assert np.ptp(found.pressure[:, 0]) < 1e-3
+    carried = np.trapezoid(2 * np.trapezoid(found.pressure, found.y, axis=1), found.x)
+    assert carried == pytest.approx(case.load, rel=1e-6)

@@ -20,7 +20,7 @@ from contactstudy.invariants import (
     tresca,
     von_mises,
 )
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
 
 Array = np.ndarray
 

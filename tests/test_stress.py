@@ -10,8 +10,9 @@ from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Materi
 from contactstudy.dataset import STRESSES
 from contactstudy.grid import Grid
 from contactstudy.stress import end_traction_residual, raw_stress
-from tests import finite_elements
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
+from contactstudy.verification.load_cases import LOAD_CASES
+from contactstudy.verification.stored import load_stress
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
 
@@ -60,9 +61,9 @@ def test_middle_of_a_long_strip_is_plane_strain(half_space: HalfSpace, strip_pre
         assert np.abs(stress[name].values[0] - exact[name]).max() < 5e-3, name
 
 
-@pytest.mark.parametrize("name", sorted(finite_elements.CASES))
+@pytest.mark.parametrize("name", sorted(LOAD_CASES))
 def test_free_ends_against_independent_finite_elements(name: str, on_cells) -> None:
-    reference = finite_elements.load(name)
+    reference = load_stress(name)
     case = reference.case
     pressure = on_cells(
         lambda x, y: case.pressure(x[:, 0], y[0]), (0.0, case.length), (-1.0, 1.0), (int(32 * case.length), 128)

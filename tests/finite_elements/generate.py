@@ -1,133 +1,30 @@
-"""Make `data/finite_elements_stress.nc`: `python -m tests.finite_elements.generate [FILE]` (about ten minutes).
+"""Make the stored references anew: `python -m tests.finite_elements.generate stress|contact [--out FOLDER]`.
 
-Every case is solved at the production resolution and with one thing at a time made worse: element order,
-mesh, depth of the body, quadrature in k. The sum of the largest changes is stored as the error estimate of
-the case.
+On one core `stress` takes ten to fifteen minutes, `contact` about six.
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Sequence
-from dataclasses import replace
-from itertools import groupby
+import argparse
 from pathlib import Path
 
-import netCDF4
-import numpy as np
-import scipy
-import skfem  # type: ignore[import-untyped]
-import xarray as xr
+from contactstudy.verification.stored import CONTACT_FILE, STRESS_FILE
+from tests.finite_elements import contact_file, stress_file
 
-from tests.finite_elements import CASES, DATA, LoadCase, profile_y
-from tests.finite_elements.harmonics import COMPONENTS
-from tests.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
-
-Z = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.25, 2.0, 3.0, 5.0)
-Y = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25)
-X = {
-    8.0: (0.0, 0.02, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 7.75, 8.0),
-    4.0: (0.0, 0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 3.75, 3.98, 4.0),
-    2.5: (0.0, 0.02, 0.1, 0.25, 0.5, 0.8, 1.25, 2.0, 2.5),
-}
-PRODUCTION = Resolution()
-LOWER = replace(PRODUCTION, order=5)
-VARIANTS = {  # name: (variant, what it is compared with)
-    "order": (LOWER, PRODUCTION),
-    "mesh": (replace(LOWER, growth=2.2, smallest=0.05), LOWER),
-    "depth": (replace(LOWER, depth=7e3), LOWER),
-    "wavenumbers": (replace(LOWER, nodes=5, panels=(0, 0.02, *PANELS[2:-1], 80)), LOWER),
-}
+DATA = Path(__file__).resolve().parents[2] / "data"
 
 
-def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
-    """Points of a case: with friction nothing is even in y, so both sides."""
-    y = Y if case.friction == 0 else tuple(-v for v in Y[:0:-1]) + Y
-    return {"x": X[case.length], "y": y, "z": Z}
-
-
-def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
-    """Stresses, and where it has a meaning the displacement, from the harmonics of a body."""
-    at = coordinates(case)
-    normal = shapes.index((case.g, False))
-    tangential = shapes.index((case.g, True)) if case.friction else None
-    fields = stresses(harmonic, normal, tangential, case.friction, at["y"])
-    units = {"units": "p0"}
-    data = xr.Dataset(
-        {n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in at.items()}
-    )
-    for name in at:
-        data[name].attrs["units"] = "a"
-    if case.symmetric:
-        reference = at["x"].index(case.length / 2)
-        u = displacement(harmonic, case, normal, tangential, at["y"], reference)
-        attrs = {
-            "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
-            "units": "p0 a",
-            "reference_x": case.length / 2,
-            "reference_y": 0.0,
-        }
-        data["displacement_z_young"] = (("x", "y"), u, attrs)
-    return data
-
-
-def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]:
-    """Largest and median change of the stresses, largest change of the displacement."""
-    stress = np.array([np.abs(worse[n] - better[n]) for n in COMPONENTS])
-    name = "displacement_z_young"
-    moved = float(np.abs(worse[name] - better[name]).max()) if name in better else 0.0
-    return float(stress.max()), float(np.median(stress)), moved
-
-
-def main(path: Path = DATA) -> None:
-    """Solve all cases at all resolutions and store the result."""
-    path.unlink(missing_ok=True)
-    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
-    versions = ", ".join(f"{name} {module.__version__}" for name, module in modules.items())
-    xr.Dataset(
-        attrs={
-            "title": "Stresses in a finite-length space under prescribed loads, by finite elements",
-            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
-            "load": "on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
-            "h": str(profile_y.__doc__),
-            "units": "lengths in a, the half-width of h; stresses in p0, positive in tension",
-            "method": "Fourier integral in y, tensor-product elements of high order in x and z",
-            "resolution": str(PRODUCTION),
-            "software": versions,
-            "regenerate": "python -m tests.finite_elements.generate",
-        }
-    ).to_netcdf(path)
-    for (length, poisson), group in groupby(CASES.items(), key=lambda item: (item[1].length, item[1].poisson)):
-        cases = dict(group)
-        shapes = list(
-            dict.fromkeys([(c.g, False) for c in cases.values()] + [(c.g, True) for c in cases.values() if c.friction])
-        )
-        results: dict[Resolution, dict[str, xr.Dataset]] = {}
-        for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
-            start = time.perf_counter()
-            harmonic = harmonics(length, poisson, shapes, X[length], Z, resolution)
-            results[resolution] = {n: evaluate(c, harmonic, list(shapes)) for n, c in cases.items()}
-            print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
-        for name, case in cases.items():
-            each = {v: changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
-            stored = results[PRODUCTION][name].astype("float32")
-            stored.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
-            for variant, (largest, median, _) in each.items():
-                stored.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
-            stored.attrs["error_estimate"] = sum(c[0] for c in each.values())
-            stored.attrs["error_estimate_median"] = sum(c[1] for c in each.values())
-            if "displacement_z_young" in stored:
-                stored["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in each.values())
-            stored = stored.assign_coords({k: list(v) for k, v in coordinates(case).items()})
-            stored.to_netcdf(path, mode="a", group=name, encoding={n: {"_FillValue": None} for n in stored.data_vars})
-            print(
-                name,
-                stored.attrs["error_estimate"],
-                {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in each.items()},
-                flush=True,
-            )
+def main() -> None:
+    """Make one of the files."""
+    parser = argparse.ArgumentParser(description="Make a file of finite-element references anew.")
+    parser.add_argument("kind", choices=("stress", "contact"))
+    parser.add_argument("--out", metavar="FOLDER", type=Path, default=DATA, help="default: the project's data")
+    options = parser.parse_args()
+    if options.kind == "stress":
+        stress_file.write(options.out / STRESS_FILE)
+    else:
+        contact_file.write(options.out / CONTACT_FILE)
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:2]))
+    main()

@@ -89,8 +89,8 @@ class HarmonicBody:
         lam = 2 * poisson / (1 - 2 * poisson)
         top = z.basis.get_dofs(lambda c: np.isclose(c[0], z.edges[0])).all()
         held = z.basis.get_dofs(lambda c: np.isclose(c[0], z.edges[-1])).all()
-        self._top = np.zeros(z.basis.N)
-        self._top[top] = 1.0
+        self.top = np.zeros(z.basis.N)
+        self.top[top] = 1.0
         keep = np.ones((3, x.basis.N, z.basis.N), dtype=bool)
         keep[:, :, held] = False
         self._free = np.flatnonzero(keep)
@@ -113,7 +113,7 @@ class HarmonicBody:
         """Amplitudes `[shape, component, x, z]` for unit loads `g(x) cos(k y)`; the flag: tangential?"""
         loads = np.zeros((len(shapes), 3, self.x.basis.N, self.z.basis.N))
         for load, (g, tangential) in zip(loads, shapes, strict=True):
-            along = np.outer(self.x.load(g), self._top)
+            along = np.outer(self.x.load(g), self.top)
             if tangential:
                 load[1] = -along
             else:
@@ -149,4 +149,4 @@ class HarmonicBody:
 
     def surface(self, amplitudes: Array, x: Sequence[float]) -> Array:
         """Amplitudes `[shape, x]` of `2 G u_z` on the top (the unit of stiffness is `G`)."""
-        return 2 * np.stack([self.x.evaluate(x)[0] @ (u[2] @ self._top) for u in amplitudes])
+        return 2 * np.stack([self.x.evaluate(x)[0] @ (u[2] @ self.top) for u in amplitudes])

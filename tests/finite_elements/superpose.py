@@ -16,7 +16,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 from scipy.special import j1, spherical_jn
 
-from tests.finite_elements import LoadCase
+from contactstudy.verification.load_cases import LoadCase
 from tests.finite_elements.harmonics import COMPONENTS, HarmonicBody, Line
 
 Array = NDArray[np.float64]

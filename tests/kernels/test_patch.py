@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.kernels import images, patch
-from tests import references as ref
+from contactstudy.verification import closed_forms as ref
 
 CORNERS = {"normal": patch.normal_corner, "tangential": patch.tangential_corner}
 

@@ -1,4 +1,4 @@
-"""The closed forms of `references.py`, checked by themselves: equilibrium, boundary values, known numbers."""
+"""The closed forms of the verification, checked by themselves: equilibrium, boundary values, known numbers."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from tests import references as ref
+from contactstudy import InvalidInputError
+from contactstudy.verification import closed_forms as ref
+from contactstudy.verification import published
 
 NU = 0.3
 Field = Callable[[np.ndarray, np.ndarray, np.ndarray], ref.Stress]
@@ -187,3 +189,47 @@ def test_strip_is_the_limit_of_point_loads() -> None:
     strip = ref.hertz_strip(y, z, 1.0, 1.0, NU, 0.3)
     for name in ref.COMPONENTS:
         assert np.einsum("xn,x,n->", point[name], dx, loads) == pytest.approx(float(strip[name]), abs=1e-6), name
+
+
+@pytest.mark.parametrize("ratio", [1.0, 1.3, 4.0, 30.0])
+def test_ellipse_touches_a_paraboloid(ratio: float) -> None:
+    """Loaded rectangles in the shape of the ellipse's pressure sink the surface to the paraboloid inside it."""
+    contact = ref.hertz_ellipse(0.7, ratio, 1.0, 1.5)
+    assert contact.long >= contact.short
+    count = 80
+    edge = np.linspace(-1, 1, count + 1)
+    middle = 0.5 * (edge[1:] + edge[:-1])
+    pressure = np.sqrt(np.clip(1 - middle[:, None] ** 2 - middle**2, 0, None))
+    pressure *= contact.max_pressure * 2 / 3 * np.pi / (pressure.sum() * (2 / count) ** 2) / contact.max_pressure
+    for x, y in ((0.003, 0.002), (0.503, 0.0021), (0.0033, 0.603)):
+        at = (x * contact.long, y * contact.short)
+        patches = ref.rectangle_displacement(
+            at[0] - contact.long * middle[:, None],
+            at[1] - contact.short * middle,
+            contact.long / count,
+            contact.short / count,
+            1.5,
+        )
+        sunk = contact.max_pressure * float((pressure * patches).sum())
+        paraboloid = contact.approach - at[0] ** 2 / (2 * ratio) - at[1] ** 2 / 2
+        assert sunk == pytest.approx(paraboloid, abs=2e-3 * contact.approach)
+
+
+def test_ellipse_with_exchanged_radii_is_an_error() -> None:
+    with pytest.raises(InvalidInputError, match="long_radius"):
+        ref.hertz_ellipse(1.0, 1.0, 2.0, 1.0)
+
+
+def test_rectangle_of_point_loads_is_newmarks_below_its_corner() -> None:
+    z = np.array([0.5, 1.0, 3.0])
+    stress = ref.rectangle(1.0, 0.5, z, 1.0, 0.5, NU)
+    assert stress["sigma_zz"] == pytest.approx(ref.below_rectangle_corner(z, 2.0, 1.0), abs=1e-9)
+
+
+def test_plane_of_a_wedge_carries_its_load() -> None:
+    """The radial field of a quarter plane loaded at its corner: forces across any arc."""
+    angle, weight = np.polynomial.legendre.leggauss(20)
+    angle, weight = 0.25 * np.pi * (angle + 1), 0.25 * np.pi * weight
+    radial = published.wedge_stress(angle)
+    assert weight @ (radial * np.sin(angle)) == pytest.approx(-1.0)
+    assert weight @ (radial * np.cos(angle)) == pytest.approx(0.0, abs=1e-12)

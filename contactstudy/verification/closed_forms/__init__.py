@@ -1,0 +1,59 @@
+"""Closed-form contact solutions that share nothing with the solver.
+
+Sources, by the names used in the docstrings:
+
+* Johnson, *Contact Mechanics* (1985): sections 3.2 (potentials of a loaded half-space), 3.3 (uniform pressure on a
+  rectangle), 3.4 (Hertz pressure on a circle), 4.2 (line and elliptic contact), appendix 3;
+* Love, *Phil. Trans. R. Soc. A* 228 (1929) 377: uniform pressure on a rectangle;
+* Hamilton and Goodman, *J. Appl. Mech.* 33 (1966) 371; Hamilton, *Proc. IMechE* 197C (1983) 53: circular sliding
+  contact;
+* McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact.
+
+Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
+traction ``q = f p`` drags the body's surface along ``+y``. Stresses are returned as a dictionary with the keys of
+`COMPONENTS`.
+"""
+
+from contactstudy.verification.closed_forms.circle import (
+    hertz_circle,
+    hertz_circle_axis,
+    hertz_circle_surface,
+    sliding_circle_surface,
+)
+from contactstudy.verification.closed_forms.components import COMPONENTS, Stress, von_mises
+from contactstudy.verification.closed_forms.hertz import (
+    EllipticContact,
+    composite_modulus,
+    hertz_ellipse,
+    hertz_line,
+    hertz_line_from_pressure,
+    hertz_point,
+)
+from contactstudy.verification.closed_forms.line import hertz_strip
+from contactstudy.verification.closed_forms.point_load import point_load
+from contactstudy.verification.closed_forms.rectangle import (
+    below_rectangle_corner,
+    rectangle,
+    rectangle_displacement,
+)
+
+__all__ = [
+    "COMPONENTS",
+    "EllipticContact",
+    "Stress",
+    "below_rectangle_corner",
+    "composite_modulus",
+    "hertz_circle",
+    "hertz_circle_axis",
+    "hertz_circle_surface",
+    "hertz_ellipse",
+    "hertz_line",
+    "hertz_line_from_pressure",
+    "hertz_point",
+    "hertz_strip",
+    "point_load",
+    "rectangle",
+    "rectangle_displacement",
+    "sliding_circle_surface",
+    "von_mises",
+]

@@ -1,0 +1,262 @@
+"""Convergence: what the grid, every setting of the quadratures and the window do to the results.
+
+Each study is a table of errors over the values of one setting, with the orders observed from one value to the next
+where the setting is a size. What is expected of it is checked: an order, or an error at the value in use.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from contactstudy.bodies import FiniteLengthSpace, HalfSpace
+from contactstudy.checks import FloatArray
+from contactstudy.contact import solve_contact
+from contactstudy.dataset import STRESSES
+from contactstudy.grid import Grid
+from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.stress import end_stress
+from contactstudy.stress import stress_field
+from contactstudy.surface import SurfaceOperator
+from contactstudy.verification import closed_forms
+from contactstudy.verification.check import Check, compare
+from contactstudy.verification.finite_elements import pressure_of
+from contactstudy.verification.load_cases import LINE_LOAD, quartic
+from contactstudy.verification.problems import components, on_cells, unit_material
+from contactstudy.verification.stored import load_stress
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Table:
+    """Errors over the values of one setting.
+
+    Attributes
+    ----------
+    title, setting, source : str
+        What was solved, which setting changes, and what the errors are against.
+    values : tuple of float
+        The setting.
+    errors : dict of str to tuple of float
+        Errors by quantity, one for each value.
+    used : float
+        The value in use, or the best of the table.
+    tolerance : float, optional
+        What no error at `used` may exceed, if that is checked.
+    order : float, optional
+        Least order expected of the first quantity over the whole table, if the setting is a number of cells.
+    """
+
+    title: str
+    setting: str
+    source: str
+    values: tuple[float, ...]
+    errors: dict[str, tuple[float, ...]]
+    used: float
+    tolerance: float | None = None
+    order: float | None = None
+
+    def orders(self, quantity: str) -> FloatArray:
+        """Orders observed from each value to the next."""
+        errors = np.maximum(np.asarray(self.errors[quantity]), 1e-300)
+        return np.asarray(-np.diff(np.log(errors)) / np.diff(np.log(np.asarray(self.values))))
+
+    @property
+    def mean_order(self) -> float:
+        """Order of the first quantity from the first value to the last."""
+        errors = next(iter(self.errors.values()))
+        return float(np.log(errors[0] / errors[-1]) / np.log(self.values[-1] / self.values[0]))
+
+    def checks(self) -> Iterator[Check]:
+        """Compare the errors at the value in use with the tolerance, and the order with the one expected."""
+        if self.tolerance is not None:
+            place = self.values.index(self.used)
+            for quantity, errors in self.errors.items():
+                case = f"{self.title}; {self.setting} {self.used:g}"
+                yield compare(case, f"{quantity}, error", self.source, errors[place], 0.0, self.tolerance)
+        if self.order is not None:
+            shortfall = min(0.0, self.mean_order - self.order)
+            quantity = f"order in the {self.setting}, at least {self.order:g}, shortfall"
+            yield compare(self.title, quantity, self.source, shortfall, 0.0, 0.0)
+
+
+def point_contact() -> Table:
+    """Hertz point contact over the grid."""
+    body, errors = HalfSpace(material=unit_material()), []
+    cells = (33, 65, 129, 257)
+    _, peak, approach = closed_forms.hertz_point(4 / 3, 1.0, 1.0)
+    for count in cells:
+        gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (count, count))
+        contact = solve_contact(body, gap, 4 / 3, tolerance=1e-8)
+        middle = contact["pressure"].sel(y=0, method="nearest")
+        exact = peak * np.sqrt(np.maximum(1 - middle["x"] ** 2, 0))
+        errors.append((abs(float(contact["approach"]) - approach), float(abs(middle - exact).mean()) / peak))
+    sunk, mean = zip(*errors, strict=True)
+    return Table(
+        title="Hertz point contact",
+        setting="number of cells across",
+        source="Hertz",
+        values=cells,
+        errors={"approach": sunk, "mean error of the pressure / p0 along y = 0": mean},
+        tolerance=1e-3,
+        used=257,
+        order=1.4,
+    )
+
+
+def stress_grid() -> Table:
+    """Stresses under a smooth load over the grid."""
+    reference = load_stress("full_sliding")
+    below = reference.stress.sel(z=slice(0.0999, None))
+    points = {axis: below[axis].values.astype(float) for axis in "xyz"}
+    expected = np.array([below[name].transpose("x", "y", "z").values for name in STRESSES])
+    body = FiniteLengthSpace(length=reference.case.length, material=unit_material(reference.case.poisson))
+    cells = (8, 16, 32, 64)
+    errors = []
+    for count in cells:
+        stress = stress_field(body, pressure_of(reference.case, count), reference.case.friction, **points)
+        difference = np.abs(components(stress) - expected)
+        errors.append((float(difference.max()), float(difference.mean())))
+    largest, mean = zip(*errors, strict=True)
+    return Table(
+        title="stresses under a smooth load on both ends, L = 8a, f = 0.3, z >= 0.1a",
+        setting="number of cells over its width",
+        source="finite elements",
+        values=cells,
+        errors={"largest difference / p0": largest, "mean difference / p0": mean},
+        tolerance=5e-4,
+        used=64,
+        order=1.8,
+    )
+
+
+def contact_grid() -> Table:
+    """Contact of a cylinder with a body of its own length over the grid."""
+    body = FiniteLengthSpace(length=8.0, material=unit_material())
+    counts = (4, 8, 16, 32)
+    marks = np.array([0.25, 0.5, 1.0, 2.0])  # edges of cells on every grid
+
+    def solved(count: int) -> FloatArray:
+        gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-1.75, 1.75), (8 * count, 7 * count // 2 + 1 - count % 2))
+        load = solve_contact(body, gap, 8 * LINE_LOAD, tolerance=1e-8)["pressure"].sum("y") * 3.5 / gap["y"].size
+        resultant = np.append(0.0, np.cumsum(load.values)) * 8 / load.size
+        return np.asarray(resultant[np.round(marks * count).astype(int)])
+
+    best = solved(96)
+    errors = np.array([np.abs(solved(count) - best) for count in counts])
+    return Table(
+        title="rigid cylinder on a body of its own length, 8a",
+        setting="number of cells per a",
+        source="96 cells per a",
+        values=counts,
+        errors={
+            f"load on the last {mark:g}a / (p0 a^2)": tuple(column)
+            for mark, column in zip(marks, errors.T, strict=True)
+        },
+        tolerance=5e-3,
+        used=16,
+        order=1.0,
+    )
+
+
+FINEST = Resolution(
+    order=12,
+    ratio=2.0,
+    angle=np.pi / 6.5,
+    reach=1000.0,
+    ray_reach=200.0,
+    modes=12,
+    lateral_order=32,
+    lateral_reach=20.0,
+)
+"""Quadrature that the errors of others are measured against."""
+SETTINGS: dict[str, tuple[Any, ...]] = {
+    "order": (4, 6, 8, 12),
+    "ratio": (6.0, 4.0, 3.0, 2.0),
+    "angle": (np.pi / 12, np.pi / 8, np.pi / 6, np.pi / 4.5),
+    "reach": (12.5, 50.0, 200.0, 800.0),
+    "ray_reach": (6.25, 12.5, 50.0, 200.0),
+    "modes": (2, 4, 8, 16),
+    "lateral_order": (4, 8, 16, 32),
+    "lateral_reach": (2.5, 5.0, 10.0, 20.0),
+}
+"""Values tried of every field of `Resolution`; each holds the default."""
+
+
+QUADRATURE_CASE = "smooth load on both ends, L = 8a"
+
+
+@lru_cache(maxsize=4)
+def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
+    """Stresses that the free ends add, and the displacement, with the given settings of the quadratures."""
+    grid = Grid((0.0, 8.0), (-1.0, 1.0), 32, 24)
+    pressure = np.broadcast_to(quartic(grid.y), grid.shape)
+    points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
+    body = FiniteLengthSpace(length=8.0, material=unit_material())
+    stress = end_stress(EndProblem(8.0, 0.3, pressure, grid, True, resolution), *points)
+    operator = SurfaceOperator(body, grid, tangential=False, resolution=resolution)
+    return stress, operator(pressure)
+
+
+def _quadrature_errors(resolution: Resolution) -> tuple[float, float]:
+    """Largest errors of the stresses and of the displacement, against every setting much finer."""
+    stress, sunk = (float(np.abs(a - b).max()) for a, b in zip(_from_ends(resolution), _from_ends(FINEST), strict=True))
+    return stress, sunk
+
+
+def quadrature_checks() -> Iterator[Check]:
+    """Errors that the quadratures leave with the settings in use."""
+    source = "every setting of the quadratures finer"
+    for quantity, error in zip(("stresses / p0", "E* u_z / (p0 a)"), _quadrature_errors(Resolution()), strict=True):
+        yield compare(QUADRATURE_CASE, f"{quantity}, error with the settings in use", source, error, 0.0, 2e-5)
+
+
+def quadrature_tables() -> Iterator[Table]:
+    """Errors over every setting of the quadratures, the others at their defaults."""
+    for name, values in SETTINGS.items():
+        errors = [_quadrature_errors(replace(Resolution(), **{name: value})) for value in values]
+        stresses, displacements = zip(*errors, strict=True)
+        yield Table(
+            title=f"quadratures, {QUADRATURE_CASE}",
+            setting=name,
+            source="every setting finer",
+            values=values,
+            errors={"stresses / p0": stresses, "E* u_z / (p0 a)": displacements},
+            used=getattr(Resolution(), name),
+        )
+
+
+def window() -> Table:
+    """Contact over the window in y: outside the contact there is no pressure, so it must not matter."""
+    body = FiniteLengthSpace(length=8.0, material=unit_material())
+    widths = (1.3125, 1.75, 2.625, 3.5)
+
+    def solved(half: float) -> FloatArray:
+        gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-half, half), (64, round(32 * half)))
+        pressure = solve_contact(body, gap, 8 * LINE_LOAD, tolerance=1e-8)["pressure"]
+        return pressure.sel(y=slice(-1.3, 1.3)).values
+
+    best = solved(7.0)
+    errors = tuple(float(np.abs(solved(width) - best).max()) for width in widths)
+    return Table(
+        title="rigid cylinder on a body of its own length, 8a, 16 cells per a across",
+        setting="half of the window over a",
+        source="half of the window 7a",
+        values=widths,
+        errors={"pressure / p0": errors},
+        tolerance=1e-4,
+        used=1.75,
+    )
+
+
+def tables() -> Iterator[Table]:
+    """Every table."""
+    yield point_contact()
+    yield stress_grid()
+    yield contact_grid()
+    yield window()
+    yield from quadrature_tables()

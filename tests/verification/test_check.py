@@ -1,0 +1,66 @@
+"""A check passes within its tolerance and fails beyond it, and for anything that is not a number."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.verification.check import compare, compare_fields
+from contactstudy.verification.convergence import SETTINGS, Table
+from contactstudy.verification.report import line
+
+FINITE = st.floats(-1e6, 1e6)
+
+
+@given(FINITE, FINITE, st.floats(0, 1e3))
+def test_a_check_passes_within_its_tolerance_only(computed: float, expected: float, tolerance: float) -> None:
+    check = compare("case", "quantity", "source", computed, expected, tolerance)
+    assert check.passed == (abs(computed - expected) <= tolerance)
+    assert line(check).startswith("ok" if check.passed else "FAIL")
+
+
+@given(st.lists(FINITE, min_size=1, max_size=8), st.integers(0, 7))
+def test_fields_are_judged_by_their_worst_point(expected: list[float], place: int) -> None:
+    computed = np.array(expected)
+    computed[place % computed.size] += 1.0
+    check = compare_fields("case", "field", "source", computed, expected, 0.5)
+    assert check.difference == pytest.approx(1.0, abs=1e-6)
+    assert not check.passed
+
+
+@pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
+def test_what_is_not_a_number_fails(wrong: float) -> None:
+    assert not compare("case", "quantity", "source", wrong, 1.0, 1e9).passed
+    assert not compare_fields("case", "field", "source", [1.0, wrong], [1.0, 1.0], 1e9).passed
+    assert not compare_fields("case", "field", "source", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
+
+
+def test_convergence_is_judged_by_error_and_order() -> None:
+    def failing(errors: tuple[float, ...]) -> list[str]:
+        table = Table(
+            title="case",
+            setting="cells",
+            source="exact",
+            values=(8, 16, 32),
+            errors={"error": errors},
+            used=32,
+            tolerance=0.01,
+            order=1.5,
+        )
+        return [check.quantity for check in table.checks() if not check.passed]
+
+    assert failing((0.16, 0.04, 0.01)) == []
+    assert failing((0.016, 0.014, 0.012)) == ["error, error", "order in the cells, at least 1.5, shortfall"]
+    assert len(failing((0.001, 0.001, 0.001))) == 1
+
+
+def test_every_setting_of_the_quadratures_is_studied_at_its_default() -> None:
+    from dataclasses import asdict
+
+    from contactstudy.overlapping.quadrature import Resolution
+
+    defaults = asdict(Resolution())
+    assert set(SETTINGS) == set(defaults)
+    assert all(defaults[name] in values for name, values in SETTINGS.items())

@@ -1,0 +1,196 @@
+"""Every check of the suite fails when the physics behind it is switched off."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import contact, stress, surface
+from contactstudy.bodies import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
+from contactstudy.cache import BoundedCache
+from contactstudy.dataset import STRESSES
+from contactstudy.material import Material
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.verification import (
+    consistency,
+    convergence,
+    finite_elements,
+    half_space,
+    limits,
+    published,
+    quarter_space,
+    suite,
+)
+from contactstudy.verification.check import Check
+
+MODULES = (half_space, limits, quarter_space, finite_elements, published, consistency, convergence)
+Patch = pytest.MonkeyPatch
+
+
+@contextmanager
+def switched_off(physics: Callable[[Patch], None]) -> Iterator[None]:
+    """Change the physics; what was solved and kept before would hide it."""
+    with pytest.MonkeyPatch.context() as patch:
+        for module, name in ((surface, "_OPERATORS"), (contact, "_CONTACTS"), (stress, "_FIELDS")):
+            kept = getattr(module, name)
+            patch.setattr(module, name, BoundedCache(kept.limit, kept._size))
+        physics(patch)
+        yield
+
+
+def everywhere(patch: Patch, name: str, value: object) -> None:
+    """Replace what the modules of checks have imported under a name."""
+    for module in MODULES:
+        if hasattr(module, name):
+            patch.setattr(module, name, value)
+
+
+def ends_only_mirrored(patch: Patch) -> None:
+    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, body.extent, False),)))
+
+
+def no_ends(patch: Patch) -> None:
+    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, WHOLE_LINE, False),)))
+
+
+def wrong_poisson(patch: Patch) -> None:
+    def material(poisson: float = 0.3) -> Material:
+        return Material(1 - (0.4 * poisson) ** 2, 0.4 * poisson)
+
+    everywhere(patch, "unit_material", material)
+
+
+def softer(patch: Patch) -> None:
+    everywhere(patch, "unit_material", lambda poisson=0.3: Material(0.9 * (1 - poisson**2), poisson))
+
+
+def no_friction(patch: Patch) -> None:
+    real = stress.stress_field
+    everywhere(patch, "stress_field", lambda body, pressure, friction=0.0, **at: real(body, pressure, 0.0, **at))
+
+
+def first_round_only(patch: Patch) -> None:
+    """What the top asks of the ends is answered, what the ends then ask of the top is not."""
+    patch.setattr(EquationSet, "solve", lambda system, source: (system.scale * source.T).T)
+
+
+def shear_that_needs_ends(patch: Patch) -> None:
+    patch.setattr(EquationSet, "from_traction", EquationSet.from_pressure)
+
+
+def distorted(patch: Patch) -> None:
+    """Results that are wrong by some percent, differently in different places."""
+    real_stress, real_sunk, real_contact = stress.stress_field, surface.surface_displacement, contact.solve_contact
+
+    def factor(data: xr.Dataset | xr.DataArray) -> xr.DataArray:
+        return 1.03 + 0.02 * data["x"] + 0.02 * data["y"]
+
+    def wrong_stress(*arguments, **named):
+        found = real_stress(*arguments, **named)
+        wrong = factor(found) + 0.4 * found["z"]
+        return found.assign({name: found[name] * wrong for name in STRESSES})
+
+    def wrong_sunk(*arguments, **named):
+        found = real_sunk(*arguments, **named)
+        return found * factor(found)
+
+    def wrong_contact(*arguments, **named):
+        found = real_contact(*arguments, **named)
+        return found.assign(pressure=found["pressure"] * factor(found), approach=1.01 * found["approach"])
+
+    everywhere(patch, "stress_field", wrong_stress)
+    everywhere(patch, "surface_displacement", wrong_sunk)
+    everywhere(patch, "solve_contact", wrong_contact)
+
+
+def distorted_between_ends(patch: Patch) -> None:
+    """Wrong where there are two ends only."""
+    real = stress.stress_field
+
+    def wrong(body, *arguments, **named):
+        found = real(body, *arguments, **named)
+        return found * 1.05 if isinstance(body, FiniteLengthSpace) else found
+
+    everywhere(patch, "stress_field", wrong)
+
+
+def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
+    """Whether each check failed."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return {(check.case, check.quantity): not check.passed for check in checks}
+
+
+def coarse_quadratures(patch: Patch) -> None:
+    coarse = Resolution(order=3, ratio=6.0, reach=12.5, lateral_order=4, lateral_reach=2.5)
+    patch.setattr(convergence, "Resolution", lambda: coarse)
+
+
+def grid_without_effect(patch: Patch) -> None:
+    real = finite_elements.pressure_of
+    patch.setattr(convergence, "pressure_of", lambda case, count: real(case, 8))
+
+
+def results_that_depend_on_the_grid(patch: Patch) -> None:
+    real = contact.solve_contact
+
+    def wrong(body, gap, load, **named):
+        found = real(body, gap, load, **named)
+        factor = 1 + 0.05 * np.sin(gap.size)
+        return found.assign(pressure=factor * found["pressure"], approach=factor * found["approach"])
+
+    patch.setattr(convergence, "solve_contact", wrong)
+
+
+EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
+    "half-space": (wrong_poisson, softer, no_friction, distorted),
+    "limits": (ends_only_mirrored, wrong_poisson, distorted_between_ends),
+    "quarter space": (ends_only_mirrored, no_ends, first_round_only, shear_that_needs_ends),
+    "finite elements": (ends_only_mirrored, no_ends),
+    "published": (ends_only_mirrored, wrong_poisson, distorted),
+    "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
+}
+
+
+SLOW = ("limits", "quarter space", "consistency")
+
+
+@pytest.mark.parametrize(
+    "group", [pytest.param(group, marks=[pytest.mark.slow] * (group in SLOW)) for group in EVERY_WAY]
+)
+def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
+    caught: dict[tuple[str, str], bool] = {}
+    for physics in EVERY_WAY[group]:
+        with switched_off(physics):
+            for key, fails in failed(suite.GROUPS[group](False)).items():
+                caught[key] = caught.get(key, False) or fails
+    assert caught
+    assert [key for key, fails in caught.items() if not fails] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("table", [convergence.point_contact, convergence.contact_grid, convergence.window])
+def test_checks_of_convergence_fail_when_results_depend_on_the_grid(table: Callable[[], convergence.Table]) -> None:
+    with switched_off(results_that_depend_on_the_grid):
+        assert all(failed(table().checks()).values())
+
+
+@pytest.mark.slow
+def test_checks_of_the_quadratures_fail_when_they_are_coarse() -> None:
+    with switched_off(coarse_quadratures):
+        assert all(failed(convergence.quadrature_checks()).values())
+
+
+def test_checks_of_convergence_fail_when_refinement_does_nothing() -> None:
+    with switched_off(grid_without_effect):
+        assert all(failed(convergence.stress_grid().checks()).values())
+
+
+def test_every_group_is_tried() -> None:
+    assert set(EVERY_WAY) == set(suite.GROUPS)
