@@ -55,7 +55,8 @@ class Cylinder(Shape):
         if radius > length / 2:
             raise InvalidInputError("fillet_radius", radius, f"at most half the roller's length, {length / 2:g} m")
         inside = np.clip(np.abs(x) - (length / 2 - radius), 0.0, radius)
-        return np.asarray(radius - np.sqrt(radius**2 - inside**2))
+        # Squares of the smallest radii underflow.
+        return np.asarray(np.maximum(radius - np.sqrt(radius**2 - inside**2), 0.0))
 
 
 @dataclass(frozen=True)
