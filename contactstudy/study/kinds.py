@@ -1,4 +1,4 @@
-"""Registry of bodies: from the words of a study to the body.
+"""Registries of bodies: from the words of a study to the body.
 
 A new body becomes available to studies by one line: an entry in :data:`BODIES`.
 """
@@ -24,3 +24,6 @@ BODIES: dict[str, Callable[[Material, float, str], Body]] = {
     "half-space": _half_space,
 }
 """Makers of a body from its material, the length between the free ends and the model of these, by name."""
+
+ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
+"""How a roller's ends are treated, by the name of the body that it is; None for a rigid one."""

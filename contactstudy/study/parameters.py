@@ -10,7 +10,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.bodies import MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.kinds import BODIES
+from contactstudy.study.kinds import BODIES, ROLLER_BODIES
 from contactstudy.study.profile_kinds import profile_table
 
 DIGITS = 12
@@ -45,6 +45,11 @@ def _body(name: str, value: object) -> str:
 def _model(name: str, value: object) -> str:
     checks.instance(name, value, str, "text")
     return checks.known_name(name, str(value), MODELS)
+
+
+def _roller_body(name: str, value: object) -> str:
+    checks.instance(name, value, str, "text")
+    return checks.known_name(name, str(value), ROLLER_BODIES)
 
 
 def _profile(name: str, value: object) -> dict[str, Any]:
@@ -100,12 +105,20 @@ PARAMETERS: dict[str, Parameter] = {
     "load": Parameter(_number, None, "N", "normal load"),
     "friction": Parameter(_number, 0.0, "1", "coefficient of friction"),
     "profile": Parameter(_profile, {"kind": "cylinder"}, "", "roller profile"),
+    "roller_body": Parameter(_roller_body, "rigid", "", "roller as a rigid shape or as an elastic body"),
+    "roller_young": Parameter(_number, None, "Pa", "Young's modulus of an elastic roller; default: the body's"),
+    "roller_poisson": Parameter(_number, None, "1", "Poisson's ratio of an elastic roller; default: the body's"),
+    "tilt": Parameter(_number, 0.0, "rad", "misalignment of the roller; positive if larger x is pressed deeper"),
+    "load_offset": Parameter(_number, None, "m", "where the load acts, from mid-length; default: the tilt is held"),
     "coupled": Parameter(_flag, False, "1", "whether friction displaces the surface normally"),
     "cells_x": Parameter(_number, 8.0, "1", "cells per half-width a along x"),
     "cells_y": Parameter(_number, 16.0, "1", "cells per half-width a along y"),
     "window": Parameter(_number, 2.0, "1", "half-width of the window in y over a"),
     "margin": Parameter(_number, 4.0, "1", "distance from roller to grid edge over a, where the body goes on"),
     "tolerance": Parameter(_number, 1e-6, "1", "tolerance of the contact iteration"),
+    "error_estimate": Parameter(
+        _flag, False, "1", "whether a contact on half the cells gives the discretisation error"
+    ),
     "stresses": Parameter(_flag, True, "1", "whether stresses are calculated"),
     "field_x_over_a": Parameter(_points, None, "1", "stress points: x from the free end over a"),
     "field_y_over_a": Parameter(_points, None, "1", "stress points: y over a"),

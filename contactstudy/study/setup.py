@@ -13,7 +13,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.material import Material
 from contactstudy.roller import Roller
-from contactstudy.study.kinds import BODIES
+from contactstudy.study.kinds import BODIES, ROLLER_BODIES
 from contactstudy.study.parameters import checked, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile
 
@@ -29,11 +29,12 @@ class Setup:
     z: FloatArray | None
     stresses: bool
     tolerance: float
+    error_estimate: bool
 
     @property
     def operator(self) -> str:
         """What the solver's expensive preparation depends on: equal for cases that can share it."""
-        return repr((self.case.body, self.grid, self.case.coupled))
+        return repr((self.case.body, self.case.roller.body, self.grid, self.case.coupled))
 
     @property
     def points(self) -> int:
@@ -80,6 +81,18 @@ def _half_width(values: Mapping[str, Any], modulus: float) -> float:
     raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
 
 
+def _roller_material(values: Mapping[str, Any]) -> Material | None:
+    """Material of an elastic roller: its own constants, or the body's."""
+    if values["roller_body"] == "rigid":
+        for name in ("roller_young", "roller_poisson"):
+            if name in values:
+                raise InvalidInputError(name, values[name], "left out for a rigid roller", "or give roller_body")
+        return None
+    return Material(
+        young=values.get("roller_young", values["young"]), poisson=values.get("roller_poisson", values["poisson"])
+    )
+
+
 def build_setup(parameters: Mapping[str, Any]) -> Setup:
     """Case, grid and stress points of a study's case.
 
@@ -117,7 +130,10 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     _one_of(values, "max_pressure", "load")
     material = Material(young=values["young"], poisson=values["poisson"])
     radius = checks.positive("radius", values["radius"], "metres")
+    roller_material = _roller_material(values)
     modulus = material.plane_strain_modulus
+    if roller_material is not None:
+        modulus = 1 / (1 / modulus + 1 / roller_material.plane_strain_modulus)
     half_width = _half_width(values, modulus)
     distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
     body_length, roller_length = _lengths(values, distance)
@@ -127,12 +143,20 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     around = Surroundings(radius, modulus, half_width * modulus / (2 * radius))
     case = Case(
         body=BODIES[values["body"]](material, body_length, values["model"]),
-        roller=Roller(radius=radius, length=roller_length, profile=build_profile(values["profile"], around)),
+        roller=Roller(
+            radius=radius,
+            length=roller_length,
+            profile=build_profile(values["profile"], around),
+            material=roller_material,
+            ends=ROLLER_BODIES[values["roller_body"]] or "free",
+        ),
         max_pressure=values.get("max_pressure"),
         load=values.get("load"),
         friction=values["friction"],
         end_distance=distance,
         coupled=values["coupled"],
+        tilt=values["tilt"],
+        load_position=distance + 0.5 * roller_length + values["load_offset"] if "load_offset" in values else None,
     )
     grid = choose_grid(
         case, cells_x=values["cells_x"], cells_y=values["cells_y"], window=values["window"], margin=values["margin"]
@@ -148,4 +172,5 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
         raise InvalidInputError(
             "field_x_over_a", float(x.max() / half_width), f"inside the body, 0 to {high / half_width:g}"
         )
-    return Setup(case, grid, x, y, z, values["stresses"], checks.positive("tolerance", values["tolerance"]))
+    tolerance = checks.positive("tolerance", values["tolerance"])
+    return Setup(case, grid, x, y, z, values["stresses"], tolerance, values["error_estimate"])

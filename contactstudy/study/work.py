@@ -160,6 +160,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
                 y=setup.y,
                 z=setup.z,
                 stresses=setup.stresses,
+                error_estimate=setup.error_estimate,
                 tolerance=setup.tolerance,
             )
             scalars = summarize(dataset)

@@ -21,7 +21,9 @@ FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
 """Coefficients of friction at which the case fails, kills its process, or meets an error of the program."""
 
 
-def solve_fake(case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float) -> xr.Dataset:
+def solve_fake(
+    case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float, error_estimate: bool
+) -> xr.Dataset:
     if case.friction == FAILS:
         raise WindowError("this friction fails in tests")
     if case.friction == DIES:

@@ -3,6 +3,7 @@ import pytest
 
 from contactstudy.bodies import HalfSpace
 from contactstudy.errors import InvalidInputError
+from contactstudy.material import Material
 from contactstudy.study.setup import build_setup
 from tests.study.conftest import BASE
 
@@ -81,3 +82,35 @@ def test_lundberg_by_its_design_pressure():
     table = {"kind": "lundberg", "design_pressure": 1.5e9}
     case = build_setup(BASE | {"e_over_a": 1, "profile": table}).case
     assert case.roller.profile.amplitude == pytest.approx(5e-3 * (1.5e9 / case.modulus) ** 2)
+
+
+def test_elastic_rollers_tilt_and_load_offset_reach_the_case():
+    words = {
+        **BASE,
+        "e_over_a": 1.0,
+        "roller_body": "finite-length",
+        "roller_poisson": 0.25,
+        "tilt": 1e-4,
+        "load_offset": 1e-5,
+    }
+    case = build_setup(words).case
+    assert case.roller.body is not None
+    assert case.roller.material == Material(BASE["young"], 0.25)
+    assert case.load_position == pytest.approx(case.roller_start + 0.5 * case.roller.length + 1e-5)
+    assert case.tilt == 1e-4
+    assert case.hertz_half_width > build_setup({**BASE, "e_over_a": 1.0}).case.hertz_half_width
+
+
+def test_the_roller_of_one_material_needs_no_constants():
+    case = build_setup({**BASE, "e_over_a": 1.0, "roller_body": "half-space"}).case
+    assert case.roller.material == case.body.material
+    assert isinstance(case.roller.body, HalfSpace)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "parameter"),
+    [({"roller_young": 70e9}, "roller_young"), ({"roller_body": "rubber"}, "roller_body"), ({"tilt": 1.0}, "tilt")],
+)
+def test_contradictions_about_the_roller(wrong, parameter):
+    with pytest.raises(InvalidInputError, match=parameter):
+        build_setup({**BASE, "e_over_a": 1.0, **wrong})
