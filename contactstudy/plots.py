@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from contactstudy.analysis import axial_pressure, dimension_along
 from contactstudy.errors import InvalidInputError
-from contactstudy.summary import axial_pressure, dimension_along
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
