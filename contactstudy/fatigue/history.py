@@ -68,7 +68,7 @@ def over_history(
     """
     tensor, rolling = histories(stress)
 
-    def apply(values: Array) -> tuple[Array, ...]:
+    def apply(values: Array) -> Array | tuple[Array, ...]:
         lead = values.shape[:-2]
         flat = values.reshape(-1, *values.shape[-2:]).astype(np.float64)
         absent = np.isnan(flat).any(axis=-1)
@@ -83,7 +83,7 @@ def over_history(
             if computed is not None:
                 full[known] = computed[number]
             results.append(full.reshape((*lead, *full.shape[1:])))
-        return tuple(results)
+        return tuple(results) if len(results) > 1 else results[0]
 
     found = xr.apply_ufunc(
         apply,
