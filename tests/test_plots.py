@@ -8,21 +8,12 @@ from matplotlib import pyplot
 
 from contactstudy import plots
 from contactstudy.errors import InvalidInputError
-from contactstudy.study import open_study, run_study
-from tests.study.conftest import BASE, small_study
-from tests.study.fakes import FAILS, solve_fake
+from tests.study.fakes import FAILS
 
 
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("results")
-    study = small_study(
-        sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.1, FAILS], "body": ["finite-length", "half-space"]},
-        base=BASE | {"max_pressure": 1.5e9},
-        exclude=[{"body": "half-space", "e_over_a": [1, 2]}],
-    )
-    run_study(study, folder, workers=0, solver=solve_fake)
-    return open_study(folder)
+@pytest.fixture
+def results(opened):
+    return opened
 
 
 @pytest.fixture

@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.measures import measure
-from contactstudy.dataset import COORDINATES
+from contactstudy.dataset import COORDINATES, VARIABLES
 from contactstudy.errors import InvalidInputError
 
 
@@ -36,8 +36,8 @@ def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     )
     value, flat = value.compute(), flat.compute()
     meaning = str(array.attrs.get("long_name", name))
-    # Coordinates of the case, such as its position, would otherwise travel with every index.
-    value.attrs = {"units": array.attrs.get("units", ""), "long_name": f"largest {meaning}"}
+    known = VARIABLES.get(name)
+    value.attrs = {"units": array.attrs.get("units", known.units if known else ""), "long_name": f"largest {meaning}"}
     result = {f"peak_{name}": value}
     shape = tuple(array.sizes[dim] for dim in dims)
     indices = np.unravel_index(flat.values, shape)

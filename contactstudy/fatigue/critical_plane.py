@@ -8,6 +8,7 @@ in the manuals of PragTic (Findley method) and COMSOL (Findley criterion).
 from __future__ import annotations
 
 from functools import cache
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -22,8 +23,11 @@ Array = npt.NDArray[Any]
 
 NORMALS, DIRECTIONS = 200, 8
 """Planes of the first search, evenly over a hemisphere (about 10 degrees apart), and shear directions in each."""
+STARTS = 4
+"""Best frames of the first search that are refined."""
 FIRST_TURN, LAST_TURN = np.radians(8.0), np.radians(1e-3)
 """Largest and smallest rotation of plane and direction in the refinement."""
+ROUNDING = 1e-11
 BLOCK = 2**24
 """Numbers held at once in the first search."""
 
@@ -50,13 +54,13 @@ def _resolvers(frames: Array) -> tuple[Array, Array]:
     """Vectors (..., 6) that give shear ``n.sigma.m`` and normal stress ``n.sigma.n`` of the six components."""
     normal, direction = frames[..., 0, :], frames[..., 1, :]
 
-    def product(first: Array, second: Array) -> Array:
+    def resolver(first: Array, second: Array) -> Array:
         (ax, ay, az), (bx, by, bz) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
         mixed = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
         return np.stack([ax * bx, ay * by, az * bz, *mixed], axis=-1)
 
-    # Off the diagonal, n.sigma.n counts each component twice; the product does so already.
-    return product(normal, direction), product(normal, normal)
+    # Off the diagonal, n.sigma.n counts each component twice; the resolver does so already.
+    return resolver(normal, direction), resolver(normal, normal)
 
 
 def _damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
@@ -69,52 +73,54 @@ def _damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, 
 
 
 def _search(history: Array, slope: float) -> Array:
-    """Best frame (point, 2, 3) among those of the first search."""
+    """Best frames (point, start, 2, 3) among those of the first search."""
     frames = _frames()
     shear_of, normal_of = _resolvers(frames)
     normal_of = normal_of[::DIRECTIONS]
-    best = np.empty((len(history), 2, 3))
+    best = np.empty((len(history), STARTS, 2, 3))
     block = max(1, BLOCK // (history.shape[1] * len(frames)))
     for start in range(0, len(history), block):
         part = history[start : start + block]
         shear = part @ shear_of.T
         amplitude = 0.5 * (shear.max(axis=1) - shear.min(axis=1))
         largest = np.repeat((part @ normal_of.T).max(axis=1), DIRECTIONS, axis=1)
-        best[start : start + block] = frames[(amplitude + slope * largest).argmax(axis=1)]
+        damage = amplitude + slope * largest
+        best[start : start + block] = frames[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
     return best
 
 
 def _turned(frames: Array, turn: Array) -> Array:
-    """Frames and their rotations by +- `turn` about the normal, the direction, and the axis across both."""
-    normal, direction = frames[:, 0], frames[:, 1]
-    across = np.cross(normal, direction)
-    cos, sin = np.cos(turn)[:, None], np.sin(turn)[:, None]
-    candidates = [frames]
-    for sign in (1.0, -1.0):
-        side = sign * sin
-        candidates += [
-            np.stack([normal, cos * direction + side * across], axis=1),
-            np.stack([cos * normal + side * across, direction], axis=1),
-            np.stack([cos * normal + side * direction, cos * direction - side * normal], axis=1),
-        ]
-    return np.stack(candidates, axis=1)
+    """Frames (frame, candidate, 2, 3): as they are, and turned by `turn` about 14 axes around each."""
+    from scipy.spatial.transform import Rotation
+
+    corners = np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
+    axes = np.concatenate([np.eye(3), -np.eye(3), corners])
+    vectors = turn[:, None, None] * np.concatenate([np.zeros((1, 3)), axes])
+    turns = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(len(frames), -1, 3, 3)
+    return np.asarray(np.einsum("fkij,fnj->fkni", turns, frames))
 
 
 def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     """Sum, shear amplitude, largest normal stress and normal of the worst plane of each history."""
-    frames = _search(history, slope)
-    turn = np.full(len(history), FIRST_TURN)
-    active = np.arange(len(history))
+    frames = _search(history, slope).reshape(-1, 2, 3)
+    owner = np.repeat(np.arange(len(history)), STARTS)
+    turn = np.full(len(frames), FIRST_TURN)
+    active = np.arange(len(frames))
+    # Gains of rounding errors are none: where all planes are alike the search would wander for ever.
+    least = ROUNDING * np.abs(history).max(axis=(1, 2))
     while active.size:
         candidates = _turned(frames[active], turn[active])
-        damage, _, _ = _damage(history[active], candidates, slope)
-        best = damage.argmax(axis=1)
+        damage, _, _ = _damage(history[owner[active]], candidates, slope)
+        best = np.where(damage.max(axis=1) > damage[:, 0] + least[owner[active]], damage.argmax(axis=1), 0)
         frames[active] = candidates[np.arange(active.size), best]
         turn[active[best == 0]] *= 0.5
         active = active[turn[active] > LAST_TURN]
-    found = _damage(history, frames[:, None], slope)
-    normal = frames[:, 0] * np.where(frames[:, 0, 2] < 0, -1.0, 1.0)[:, None]
-    return (*(values[:, 0] for values in found), normal)
+    refined = frames.reshape(-1, STARTS, 2, 3)
+    found = _damage(history, refined, slope)
+    worst = found[0].argmax(axis=1)[:, None]
+    normal = np.take_along_axis(refined[:, :, 0], worst[..., None], axis=1)[:, 0]
+    normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
+    return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in found), normal)
 
 
 def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -122,7 +128,7 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     On a plane, ``tau_a`` is half of the largest range of the shear stress resolved in one direction during the history,
     and ``sigma_n,max`` the largest normal stress, positive in tension, and not below zero since the point is unloaded
-    before and after. The worst plane is searched over a hemisphere in steps of about 10 degrees, then turned until no
+    before and after. The worst planes are searched over a hemisphere in steps of about 10 degrees, and turned until no
     rotation by 0.001 degrees makes it worse. ``k`` and ``f`` follow from the limits.
 
     Parameters
