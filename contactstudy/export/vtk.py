@@ -88,7 +88,8 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     if all(name in data for name in STRESSES):
         components = np.stack([data[name] for name in STRESSES], axis=-1)
         data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
-    with RectilinearGrid(str(target), tuple(place[axis][order[axis]] for axis in AXES), compression=True) as grid:
+    # Not compressed: uvw 0.7 spoils compressed arrays of a multiple of 32 KiB, and stresses hardly get smaller.
+    with RectilinearGrid(str(target), tuple(place[axis][order[axis]] for axis in AXES)) as grid:
         for name, values in data.items():
             grid.addPointData(DataArray(values, range(3), name))
     return target

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import InvalidInputError, export
+from contactstudy import InvalidInputError, export, tresca
 from contactstudy.analysis import normalized
 from contactstudy.dataset import STRESSES
 from tests.export.vtk_reader import read
@@ -37,6 +37,14 @@ def test_surface_is_a_plane_at_zero(solved: xr.Dataset, tmp_path) -> None:
     assert "stress" not in data
 
 
+def test_size_that_fills_whole_blocks(tmp_path) -> None:
+    """64 x 64 numbers of 8 bytes: compressed files of the library that writes them are broken at this size."""
+    values = np.random.default_rng(0).normal(size=(64, 64))
+    surface = xr.DataArray(values, dims=("x", "y"), coords={"x": np.arange(64.0), "y": np.arange(64.0)})
+    _, data = read(export.to_vtk(xr.Dataset({"pressure": surface}), tmp_path / "top.vtr"))
+    assert np.array_equal(data["pressure"][:, :, 0, 0], values)
+
+
 def test_positions_are_put_in_order(solved: xr.Dataset, tmp_path) -> None:
     path = export.to_vtk(solved.isel(z=[2, 0, 1]), tmp_path / "case.vtr", "von_mises")
     coordinates, data = read(path)
@@ -47,7 +55,7 @@ def test_positions_are_put_in_order(solved: xr.Dataset, tmp_path) -> None:
 def test_measures_scaled_results_and_cases_of_a_study(solved, opened, tmp_path) -> None:
     coordinates, data = read(export.to_vtk(normalized(solved), tmp_path / "over.vtr", ["tresca", "von_mises"]))
     assert float(coordinates[2].max()) == pytest.approx(1.5)
-    assert 0.1 < float(data["tresca"].max()) < 3
+    assert np.allclose(data["tresca"][..., 0], tresca(solved) / 1.5e9)
     one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
     assert read(export.to_vtk(one, tmp_path / "study.vtr", "pressure"))[1]["pressure"].max() > 1e9
 

@@ -1,10 +1,9 @@
-"""A reader of VTK's XML format that shares nothing with the writer: Python's XML, base64 and zlib."""
+"""A reader of VTK's XML format that shares nothing with the writer: Python's XML and base64."""
 
 from __future__ import annotations
 
 import base64
 import xml.etree.ElementTree as ET
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -13,16 +12,9 @@ TYPES = {"Float64": np.dtype("<f8"), "Float32": np.dtype("<f4"), "Int64": np.dty
 
 
 def _decode(text: str) -> bytes:
-    """Blocks compressed one by one, behind a header of their number, sizes and compressed sizes."""
-    text = text.strip()
-    (blocks,) = np.frombuffer(base64.b64decode(text[:8])[:4], "<u4")
-    characters = 4 * -(-4 * (3 + int(blocks)) // 3)
-    header = np.frombuffer(base64.b64decode(text[:characters])[: 4 * (3 + int(blocks))], "<u4")
-    raw, content, start = base64.b64decode(text[characters:]), b"", 0
-    for size in header[3:]:
-        content += zlib.decompress(raw[start : start + int(size)])
-        start += int(size)
-    return content
+    """Bytes behind a header of their number, both in base64."""
+    (size,) = np.frombuffer(base64.b64decode(text[:8]), "<u4")
+    return base64.b64decode(text[8 : 8 + 4 * -(-int(size) // 3)])
 
 
 def read(path: Path) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
@@ -35,8 +27,12 @@ def read(path: Path) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
     extent = [int(number) for number in grid.attrib["WholeExtent"].split()]
     shape = tuple(last - first + 1 for first, last in zip(extent[::2], extent[1::2], strict=True))
 
+    # Arrays stand in their element, or behind the underscore that begins the appended data.
+    appended = root.find("AppendedData").text.strip()[1:]
+
     def array(node: ET.Element) -> np.ndarray:
-        return np.frombuffer(_decode(node.text), TYPES[node.attrib["type"]])
+        text = node.text.strip() if node.attrib["format"] == "binary" else appended[int(node.attrib["offset"]) :]
+        return np.frombuffer(_decode(text), TYPES[node.attrib["type"]])
 
     coordinates = tuple(array(node) for node in piece.find("Coordinates"))
     data = {}
