@@ -12,6 +12,8 @@ from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.errors import InvalidInputError
 
+PLACES = {"first": "at the first end", "last": "at the last end", "middle": "in the middle", "peak": "at its largest"}
+
 
 def _along_axis(dataset: xr.Dataset, variable: str) -> xr.DataArray:
     """Largest value of a variable in each cross-section."""
@@ -94,18 +96,17 @@ def edge_factors(
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)
     values = {
-        "end_over_middle_first": (first / middle, "first end over the middle"),
-        "end_over_middle_last": (last / middle, "last end over the middle"),
+        "end_over_middle_first": (first / middle, "at the first end, over that in the middle"),
+        "end_over_middle_last": (last / middle, "at the last end, over that in the middle"),
     }
     if reference is not None:
         require(reference, "pressure")
-        names = ("first", "last", "middle", "peak")
         others = _values(reference, variable, near)
-        for name, own, other in zip(names, (first, last, middle, largest), others, strict=True):
-            values[f"over_reference_{name}"] = (own / other, f"over that of the reference: {name}")
+        for name, own, other in zip(PLACES, (first, last, middle, largest), others, strict=True):
+            values[f"over_reference_{name}"] = (own / other, f"{PLACES[name]}, over that of the reference")
     result = xr.Dataset({name: value.reset_coords(drop=True) for name, (value, _) in values.items()})
     for name, (_, meaning) in values.items():
-        result[name].attrs = {"units": "1", "long_name": f"{variable.replace('_', ' ')}, {meaning}"}
+        result[name].attrs = {"units": "1", "long_name": f"{variable.replace('_', ' ')} {meaning}"}
     return result
 
 
