@@ -5,11 +5,12 @@ Names are imported when they are first used, so that ``import contactstudy`` sta
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from contactstudy import plots, profiles, roughness, slices
+    from contactstudy import analysis, export, fatigue, plots, profiles, roughness, slices
     from contactstudy.bodies import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
     from contactstudy.case import Case, choose_grid
     from contactstudy.contact import solve_contact
@@ -58,9 +59,12 @@ _HOME = {
     "Study": "study.definition",
     "StudyFileError": "study.errors",
     "WindowError": "errors",
+    "analysis": "",
     "choose_grid": "case",
     "displacement_field": "displacement",
     "equivalent_loads": "equivalent",
+    "export": "",
+    "fatigue": "",
     "hydrostatic": "invariants",
     "maximum_shear": "invariants",
     "open_study": "study.opened",
@@ -98,9 +102,12 @@ __all__ = [
     "Study",
     "StudyFileError",
     "WindowError",
+    "analysis",
     "choose_grid",
     "displacement_field",
     "equivalent_loads",
+    "export",
+    "fatigue",
     "hydrostatic",
     "maximum_shear",
     "open_study",
@@ -137,3 +144,8 @@ def __getattr__(name: str) -> Any:
 def __dir__() -> list[str]:
     """Public names, for completion."""
     return list(__all__)
+
+
+if "xarray" in sys.modules:
+    # Who has xarray already gets Dataset.contact at once; else it comes with the first Dataset of ours.
+    import_module("contactstudy.accessor")

@@ -53,12 +53,19 @@ def _parser() -> argparse.ArgumentParser:
     added = command("collect", "Merge the summaries of all cases into one netCDF file.", takes_study=False)
     added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
     parallel(command("rerun", "Solve failed, stale and missing cases again.", takes_study=False))
-    added = command("export", "Write the summaries of all cases as a table (CSV).", takes_study=False)
-    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.csv; - for the screen")
     text = "Check the solver against closed forms, finite elements and published numbers."
     added = commands.add_parser("verify", help=text, description=text)
     added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
     added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV or VTK."
+    added = commands.add_parser("export", help=text, description=text)
+    added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
+    added.add_argument("--format", choices=("csv", "vtk"), help="default csv")
+    added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
+    added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
+    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
     return parser
 
 
@@ -269,14 +276,30 @@ def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
+    wants_fields = options.format or options.variable or options.line or options.select
+    if wants_fields or not options.path.is_dir():
+        from contactstudy.export.command import export
+
+        written = export(
+            options.path,
+            kind=options.format or "csv",
+            variables=options.variable,
+            line=options.line,
+            points=options.points,
+            select=options.select or (),
+            out=options.out,
+        )
+        if written is not None:
+            print(f"wrote {_shown(written.resolve())}")
+        return ALL_OK
     from contactstudy.study import collect
     from contactstudy.study.store import write_text
 
-    table = collect(options.folder).to_dataframe().to_csv()
+    table = collect(options.path).to_dataframe().to_csv()
     if options.out is not None and str(options.out) == "-":
         print(table, end="")
         return ALL_OK
-    path = options.out if options.out is not None else options.folder / "summary.csv"
+    path = options.out if options.out is not None else options.path / "summary.csv"
     write_text(path, table)
     print(f"wrote {_shown(path.resolve())}")
     return ALL_OK

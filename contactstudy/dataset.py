@@ -7,6 +7,8 @@ from typing import NamedTuple
 
 import xarray as xr
 
+import contactstudy.accessor  # noqa: F401  (registers Dataset.contact wherever our Datasets come from)
+
 
 class Variable(NamedTuple):
     """Specification of one variable."""

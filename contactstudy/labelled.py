@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+import contactstudy.accessor  # noqa: F401  (registers Dataset.contact)
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError

@@ -5,76 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from contactstudy.analysis import contact_results, peak
 from contactstudy.errors import InvalidInputError
 
 
-def dimension_along(array: xr.DataArray, axis: str) -> str:
-    """Dimension of `array` along an axis: the axis' own name, or one that begins with it, such as ``x_field``.
-
-    Parameters
-    ----------
-    array : DataArray
-        Any field.
-    axis : {"x", "y", "z"}
-        The axis.
-
-    Raises
-    ------
-    InvalidInputError
-        If there is no such dimension, or more than one.
-
-    Examples
-    --------
-    >>> dimension_along(xr.DataArray(np.zeros((2, 3)), dims=("x_field", "z")), "x")
-    'x_field'
-    """
-    found = [str(dim) for dim in array.dims if dim == axis or str(dim).startswith(f"{axis}_")]
-    if len(found) != 1:
-        raise InvalidInputError("dims", array.dims, f"with exactly one dimension along {axis}")
-    return found[0]
-
-
-def _scalar(value: float, units: str, long_name: str) -> xr.DataArray:
+def _scalar(value: xr.DataArray | float, units: str, long_name: str) -> xr.DataArray:
     return xr.DataArray(float(value), attrs={"units": units, "long_name": long_name})
-
-
-def _peak(array: xr.DataArray, name: str, meaning: str) -> dict[str, xr.DataArray]:
-    """Largest value of a field and where it is."""
-    values = np.asarray(array.values)
-    if np.isnan(values).all():
-        raise InvalidInputError(name, "nan everywhere", "a field with at least one number")
-    at = np.unravel_index(int(np.nanargmax(values)), values.shape)
-    peak = {f"peak_{name}": _scalar(values[at], "Pa", f"largest {meaning}")}
-    for dim, index in zip(array.dims, at, strict=True):
-        axis = str(dim)[0]
-        position = float(array[dim].values[index])
-        peak[f"peak_{name}_{axis}"] = _scalar(position, "m", f"{axis} of the largest {meaning}")
-    return peak
-
-
-def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
-    """Largest pressure across y at each position along the roller's axis.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        With `pressure`, of any dimensions with one along y.
-
-    Returns
-    -------
-    DataArray
-        Pa, without the dimension along y.
-
-    Examples
-    --------
-    >>> pressure = xr.DataArray([[0.0, 1.0], [2.0, 0.0]], dims=("x", "y"))
-    >>> axial_pressure(xr.Dataset({"pressure": pressure})).values.tolist()
-    [1.0, 2.0]
-    """
-    pressure = dataset["pressure"]
-    axial = pressure.max(dimension_along(pressure, "y"))
-    axial.attrs = {"units": "Pa", "long_name": "largest pressure across y"}
-    return axial
 
 
 def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -99,22 +35,14 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     >>> float(result.peak_pressure_x), float(result.end_pressure), float(result.contact_length)
     (1.0, 1.25, 3.0)
     """
-    pressure = dataset["pressure"]
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    result = _peak(pressure, "pressure", "contact pressure")
+    contact = contact_results(dataset)
+    kept = ("peak_pressure", "peak_pressure_x", "peak_pressure_y", "contact_length", "contact_width")
+    result = {name: _scalar(contact[name], **contact[name].attrs) for name in kept}
     scale = float(dataset["hertz_max_pressure"])
-    ratios = axial_pressure(dataset).values / scale
-    loaded = np.flatnonzero(ratios > 0)
-    first, last = (ratios[loaded[0]], ratios[loaded[-1]]) if loaded.size else (np.nan, np.nan)
+    first, last = (float(contact[f"edge_pressure_{end}"]) / scale for end in ("first", "last"))
     result["end_pressure_first"] = _scalar(first, "1", "pressure in the first loaded cells, over p0")
     result["end_pressure_last"] = _scalar(last, "1", "pressure in the last loaded cells, over p0")
     result["end_pressure"] = _scalar(0.5 * (first + last), "1", "mean of the pressures at both ends, over p0")
-    for name, dim, other in (("contact_length", x, y), ("contact_width", y, x)):
-        positions = pressure[dim].values
-        touched = positions[(pressure > 0).any(other).values]
-        step = (positions[-1] - positions[0]) / max(positions.size - 1, 1)
-        extent = touched[-1] - touched[0] + step if touched.size else 0.0
-        result[name] = _scalar(extent, "m", f"{name.replace('_', ' ')}, in whole cells")
     return xr.Dataset(result)
 
 
@@ -131,6 +59,11 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
     Dataset
         Scalars `peak_von_mises` (Pa) and `peak_von_mises_x`, ``_y``, ``_z`` (m).
 
+    Raises
+    ------
+    InvalidInputError
+        If there is no number among the stresses.
+
     Examples
     --------
     >>> stress = xr.DataArray([[[1.0, 4.0]]], dims=("x", "y", "z"), coords={"x": [0], "y": [0], "z": [0, 2]})
@@ -139,7 +72,9 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
     """
     if "von_mises" not in dataset:
         return xr.Dataset()
-    return xr.Dataset(_peak(dataset["von_mises"], "von_mises", "von Mises stress"))
+    if np.isnan(dataset["von_mises"].values).all():
+        raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
+    return peak(dataset, "von_mises").map(lambda value: _scalar(value, **value.attrs), keep_attrs=True)
 
 
 def summarize(dataset: xr.Dataset) -> xr.Dataset:

@@ -13,7 +13,7 @@ from matplotlib import pyplot
 from matplotlib.axes import Axes
 
 from contactstudy import profiles
-from contactstudy.plots_profile import plot_profiles
+from contactstudy.plots import plot_profiles
 
 HERE = Path(__file__).parent
 PAPER, STEEL, ROLLER = {"dpi": 110}, "0.88", "0.72"

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import FiniteLengthSpace, HalfSpace, Material
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, Roller, choose_grid, solve, von_mises
+from contactstudy.profiles import Cylinder
 from contactstudy.verification import problems
 
 
@@ -52,3 +54,80 @@ def cylinder_gap(on_cells: Callable[..., xr.DataArray]) -> Callable[..., xr.Data
         return on_cells(lambda x, y: y**2 + 0 * x, (0.0, length), (-window, window), cells)
 
     return build
+
+
+LINE_LOAD = 0.5 * np.pi
+"""Load per length of the line contact of half-width and peak pressure 1."""
+
+
+@pytest.fixture(scope="session")
+def strip_result() -> Callable[..., xr.Dataset]:
+    """Make a result of Hertz' line contact in closed form, the same in every cross-section of a roller of length 4a.
+
+    The body goes on for 1a beyond either end of the roller.
+    """
+    from contactstudy.verification import closed_forms as ref
+
+    def build(
+        half_width: float = 1.0, max_pressure: float = 1.0, friction: float = 0.0, window: float = 3.0
+    ) -> xr.Dataset:
+        x = half_width * (np.arange(24) + 0.5) / 4
+        y = half_width * window * ((np.arange(96) + 0.5) / 48 - 1)
+        x_field = half_width * np.linspace(1.0, 5.0, 9)
+        y_field = half_width * np.linspace(-window, window, 121)
+        z = half_width * np.linspace(0.1, 2.0, 39)
+        under = (x > half_width) & (x < 5 * half_width)
+        profile = max_pressure * np.sqrt(np.maximum(1 - (y / half_width) ** 2, 0))
+        gap = np.where(under[:, None], y**2 / half_width, np.inf)
+        stress = ref.hertz_strip(y_field[:, None], z, half_width, max_pressure, 0.3, friction)
+        fields = {name: np.broadcast_to(value, (x_field.size, *value.shape)) for name, value in stress.items()}
+        result = xr.Dataset(
+            {
+                "pressure": (("x", "y"), np.outer(under, profile), {"units": "Pa", "long_name": "contact pressure"}),
+                "initial_gap": (("x", "y"), gap, {"units": "m"}),
+                "hertz_half_width": half_width,
+                "hertz_max_pressure": max_pressure,
+            }
+            | {name: (("x_field", "y_field", "z"), value, {"units": "Pa"}) for name, value in fields.items()},
+            coords={"x": x, "y": y, "x_field": x_field, "y_field": y_field, "z": z},
+        )
+        return result.assign(von_mises=von_mises(result))
+
+    return build
+
+
+@pytest.fixture(scope="session")
+def solved() -> xr.Dataset:
+    """Steel with two free ends, a roller that begins one half-width inside, friction: the real solver."""
+    material = Material(young=210e9, poisson=0.3)
+    half_width = 65e-6
+    case = Case(
+        body=FiniteLengthSpace(length=0.52e-3, material=material),
+        roller=Roller(radius=5e-3, length=0.39e-3, profile=Cylinder(fillet_radius=0.1e-3)),
+        max_pressure=1.5e9,
+        friction=0.1,
+    )
+    return solve(
+        case,
+        choose_grid(case, cells_x=6, cells_y=12),
+        x=np.linspace(0, 0.52e-3, 13),
+        y=half_width * np.linspace(-2, 2, 17),
+        z=half_width * np.array([0.0, 0.25, 0.5, 0.75, 1.0, 1.5]),
+    )
+
+
+@pytest.fixture(scope="session")
+def opened(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    """A study opened: e/a, a friction that fails, two bodies of which one for e = 0 only; made-up fields."""
+    from contactstudy.study import open_study, run_study
+    from tests.study.conftest import BASE, small_study
+    from tests.study.fakes import FAILS, solve_fake
+
+    folder = tmp_path_factory.mktemp("results")
+    study = small_study(
+        sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.1, FAILS], "body": ["finite-length", "half-space"]},
+        base=BASE | {"max_pressure": 1.5e9},
+        exclude=[{"body": "half-space", "e_over_a": [1, 2]}],
+    )
+    run_study(study, folder, workers=0, solver=solve_fake)
+    return open_study(folder)

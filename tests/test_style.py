@@ -42,4 +42,6 @@ def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
     import contactstudy
 
     modules = {path.stem for path in (ROOT / "contactstudy").iterdir()}
-    assert modules & set(contactstudy.__all__) == {"plots", "profiles", "roughness", "slices"}
+    assert modules & set(contactstudy.__all__) == {
+        *("analysis", "export", "fatigue", "plots", "profiles", "roughness", "slices")
+    }

@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.errors import InvalidInputError
-from contactstudy.summary import axial_pressure, dimension_along, pressure_summary, stress_summary, summarize
+from contactstudy.summary import pressure_summary, stress_summary, summarize
 
 
 def contact(values, scale=2.0):
@@ -76,13 +76,3 @@ def test_summary_is_scalar_described_and_keeps_what_was_there():
     assert all(variable.ndim == 0 for variable in result.variables.values())
     assert int(result["iterations"]) == 7
     assert result["end_pressure"].attrs["units"] == "1"
-
-
-def test_axial_pressure():
-    assert axial_pressure(contact(VALUES)).values.tolist() == [0, 1, 3, 4, 0]
-
-
-@pytest.mark.parametrize("dims", [("y", "z"), ("x", "x_field")])
-def test_axis_without_a_single_dimension(dims):
-    with pytest.raises(InvalidInputError):
-        dimension_along(xr.DataArray(np.zeros((1, 1)), dims=dims), "x")

@@ -22,7 +22,7 @@ FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
 
 
 def solve_fake(
-    case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float, error_estimate: bool
+    case: Case, grid: Grid, *, x, y, z, stresses: bool, tolerance: float, error_estimate: bool = False
 ) -> xr.Dataset:
     if case.friction == FAILS:
         raise WindowError("this friction fails in tests")

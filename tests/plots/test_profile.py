@@ -11,7 +11,7 @@ import pytest
 from matplotlib import pyplot
 
 from contactstudy import InvalidInputError
-from contactstudy.plots_profile import plot_profile, plot_profiles
+from contactstudy.plots import plot_profile, plot_profiles
 from contactstudy.profiles import Cylinder, FullCrown, Lundberg
 
 

@@ -1,0 +1,44 @@
+"""What a result says to an engineer: functions that take and return Datasets.
+
+They work on results of :func:`contactstudy.solve`, on surfaces without stresses, on files reopened with xarray, and,
+where that has a meaning, on a whole study opened by :func:`contactstudy.open_study`.
+"""
+
+from contactstudy.analysis.axes import dimension_along, positions, single_case
+from contactstudy.analysis.contact import (
+    axial_pressure,
+    axial_profiles,
+    contact_results,
+    edge_pressure,
+    half_width,
+    line_load,
+    unloaded_gap,
+)
+from contactstudy.analysis.cuts import along_line, in_plane
+from contactstudy.analysis.factors import edge_factors
+from contactstudy.analysis.measures import MEASURES, measure
+from contactstudy.analysis.peaks import peak, section_peak
+from contactstudy.analysis.scaling import normalized
+from contactstudy.analysis.slices import slices
+
+__all__ = [
+    "MEASURES",
+    "along_line",
+    "axial_pressure",
+    "axial_profiles",
+    "contact_results",
+    "dimension_along",
+    "edge_factors",
+    "edge_pressure",
+    "half_width",
+    "in_plane",
+    "line_load",
+    "measure",
+    "normalized",
+    "peak",
+    "positions",
+    "section_peak",
+    "single_case",
+    "slices",
+    "unloaded_gap",
+]

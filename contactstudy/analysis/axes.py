@@ -1,0 +1,151 @@
+"""Dimensions and positions along x, y and z, in a result of one case and in an opened study alike.
+
+A result has the dimensions ``x``, ``y``, ``z`` with positions as coordinates; stresses at positions of their own have
+``x_field``, ``y_field``. Where the cases of a study have different positions, the dimension is ``x_index`` and each
+case's own positions are the coordinate ``x``, padded with NaN.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.errors import InvalidInputError
+
+AXES = ("x", "y", "z")
+
+
+def require(dataset: object, *names: str) -> None:
+    """Raise unless `dataset` is a Dataset with the variables `names`."""
+    if not isinstance(dataset, xr.Dataset):
+        raise InvalidInputError("dataset", type(dataset).__name__, "an xarray.Dataset")
+    missing = [name for name in names if name not in dataset]
+    if missing:
+        raise InvalidInputError(
+            "dataset",
+            sorted(map(str, dataset.data_vars)),
+            f"a Dataset with {', '.join(names)}",
+            f"{missing[0]} is missing; a study keeps stresses at level 'fields', pressure already at 'surface'",
+        )
+
+
+def dimension_along(array: xr.DataArray, axis: str) -> str:
+    """Dimension of `array` along an axis: the axis' own name, or one that begins with it, such as ``x_field``.
+
+    Parameters
+    ----------
+    array : DataArray
+        Any field.
+    axis : {"x", "y", "z"}
+        The axis.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no such dimension, or more than one.
+
+    Examples
+    --------
+    >>> dimension_along(xr.DataArray(np.zeros((2, 3)), dims=("x_field", "z")), "x")
+    'x_field'
+    """
+    found = [str(dim) for dim in array.dims if dim == axis or str(dim).startswith(f"{axis}_")]
+    if len(found) != 1:
+        raise InvalidInputError("dims", array.dims, f"with exactly one dimension along {axis}")
+    return found[0]
+
+
+def axis_dimensions(array: xr.DataArray) -> dict[str, str]:
+    """Axes that `array` extends along, each with its dimension.
+
+    Examples
+    --------
+    >>> axis_dimensions(xr.DataArray(np.zeros((2, 3)), dims=("friction", "z_index")))
+    {'z': 'z_index'}
+    """
+    along = {}
+    for axis in AXES:
+        if any(dim == axis or str(dim).startswith(f"{axis}_") for dim in array.dims):
+            along[axis] = dimension_along(array, axis)
+    return along
+
+
+def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
+    """Positions of `array` along an axis, metres; NaN where a case of a study has fewer than others.
+
+    Parameters
+    ----------
+    array : DataArray
+        A field with its coordinates.
+    axis : {"x", "y", "z"}
+        The axis.
+
+    Returns
+    -------
+    DataArray
+        With the dimension along the axis, and those of the study if its cases differ.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is not exactly one such dimension, or it has no positions.
+
+    Examples
+    --------
+    >>> array = xr.DataArray([1.0, 2.0], dims="x_index", coords={"x": ("x_index", [0.0, 0.5])})
+    >>> positions(array, "x").values.tolist()
+    [0.0, 0.5]
+    """
+    dim = dimension_along(array, axis)
+    name = dim.removesuffix("_index")
+    if name not in array.coords:
+        raise InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
+    return array[name].reset_coords(drop=True)
+
+
+def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
+    """Distance of uniform positions along an axis, metres; 0 for a single one."""
+    dim, place = dimension_along(array, axis), positions(array, axis)
+    return (place.max(dim) - place.min(dim)) / np.maximum(place.count(dim) - 1, 1)
+
+
+def single_case(dataset: xr.Dataset) -> xr.Dataset:
+    """One case, selected from a study, in the form that :func:`contactstudy.solve` returns.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of one case; or an opened study with one value of each swept parameter selected.
+
+    Returns
+    -------
+    Dataset
+        With positions as dimensions instead of ``x_index`` and its like, and without padding; a result of
+        :func:`contactstudy.solve` as it is.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is more than one case.
+
+    Examples
+    --------
+    >>> padded = xr.Dataset({"pressure": ("x_index", [1.0, 2.0, np.nan])}, {"x": ("x_index", [0.0, 0.5, np.nan])})
+    >>> single_case(padded).pressure.x.values.tolist()
+    [0.0, 0.5]
+    """
+    require(dataset)
+    cases = dataset[["hertz_half_width"]].sizes if "hertz_half_width" in dataset else {}
+    if any(size > 1 for size in cases.values()):
+        raise InvalidInputError(
+            "dataset", dict(cases), "a single case", "select one, for example with .isel(...) or .sel(...)"
+        )
+    one = dataset.isel(dict.fromkeys(cases, 0))
+    for dim in [str(dim) for dim in one.dims if str(dim).endswith("_index")]:
+        name = dim.removesuffix("_index")
+        if name not in one.coords or one[name].dims != (dim,):
+            raise InvalidInputError("dataset", dict(one.sizes), "a single case", f"with the positions {name}")
+        kept = np.flatnonzero(np.isfinite(one[name].values))
+        # A case without stresses has no positions at all.
+        one = one.isel({dim: kept}).swap_dims({dim: name}) if kept.size else one.drop_dims(dim)
+    return one

@@ -1,0 +1,127 @@
+"""What ``contactstudy export`` does with the fields of a case: from a file or a study's folder to CSV or VTK."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import xarray as xr
+
+from contactstudy.errors import InvalidInputError
+from contactstudy.export.table import Line, to_csv, to_table
+from contactstudy.export.vtk import to_vtk
+
+SUFFIXES = {"csv": ".csv", "vtk": ".vtr"}
+
+
+def parse_line(text: str) -> Line:
+    """Read the ends of a line from ``X,Y,Z:X,Y,Z`` in metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If the text is something else.
+
+    Examples
+    --------
+    >>> parse_line("0,0,0:0,0,2e-4")
+    ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0002])
+    """
+    try:
+        start, end = ([float(number) for number in part.split(",")] for part in text.split(":"))
+    except ValueError:
+        raise InvalidInputError("line", text, "X,Y,Z:X,Y,Z in metres, for example 0,0,0:0,0,2e-4") from None
+    return start, end
+
+
+def _select(dataset: xr.Dataset, selections: Sequence[str]) -> xr.Dataset:
+    """Select the case of a study with these values of its swept parameters, each given as ``name=value``."""
+    for text in selections:
+        name, given, value = text.partition("=")
+        if not given or name not in dataset.indexes:
+            swept = [str(dim) for dim in dataset["status"].dims] if "status" in dataset else []
+            raise InvalidInputError("select", text, f"NAME=VALUE with a swept parameter: {', '.join(swept) or 'none'}")
+        labels = dataset.indexes[name]
+        found = [number for number, label in enumerate(labels) if _equal(value, label)]
+        if not found:
+            raise InvalidInputError("select", text, f"one of {', '.join(map(str, labels))}")
+        dataset = dataset.isel({name: found[0]})
+    return dataset
+
+
+def _equal(text: str, label: object) -> bool:
+    """Whether a text names a label: as it stands, or as a number to nine digits."""
+    if isinstance(label, str):
+        return text == label
+    try:
+        return math.isclose(float(text), float(str(label)), rel_tol=1e-9)
+    except ValueError:
+        return False
+
+
+def _open(path: Path) -> xr.Dataset:
+    """Open the result in a netCDF file, or the study in a folder."""
+    if path.is_dir():
+        from contactstudy.study import open_study
+
+        return open_study(path)
+    try:
+        with xr.open_dataset(path) as dataset:
+            return dataset.load()
+    except (OSError, ValueError) as error:
+        reason = str(error).splitlines()[0]
+        raise InvalidInputError("path", str(path), "a netCDF file or a study's folder", reason) from None
+
+
+def export(
+    path: Path,
+    *,
+    kind: str = "csv",
+    variables: Sequence[str] | None = None,
+    line: str | None = None,
+    points: int = 101,
+    select: Sequence[str] = (),
+    out: Path | None = None,
+) -> Path | None:
+    """Write a field or a line of a case for others' tools.
+
+    Parameters
+    ----------
+    path : Path
+        netCDF file of a case, or folder of a study.
+    kind : {"csv", "vtk"}
+        Format.
+    variables : sequence of str, optional
+        As for :func:`contactstudy.export.to_table` and :func:`contactstudy.export.to_vtk`.
+    line : str, optional
+        ``X,Y,Z:X,Y,Z`` in metres, for CSV.
+    points : int
+        Number of points of the line.
+    select : sequence of str
+        ``NAME=VALUE`` of swept parameters, for a study of more than one case.
+    out : Path, optional
+        Default: beside the file, or ``export`` in the folder; ``-`` prints CSV.
+
+    Returns
+    -------
+    Path or None
+        The file; None if it was printed.
+
+    Raises
+    ------
+    InvalidInputError
+        If the path holds no result, or an option does not suit.
+    """
+    dataset = _select(_open(path), select)
+    default = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
+    target = default if out is None else out
+    if kind == "vtk":
+        if line is not None:
+            raise InvalidInputError("line", line, "left out for VTK", "write the line as CSV")
+        return to_vtk(dataset, target, variables)
+    ends = None if line is None else parse_line(line)
+    if str(target) == "-":
+        print(to_table(dataset, variables, line=ends, points=points).to_csv(index=False), end="")
+        return None
+    return to_csv(dataset, target, variables, line=ends, points=points)

@@ -1,0 +1,133 @@
+"""Tables: one row per point, one column per variable, units in the heading."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import along_line, measure, single_case
+from contactstudy.analysis.axes import require
+from contactstudy.dataset import COORDINATES, VARIABLES
+from contactstudy.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Line = tuple[Sequence[float], Sequence[float]]
+
+
+def _heading(name: str, array: xr.DataArray) -> str:
+    known = VARIABLES.get(name) or COORDINATES.get(name.removesuffix("_field"))
+    units = array.attrs.get("units", known.units if known else "")
+    return f"{name} [{units}]" if units and units != "1" else name
+
+
+def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
+    """Variables to be listed; all that are no scalars if none is named."""
+    if variables is None:
+        chosen = {str(name): array for name, array in dataset.data_vars.items() if array.ndim}
+    else:
+        names = [variables] if isinstance(variables, str) else list(variables)
+        chosen = {name: measure(dataset, name) for name in names}
+    shapes = {name: array.dims for name, array in chosen.items()}
+    if len({frozenset(dims) for dims in shapes.values()}) != 1 or not all(shapes.values()):
+        raise InvalidInputError("variables", shapes, "variables on the same points", "name some of them")
+    return xr.Dataset(chosen)
+
+
+def to_table(
+    dataset: xr.Dataset,
+    variables: str | Sequence[str] | None = None,
+    *,
+    line: Line | None = None,
+    points: int = 101,
+) -> pd.DataFrame:
+    """Variables at their points, or interpolated along a line, as a table.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        One case, or anything that :mod:`contactstudy.analysis` returns.
+    variables : str or sequence of str, optional
+        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all, or along a
+        line all stresses.
+    line : pair of sequences, optional
+        Its ends, (x, y, z) or (x, y), metres.
+    points : int
+        Number of points of the line.
+
+    Returns
+    -------
+    pandas.DataFrame
+        Positions first; headings with units, such as ``von_mises [Pa]``.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is more than one case, the variables are missing or lie on different points, or the line leaves the
+        result.
+
+    Examples
+    --------
+    >>> stress = xr.DataArray([1.0, 2.0], dims="z", coords={"z": [0.0, 0.5]}, attrs={"units": "Pa"})
+    >>> to_table(xr.Dataset({"von_mises": stress})).columns.tolist()
+    ['z [m]', 'von_mises [Pa]']
+    """
+    require(dataset)
+    one = single_case(dataset)
+    if line is None:
+        chosen = _on_the_same_points(one, variables)
+    else:
+        if not isinstance(line, Sequence) or len(line) != 2:
+            raise InvalidInputError("line", line, "a pair of points, each (x, y, z) or (x, y) in metres")
+        chosen = along_line(one, *line, points=points, variables=variables)
+    dims = list(chosen.sizes)
+    along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
+    frame = chosen.to_dataframe().reset_index()
+    names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
+    return frame[names].rename(columns={name: _heading(str(name), chosen[name]) for name in names if name in chosen})
+
+
+def to_csv(
+    dataset: xr.Dataset,
+    path: str | Path,
+    variables: str | Sequence[str] | None = None,
+    *,
+    line: Line | None = None,
+    points: int = 101,
+) -> Path:
+    """Write variables at their points, or interpolated along a line, as CSV.
+
+    Parameters
+    ----------
+    dataset, variables, line, points
+        As for :func:`to_table`.
+    path : str or Path
+        File to write.
+
+    Returns
+    -------
+    Path
+        The file.
+
+    Raises
+    ------
+    InvalidInputError
+        As :func:`to_table`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> stress = xr.DataArray([1.0, 2.0], dims="z", coords={"z": [0.0, 0.5]}, attrs={"units": "Pa"})
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     print(to_csv(xr.Dataset({"von_mises": stress}), Path(folder) / "depth.csv").read_text().splitlines()[1])
+    0.0,1.0
+    """
+    checks.instance("path", path, (str, Path), "a path")
+    target = Path(path)
+    to_table(dataset, variables, line=line, points=points).to_csv(target, index=False)
+    return target

@@ -1,0 +1,95 @@
+"""VTK files for ParaView and its like."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import measure, single_case
+from contactstudy.analysis.axes import AXES, axis_dimensions, positions, require
+from contactstudy.dataset import STRESSES
+from contactstudy.errors import InvalidInputError
+
+TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)
+"""Place of xx, xy, xz, yx, ... among the six components of a result."""
+
+
+def _fields(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
+    """Fields on one grid: those named, or all in the body, or all on its surface if there are none in the body."""
+    if variables is not None:
+        names = [variables] if isinstance(variables, str) else list(variables)
+        return {name: measure(dataset, name) for name in names}
+    fields = {str(name): array for name, array in dataset.data_vars.items() if len(axis_dimensions(array)) > 1}
+    inside = {name: array for name, array in fields.items() if "z" in axis_dimensions(array)}
+    return inside or fields
+
+
+def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str] | None = None) -> Path:
+    """Write fields as a rectilinear grid in VTK's XML format.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        One case; :func:`contactstudy.analysis.normalized` beforehand gives lengths over a and stresses over p0.
+    path : str or Path
+        File to write, ending with ``.vtr``.
+    variables : str or sequence of str, optional
+        Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all fields in
+        the body, or all surfaces if there are none.
+
+    Returns
+    -------
+    Path
+        The file. Its axes are those of the package: z is the depth, so the body lies on the side of larger z.
+        Variables are point data; where all six stress components are among them they are also written together as
+        the tensor `stress` (xx, xy, xz, yx, yy, ...).
+
+    Raises
+    ------
+    InvalidInputError
+        If there is more than one case, the path ends otherwise, or the variables are missing or lie on different
+        points.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> cells = {"x": [0.0, 1.0], "y": [0.0, 1.0]}
+    >>> pressure = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], dims=("x", "y"), coords=cells)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     to_vtk(xr.Dataset({"pressure": pressure}), Path(folder) / "surface.vtr").name
+    'surface.vtr'
+    """
+    from uvw import DataArray, RectilinearGrid
+
+    require(dataset)
+    checks.instance("path", path, (str, Path), "a path")
+    target = Path(path)
+    if target.suffix != ".vtr":
+        raise InvalidInputError("path", str(path), "a file name that ends with .vtr")
+    fields = _fields(single_case(dataset), variables)
+    grids = {tuple(axis_dimensions(array).values()) for array in fields.values()}
+    if len(grids) != 1 or grids == {()}:
+        shown = {name: array.dims for name, array in fields.items()}
+        raise InvalidInputError("variables", shown, "fields on the same points along x, y or z", "name some of them")
+    first = next(iter(fields.values()))
+    along = axis_dimensions(first)
+    # The format asks for increasing positions; an axis that the fields do not have is a plane at 0.
+    place = {axis: positions(first, axis).values if axis in along else np.zeros(1) for axis in AXES}
+    order = {axis: np.argsort(values, kind="stable") for axis, values in place.items()}
+    data = {}
+    for name, array in fields.items():
+        values = array.transpose(*along.values()).values.astype(np.float64)
+        shaped = values.reshape([place[axis].size for axis in AXES])
+        data[name] = shaped[np.ix_(*order.values())]
+    if all(name in data for name in STRESSES):
+        components = np.stack([data[name] for name in STRESSES], axis=-1)
+        data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
+    # Not compressed: uvw 0.7 spoils compressed arrays of a multiple of 32 KiB, and stresses hardly get smaller.
+    with RectilinearGrid(str(target), tuple(place[axis][order[axis]] for axis in AXES)) as grid:
+        for name, values in data.items():
+            grid.addPointData(DataArray(values, range(3), name))
+    return target

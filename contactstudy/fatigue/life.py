@@ -1,0 +1,304 @@
+"""Relative life after Lundberg and Palmgren, and after Ioannides and Harris: risk integrated over the stressed volume.
+
+Both say ``ln(1/S) = const N**e risk`` for the probability S to survive N passages; the constant belongs to material
+and lubrication and cancels in the ratio of two lives. Sources: G. Lundberg, A. Palmgren, Dynamic capacity of rolling
+bearings, Acta Polytechnica, Mechanical Engineering Series 1 (1947) no. 3, and Dynamic capacity of roller bearings,
+ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for rolling bearings, Journal of Tribology
+107 (1985) 367-378.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import dimension_along, measure, positions
+from contactstudy.errors import InvalidInputError
+
+Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True, kw_only=True)
+class LifeExponents:
+    """Exponents of the life theories; the defaults are Lundberg and Palmgren's for roller bearings.
+
+    A line contact's risk per length goes with ``p0**(c - h + 1)``, and its load with ``p0**2``: life falls with the
+    load to the power ``(c - h + 1) / (2 e)``, which is 4 for rollers.
+
+    Parameters
+    ----------
+    stress : float
+        ``c``, of the stress.
+    depth : float
+        ``h``, of the depth.
+    weibull : float
+        ``e``, slope of the Weibull distribution of lives: 9/8 for line contact, 10/9 for point contact.
+
+    Raises
+    ------
+    InvalidInputError
+        If an exponent is not positive.
+
+    Examples
+    --------
+    >>> exponents = LifeExponents()
+    >>> round((exponents.stress - exponents.depth + 1) / (2 * exponents.weibull), 9)
+    4.0
+    """
+
+    stress: float = 31 / 3
+    depth: float = 7 / 3
+    weibull: float = 9 / 8
+
+    def __post_init__(self) -> None:
+        """Check the exponents."""
+        for name in ("stress", "depth", "weibull"):
+            object.__setattr__(self, name, checks.positive(name, getattr(self, name)))
+
+    def units(self, lengths: int) -> str:
+        """Return the unit of the integral of ``stress**c / depth**h`` over 1 or 2 lengths.
+
+        Examples
+        --------
+        >>> LifeExponents(stress=10, depth=2, weibull=1).units(2)
+        'Pa**10 m**0'
+        """
+        return f"Pa**{self.stress:.6g} m**{lengths - self.depth:.6g}"
+
+
+def _ordered(stress: xr.DataArray) -> tuple[xr.DataArray, str, xr.DataArray]:
+    """Stress with the depth last, that dimension, and its positions, NaN where padded."""
+    dim = dimension_along(stress, "z")
+    if stress.sizes[dim] < 3:
+        raise InvalidInputError("stress", dict(stress.sizes), "given at three or more depths")
+    return stress, dim, positions(stress, "z")
+
+
+def _crest(stress: Array, depth: Array) -> tuple[Array, Array]:
+    """Largest stress over the depth and where it is, by a parabola through the three points around it."""
+    depth = np.broadcast_to(depth, stress.shape)
+    filled = np.where(np.isnan(stress), -np.inf, stress)
+    at = filled.argmax(axis=-1)
+
+    def take(values: Array, step: int) -> Array:
+        column = np.clip(at + step, 0, values.shape[-1] - 1)[..., None]
+        return np.asarray(np.take_along_axis(values, column, axis=-1)[..., 0])
+
+    (z1, z2, z3), (s1, s2, s3) = ([take(values, step) for step in (-1, 0, 1)] for values in (depth, filled))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        left, right = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
+        curvature = (right - left) / (z3 - z1)
+        top = 0.5 * (z1 + z2) - left / (2 * curvature)
+        crest = s2 + (top - z2) * (left + curvature * (top - z1))
+    inside = np.isfinite(crest) & (curvature < 0)
+    known = np.isfinite(s2)
+    return np.where(known, np.where(inside, crest, s2), np.nan), np.where(known, np.where(inside, top, z2), np.nan)
+
+
+def _integral(density: Array, place: Array) -> Array:
+    """Trapezoidal integral along the last axis; padded positions count nothing."""
+    place = np.broadcast_to(place, density.shape)
+    absent = np.isnan(density) | np.isnan(place)
+    pieces = 0.5 * (density[..., 1:] + density[..., :-1]) * np.abs(np.diff(place, axis=-1))
+    total = np.where(absent[..., 1:] | absent[..., :-1], 0.0, pieces).sum(axis=-1)
+    return np.asarray(np.where(absent.all(axis=-1), np.nan, total))
+
+
+def _along_axis(density: xr.DataArray, exponents: LifeExponents) -> xr.Dataset:
+    """Risk along x, and integrated over x."""
+    x = dimension_along(density, "x")
+    if density.sizes[x] < 2:
+        raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
+    density = density.compute()
+    place = positions(density, "x")
+    if (place.diff(x) <= 0).any():
+        raise InvalidInputError("x", place.values, "increasing positions")
+    risk = xr.apply_ufunc(_integral, density, place, input_core_dims=[[x], [x]])
+    result = xr.Dataset({"risk_density": density, "risk": risk.reset_coords(drop=True)})
+    result["risk_density"].attrs = {
+        "units": exponents.units(1),
+        "long_name": "risk of fatigue per length of the roller and of the raceway",
+    }
+    result["risk"].attrs = {"units": exponents.units(2), "long_name": "risk of fatigue per length of the raceway"}
+    return result
+
+
+def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None) -> xr.Dataset:
+    """Risk of fatigue after Lundberg and Palmgren, section by section along the roller.
+
+    Each cross-section contributes ``tau_0**c z_0**(1 - h) dx``: its largest amplitude of the orthogonal shear, the
+    depth where that is, and a volume as deep as that depth, per length of the raceway.
+
+    Parameters
+    ----------
+    stress : Dataset
+        `tau_yz` with the rolling direction y over the whole passage, at three or more depths and two or more x.
+    exponents : LifeExponents, optional
+        Default: those of roller bearings.
+
+    Returns
+    -------
+    Dataset
+        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`),
+        `shear_amplitude` (Pa) ``tau_0`` and `shear_depth` (m) ``z_0`` along x.
+
+    Raises
+    ------
+    InvalidInputError
+        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none.
+
+    Examples
+    --------
+    >>> y, z = xr.DataArray([-1.0, 0, 1], dims="y"), xr.DataArray([0.25, 0.5, 0.75], dims="z")
+    >>> shear = (-y * (1 - (z - 0.5) ** 2)).expand_dims(x=[0.0, 2.0]).assign_coords(y=y, z=z)
+    >>> result = lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
+    >>> result.shear_amplitude.values.round(9).tolist(), result.shear_depth.values.round(9).tolist()
+    ([1.0, 1.0], [0.5, 0.5])
+    >>> round(float(result.risk / 0.5 ** (1 - 7 / 3)), 9)
+    2.0
+    """
+    chosen = LifeExponents() if exponents is None else exponents
+    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    amplitude, dim, depths = _ordered(measure(stress, "orthogonal_shear_amplitude"))
+    crest, at = xr.apply_ufunc(
+        _crest,
+        amplitude,
+        depths,
+        input_core_dims=[[dim], [dim]],
+        output_core_dims=[[], []],
+        dask="parallelized",
+        dask_gufunc_kwargs={"allow_rechunk": True},
+        output_dtypes=[np.float64, np.float64],
+    )
+    # Where nothing is loaded there is no risk, wherever the largest of nothing may be.
+    density = (crest**chosen.stress * at.where(at > 0) ** (1 - chosen.depth)).where(crest != 0, 0.0)
+    if ((crest > 0) & (at <= 0)).any():
+        raise InvalidInputError(
+            "stress",
+            "orthogonal shear largest on the surface",
+            "largest below it",
+            "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
+        )
+    result = _along_axis(density, chosen).assign(shear_amplitude=crest.compute(), shear_depth=at.compute())
+    result["shear_amplitude"].attrs = {"units": "Pa", "long_name": "largest amplitude of the orthogonal shear"}
+    result["shear_depth"].attrs = {"units": "m", "long_name": "depth of the largest amplitude"}
+    return result
+
+
+def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
+    """Integral over the depth of what exceeds the limit, over the stress-weighted mean depth."""
+    excess = np.clip(stress - limit, 0.0, None) ** exponents.stress
+    volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = moment / volume
+        density = np.where(volume > 0, volume / mean**exponents.depth, volume)
+    return density, mean
+
+
+def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
+    """Risk of fatigue after Ioannides and Harris: what exceeds a fatigue limit, over the stressed volume.
+
+    ``risk = integral of (sigma - sigma_u)**c / z'**h dx dz`` where the stress exceeds its limit, per length of the
+    raceway. ``z'`` is the mean depth of that in each cross-section, weighted with the integrand's numerator.
+
+    Parameters
+    ----------
+    stress : DataArray
+        A measure of the passage along x and z, Pa, at three or more depths and two or more x: for example
+        ``analysis.measure(result, "orthogonal_shear_amplitude")``, ``dang_van(...).dang_van``, or the largest von Mises
+        stress along y.
+    limit : float
+        ``sigma_u`` below which nothing fails, of the same measure, Pa.
+    exponents : LifeExponents, optional
+        Default: those of roller bearings.
+
+    Returns
+    -------
+    Dataset
+        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`), and
+        `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit.
+
+    Raises
+    ------
+    InvalidInputError
+        If the measure is no DataArray along x and z, still extends along y, or there are too few positions.
+
+    Examples
+    --------
+    >>> z = xr.DataArray([0.0, 0.5, 1.0], dims="z")
+    >>> stress = xr.DataArray([[0.0, 2.0, 0.0]] * 2, dims=("x", "z"), coords={"x": [0.0, 3.0], "z": z})
+    >>> result = ioannides_harris(stress, limit=1.0, exponents=LifeExponents(stress=1, depth=1, weibull=1))
+    >>> float(result.risk), result.mean_depth.values.tolist()
+    (3.0, [0.5, 0.5])
+    """
+    chosen = LifeExponents() if exponents is None else exponents
+    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
+    threshold = checks.not_negative("limit", limit, "Pa")
+    if any(str(dim) == "y" or str(dim).startswith("y_") for dim in stress.dims):
+        raise InvalidInputError(
+            "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
+        )
+    ordered, dim, depths = _ordered(stress)
+    density, mean = xr.apply_ufunc(
+        _risk_of_sections,
+        ordered,
+        depths,
+        input_core_dims=[[dim], [dim]],
+        output_core_dims=[[], []],
+        kwargs={"limit": threshold, "exponents": chosen},
+        dask="parallelized",
+        dask_gufunc_kwargs={"allow_rechunk": True},
+        output_dtypes=[np.float64, np.float64],
+    )
+    result = _along_axis(density, chosen).assign(mean_depth=mean.compute())
+    result["mean_depth"].attrs = {"units": "m", "long_name": "stress-weighted mean depth of the risk"}
+    return result
+
+
+def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents | None = None) -> xr.DataArray:
+    """Life of one contact over that of another, for the same probability to survive.
+
+    Parameters
+    ----------
+    risk, reference : Dataset
+        Results of :func:`lundberg_palmgren`, or both of :func:`ioannides_harris` with the same limit; for example the
+        body with free ends and the half-space.
+    exponents : LifeExponents, optional
+        Those that both were computed with.
+
+    Returns
+    -------
+    DataArray
+        ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk.
+
+    Raises
+    ------
+    InvalidInputError
+        If one has no risk, or the two were computed with different exponents.
+
+    Examples
+    --------
+    >>> one, twice = (xr.Dataset({"risk": xr.DataArray(value, attrs={"units": "1"})}) for value in (1.0, 2.0))
+    >>> round(float(relative_life(twice, one)), 6) == round(0.5 ** (8 / 9), 6)
+    True
+    """
+    chosen = LifeExponents() if exponents is None else exponents
+    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    for name, dataset in (("risk", risk), ("reference", reference)):
+        if not isinstance(dataset, xr.Dataset) or "risk" not in dataset:
+            raise InvalidInputError(name, type(dataset).__name__, "a Dataset with risk")
+    units = [dataset["risk"].attrs.get("units") for dataset in (risk, reference)]
+    if units[0] != units[1]:
+        raise InvalidInputError("reference", units[1], f"computed with the same exponents, {units[0]}")
+    own, other = risk["risk"], reference["risk"]
+    # Without any risk the life is infinite, unless the reference has none either.
+    ratio = (other / own.where(own > 0)).where((own != 0) | (other == 0), np.inf)
+    result = (ratio ** (1 / chosen.weibull)).rename("relative_life")
+    result.attrs = {"units": "1", "long_name": "life over that of the reference"}
+    return result

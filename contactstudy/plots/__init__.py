@@ -1,0 +1,28 @@
+"""Figures of solved cases and of studies; lengths over the Hertz half-width a, stresses over p0, or in mm and MPa.
+
+Every function takes results of :func:`contactstudy.solve`, or of :func:`contactstudy.open_study` with one case
+selected, and draws into given axes or a new figure. Colours keep their order in grey, lines differ by their dashes.
+"""
+
+from contactstudy.plots.comparison import plot_comparison, plot_depth
+from contactstudy.plots.edge_effect import plot_edge_effect
+from contactstudy.plots.pressure import plot_axial_pressure, plot_pressure_map
+from contactstudy.plots.profile import plot_profile, plot_profiles
+from contactstudy.plots.stress import plot_end_face, plot_stress_plane
+from contactstudy.plots.study_map import plot_study_map
+from contactstudy.plots.style import COLORS, save
+
+__all__ = [
+    "COLORS",
+    "plot_axial_pressure",
+    "plot_comparison",
+    "plot_depth",
+    "plot_edge_effect",
+    "plot_end_face",
+    "plot_pressure_map",
+    "plot_profile",
+    "plot_profiles",
+    "plot_stress_plane",
+    "plot_study_map",
+    "save",
+]

@@ -1,0 +1,159 @@
+"""A quantity of a study over two of its swept parameters: where ends, friction and length matter."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis.axes import require
+from contactstudy.errors import InvalidInputError
+from contactstudy.plots.style import COLORS, new_axes
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+SYMBOLS = {
+    "e_over_a": "distance of the roller's end from the free end, $e/a$",
+    "friction": "friction, $f$",
+    "gamma": r"length over radius, $\gamma$",
+    "max_pressure": "Hertz pressure, $p_0$",
+}
+SCALES = {
+    "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
+    "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
+}
+"""Units that figures show: from which size on, how much it is in SI, and its name."""
+MOST_NUMBERS = 80
+"""Cells up to which each is labelled with its value."""
+
+
+def _readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
+    """Values and label of a parameter or of a quantity; stresses in MPa or GPa, lengths in um or mm."""
+    text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
+    unit = str(array.attrs.get("units", "1"))
+    if unit in ("", "1"):
+        return array, text
+    if unit in SCALES:
+        largest = float(abs(array).max())
+        factor, unit = next(entry[1:] for entry in SCALES[unit] if largest >= entry[0])
+        array = array / factor
+    return array, f"{text} ({unit})"
+
+
+def _one_value(array: xr.DataArray, kept: tuple[str, str], selection: Mapping[str, Any]) -> xr.DataArray:
+    """Array over the two kept dimensions; others at the value selected."""
+    for name in selection:
+        if name not in array.dims or name in kept:
+            others = [str(dim) for dim in array.dims if dim not in kept]
+            raise InvalidInputError("selection", name, f"of {', '.join(others) or 'nothing'}")
+    for dim in [str(dim) for dim in array.dims if dim not in kept]:
+        if dim in selection:
+            labels = array.indexes[dim]
+            found = [number for number, label in enumerate(labels) if label == selection[dim]]
+            if not found:
+                raise InvalidInputError(f"selection[{dim!r}]", selection[dim], f"one of {', '.join(map(str, labels))}")
+            array = array.isel({dim: found[0]})
+        elif array.sizes[dim] == 1:
+            array = array.isel({dim: 0})
+        else:
+            raise InvalidInputError(
+                "selection", dict(selection), f"with a value of {dim}", f"it has {array.sizes[dim]} in this study"
+            )
+    return array
+
+
+def plot_study_map(
+    dataset: xr.Dataset,
+    variable: str | xr.DataArray,
+    x: str = "e_over_a",
+    y: str = "friction",
+    ax: Axes | None = None,
+    *,
+    selection: Mapping[str, Any] | None = None,
+    levels: Any = None,
+    label: str | None = None,
+) -> Axes:
+    """Heat map of a quantity over two swept parameters, with contour lines or numbers.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        From :func:`contactstudy.open_study`.
+    variable : str or DataArray
+        A scalar of each case, such as `peak_von_mises`; or an array computed from the study, such as an edge factor.
+    x, y : str
+        Swept parameters across and up.
+    ax : Axes, optional
+        Where to draw; default: a new figure.
+    selection : mapping, optional
+        Values of the other swept parameters.
+    levels : sequence of float, optional
+        Contour lines to draw and label; default: every cell is labelled with its value if there are not too many.
+    label : str, optional
+        For the colour bar; default: the quantity's name and unit.
+
+    Returns
+    -------
+    Axes
+        Steps of the parameters are drawn evenly, whatever their values; cells without a value are hatched.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no such quantity or parameter, another swept parameter has no value selected, or nothing is left
+        to draw.
+
+    Examples
+    --------
+    >>> values = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], dims=("e_over_a", "friction"),
+    ...                       coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
+    >>> plot_study_map(xr.Dataset({"end_pressure": values}), "end_pressure").get_ylabel()
+    'friction, $f$'
+    """
+    if isinstance(variable, xr.DataArray):
+        array, name = variable, str(variable.name or "value")
+    else:
+        require(dataset, variable)
+        array, name = dataset[variable], variable
+    for parameter in (x, y):
+        if parameter not in array.dims or parameter not in array.indexes or x == y:
+            raise InvalidInputError("x, y", (x, y), f"two swept parameters among {', '.join(map(str, array.dims))}")
+    values = _one_value(array, (x, y), selection or {}).transpose(y, x)
+    values, meaning = _readable(values, name)
+    numbers = np.asarray(values.values, dtype=np.float64)
+    if not np.isfinite(numbers).any():
+        raise InvalidInputError("dataset", name, "with a number for at least one of these cases")
+    ax = new_axes(ax, (6.4, 4.4))
+    ax.set_facecolor("0.85")
+    across, up = np.arange(values.sizes[x]), np.arange(values.sizes[y])
+    masked = np.ma.masked_invalid(numbers)
+    drawn = ax.pcolormesh(across, up, masked, cmap=COLORS, shading="nearest")
+    for row, column in np.argwhere(~np.isfinite(numbers)):
+        ax.fill_between(
+            [column - 0.5, column + 0.5], row - 0.5, row + 0.5, facecolor="none", edgecolor="0.6", hatch="//"
+        )
+    if levels is not None:
+        from matplotlib.patheffects import AbstractPathEffect, withStroke
+
+        # White on a dark rim is seen on every colour.
+        rim: list[AbstractPathEffect] = [withStroke(linewidth=2.5, foreground="0.2")]
+        lines = ax.contour(across, up, masked, levels=levels, colors="white", linewidths=1.2)
+        lines.set_path_effects(rim)
+        for number in ax.clabel(lines, fmt="%g", fontsize="small"):
+            number.set_path_effects(rim)
+    elif numbers.size <= MOST_NUMBERS:
+        middle = 0.5 * (np.nanmin(numbers) + np.nanmax(numbers))
+        for row, column in np.argwhere(np.isfinite(numbers)):
+            value = numbers[row, column]
+            color = "white" if value < middle else "black"
+            ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
+    for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
+        numeric = np.issubdtype(values[parameter].dtype, np.number)
+        steps, text = _readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
+        axis.set_ticks(ticks, [f"{step:g}" if numeric else str(step) for step in steps.values])
+        axis.set_label_text(text)
+    ax.figure.colorbar(drawn, ax=ax, label=label or meaning)
+    return ax

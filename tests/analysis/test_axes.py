@@ -1,0 +1,55 @@
+"""Dimensions and positions of single results and of studies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import InvalidInputError, analysis
+from contactstudy.analysis.axes import axis_dimensions, cell_size
+from tests.study.fakes import FAILS
+
+
+@pytest.mark.parametrize("dims", [("y", "z"), ("x", "x_field")])
+def test_axis_without_a_single_dimension(dims: tuple[str, str]) -> None:
+    with pytest.raises(InvalidInputError, match="exactly one dimension along x"):
+        analysis.dimension_along(xr.DataArray(np.zeros((1, 1)), dims=dims), "x")
+
+
+def test_positions_of_a_study_belong_to_each_case(opened: xr.Dataset) -> None:
+    place = analysis.positions(opened["pressure"], "x")
+    assert place.dims == ("e_over_a", "friction", "body", "x_index")
+    assert axis_dimensions(opened["von_mises"]) == {"x": "x_field", "y": "y_field", "z": "z"}
+
+
+def test_positions_must_be_there() -> None:
+    with pytest.raises(InvalidInputError, match="with the positions x"):
+        analysis.positions(xr.DataArray([1.0], dims="x_index"), "x")
+
+
+def test_cell_size_of_padded_cells() -> None:
+    array = xr.DataArray([0.0, 0.0, np.nan], dims="x_index", coords={"x": ("x_index", [1.0, 1.5, np.nan])})
+    assert float(cell_size(array, "x")) == 0.5
+
+
+def test_one_case_of_a_study_looks_like_a_result(opened: xr.Dataset) -> None:
+    selected = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
+    one = analysis.single_case(selected)
+    assert one["pressure"].dims == ("x", "y")
+    assert one["von_mises"].dims == ("x_field", "y_field", "z")
+    assert np.isfinite(one["pressure"]).all()
+    assert np.array_equal(one["x"], selected["x"].values[np.isfinite(selected["x"])])
+    assert analysis.single_case(one).identical(one)
+
+
+def test_a_case_that_failed_has_no_fields(opened: xr.Dataset) -> None:
+    one = analysis.single_case(opened.sel(e_over_a=1, friction=FAILS, body="finite-length"))
+    assert "pressure" not in one
+
+
+def test_more_than_one_case_is_refused(opened: xr.Dataset) -> None:
+    with pytest.raises(InvalidInputError, match=r"single case; select one"):
+        analysis.single_case(opened)
+    with pytest.raises(InvalidInputError, match="Dataset"):
+        analysis.single_case(opened["pressure"])  # type: ignore[arg-type]

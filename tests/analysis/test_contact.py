@@ -1,0 +1,148 @@
+"""Contact results: small tables by hand, Hertz' line contact, a study case by case, the real solver."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, analysis
+from contactstudy.analysis.border import contact_borders
+from tests.study.fakes import FAILS
+
+
+def contact(values: list[list[float]]) -> xr.Dataset:
+    array = np.asarray(values, dtype=float)
+    cells = {"x": 0.5 + np.arange(array.shape[0]), "y": np.arange(array.shape[1]) - (array.shape[1] - 1) / 2}
+    return xr.Dataset({"pressure": (("x", "y"), array)}, coords=cells)
+
+
+VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
+
+
+def test_along_the_axis_by_hand() -> None:
+    profiles = analysis.axial_profiles(contact(VALUES))
+    assert profiles["axial_pressure"].values.tolist() == [0, 1, 3, 4, 0]
+    assert profiles["line_load"].values.tolist() == [0, 1, 7, 5, 0]
+    assert profiles["half_width"].values.tolist() == [0, 0.5, 1.5, 1, 0]
+    assert profiles["contact_middle"].values[1:4].tolist() == [0, 0, 0.5]
+
+
+def test_scalars_by_hand() -> None:
+    result = analysis.contact_results(contact(VALUES))
+    expected = {
+        "peak_pressure": 4,
+        "peak_pressure_x": 3.5,
+        "peak_pressure_y": 0,
+        "edge_pressure_first": 1,
+        "edge_pressure_last": 4,
+        "contact_area": 6,
+        "contact_length": 3,
+        "contact_width": 3,
+        "resultant": 13,
+        "load_position": (1.5 + 7 * 2.5 + 5 * 3.5) / 13,
+        "moment": 1 * -1 + 5 * 1,
+    }
+    assert {name: float(value) for name, value in result.items()} == pytest.approx(expected)
+    assert all(value.attrs["units"] for value in result.values())
+
+
+@settings(deadline=None)
+@given(about=st.floats(-10, 10))
+def test_moment_about_another_point_differs_by_the_load_times_the_distance(about: float) -> None:
+    result = analysis.contact_results(contact(VALUES), about)
+    assert float(result["moment"]) == pytest.approx(4 - 13 * (about - 2.5), abs=1e-9)
+
+
+def test_length_that_carries_nothing(strip_result) -> None:
+    result = strip_result()
+    assert float(analysis.contact_results(result)["contact_length_loss"]) == pytest.approx(0, abs=1e-12)
+    lifted = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
+    assert float(analysis.contact_results(lifted)["contact_length_loss"]) == pytest.approx(1)
+    assert float(analysis.contact_results(lifted)["moment"]) > 0
+
+
+@settings(deadline=None)
+@given(half_width=st.floats(0.4, 1.9), middle=st.floats(-0.3, 0.3))
+def test_border_of_a_hertz_pressure_is_found_between_the_cells(half_width: float, middle: float) -> None:
+    place = (np.arange(80) - 39.5) / 16
+    pressure = np.sqrt(np.maximum(1 - ((place - middle) / half_width) ** 2, 0))
+    first, last = contact_borders(pressure, place)
+    # What the outermost cell holds is not used: the border may lie anywhere in it.
+    assert float(last) == pytest.approx(middle + half_width, abs=1e-6)
+    assert float(first) == pytest.approx(middle - half_width, abs=1e-6)
+
+
+def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
+    result = strip_result(half_width=2e-4, max_pressure=1e9)
+    profiles = analysis.axial_profiles(result)
+    loaded = profiles.isel(x=np.flatnonzero(profiles["line_load"] > 0))
+    assert loaded["half_width"].values == pytest.approx(2e-4, rel=1e-9)
+    assert loaded["line_load"].values == pytest.approx(np.pi / 2 * 2e-4 * 1e9, rel=2e-3)
+    assert profiles["unloaded_gap"].isnull().values.tolist() == (profiles["line_load"] == 0).values.tolist()
+
+
+def test_real_contact(solved: xr.Dataset) -> None:
+    result = analysis.contact_results(solved)
+    assert float(result["resultant"]) == pytest.approx(float(solved["load"]), rel=1e-9)
+    assert abs(float(result["moment"])) < 1e-6 * float(solved["load"]) * 0.5e-3
+    middle = analysis.half_width(solved)["half_width"].sel(x=0.26e-3, method="nearest")
+    line_load = analysis.line_load(solved).sel(x=0.26e-3, method="nearest")
+    # Hertz' half-width of the load that the section carries, to a fraction of a cell (a/12).
+    hertz = float(solved["hertz_half_width"]) * np.sqrt(
+        float(line_load) / (np.pi / 2 * float(solved["hertz_half_width"] * solved["hertz_max_pressure"]))
+    )
+    assert float(middle) == pytest.approx(hertz, rel=0.03)
+
+
+def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
+    together = analysis.contact_results(opened)
+    assert together["contact_area"].dims == ("e_over_a", "friction", "body")
+    for e in (0.0, 1.0, 2.0):
+        chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+        alone = analysis.contact_results(analysis.single_case(opened.sel(chosen)))
+        for name, value in alone.items():
+            assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), name
+        profile = analysis.half_width(opened.sel(chosen))["half_width"].dropna("x_index")
+        single = analysis.half_width(analysis.single_case(opened.sel(chosen)))["half_width"]
+        assert np.array_equal(profile.values, single.values)
+    assert together.sel(friction=FAILS).to_array().isnull().all()
+
+
+def test_surfaces_of_a_study_stay_lazy(opened: xr.Dataset) -> None:
+    assert analysis.axial_profiles(opened)["half_width"].chunks is not None
+
+
+def test_nothing_in_contact() -> None:
+    result = analysis.contact_results(contact([[0, 0], [0, 0]]))
+    assert float(result["contact_length"]) == float(result["contact_area"]) == 0
+    assert np.isnan(float(result["edge_pressure_first"]))
+    assert np.isnan(float(result["load_position"]))
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        analysis.axial_pressure,
+        analysis.line_load,
+        analysis.half_width,
+        analysis.axial_profiles,
+        analysis.edge_pressure,
+        analysis.contact_results,
+        analysis.unloaded_gap,
+        analysis.slices,
+        analysis.edge_factors,
+    ],
+)
+def test_missing_variables_are_named(function) -> None:
+    with pytest.raises(InvalidInputError, match=r"(pressure|initial_gap) is missing"):
+        function(xr.Dataset({"load": 1.0}))
+    with pytest.raises(InvalidInputError, match="Dataset"):
+        function(np.zeros(3))
+
+
+def test_moment_about_something_that_is_no_number() -> None:
+    with pytest.raises(InvalidInputError, match="about"):
+        analysis.contact_results(contact(VALUES), np.nan)

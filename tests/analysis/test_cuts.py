@@ -1,0 +1,92 @@
+"""Lines and planes through a body: interpolation is exact for linear fields, and never leaves the result."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, analysis
+
+unit = st.floats(0, 1)
+point = st.tuples(unit, unit, unit)
+
+
+def linear() -> xr.Dataset:
+    x, y, z = (xr.DataArray(np.linspace(0, 1, n), dims=axis) for axis, n in zip("xyz", (3, 4, 5), strict=True))
+    field = (2 * x - 3 * y + z).assign_coords(x=x, y=y, z=z).assign_attrs(units="Pa")
+    surface = (x + y).assign_coords(x=x, y=y)
+    return xr.Dataset({"von_mises": field, "pressure": surface})
+
+
+@settings(deadline=None)
+@given(start=point, end=point)
+def test_a_linear_field_is_followed_exactly(start, end) -> None:
+    if np.allclose(start, end):
+        return
+    cut = analysis.along_line(linear(), start, end, points=7)
+    assert cut["von_mises"].values == pytest.approx((2 * cut["x"] - 3 * cut["y"] + cut["z"]).values, abs=1e-12)
+    assert float(cut["distance"][-1]) == pytest.approx(np.linalg.norm(np.subtract(end, start)))
+    assert cut["von_mises"].attrs["units"] == "Pa"
+
+
+@pytest.mark.parametrize(("axis", "others"), [("x", ("y", "z")), ("y", ("x", "z")), ("z", ("x", "y"))])
+def test_planes(axis: str, others: tuple[str, str]) -> None:
+    plane = analysis.in_plane(linear(), **{axis: 0.3})
+    assert plane["von_mises"].dims == others
+    expected = 2 * plane["x"] - 3 * plane["y"] + plane["z"]
+    assert np.allclose(plane["von_mises"], expected.transpose(*others))
+    assert float(plane[axis]) == 0.3
+
+
+def test_stresses_before_surfaces_and_surfaces_if_named() -> None:
+    assert list(analysis.along_line(linear(), (0, 0, 0), (1, 1, 1))) == ["von_mises"]
+    line = analysis.along_line(linear(), (0, 0), (1, 1), variables="pressure", points=3)
+    assert line["pressure"].values == pytest.approx([0, 1, 2])
+    assert "z" not in line.coords
+    assert list(analysis.in_plane(linear().drop_vars("von_mises"), y=0.5)) == ["pressure"]
+
+
+def test_positions_in_any_order() -> None:
+    shuffled = linear().isel(z=[3, 0, 4, 1, 2])
+    assert np.allclose(analysis.in_plane(shuffled, z=0.3)["von_mises"], analysis.in_plane(linear(), z=0.3)["von_mises"])
+
+
+def test_result_of_one_plane_only(opened: xr.Dataset) -> None:
+    one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
+    plane = analysis.in_plane(one, y=0.0, variables=["von_mises", "tresca"])
+    assert plane["tresca"].dims == ("x_field", "z")
+    with pytest.raises(InvalidInputError, match="this plane only"):
+        analysis.in_plane(one, y=1e-5)
+
+
+def test_depth_of_the_largest_stress_on_a_line(solved: xr.Dataset) -> None:
+    a = float(solved["hertz_half_width"])
+    line = analysis.along_line(solved, (0.26e-3, 0, 0), (0.26e-3, 0, 1.5 * a), points=7)
+    at = solved["von_mises"].sel(x_field=0.26e-3, y_field=0, z=0.75 * a, method="nearest")
+    assert float(line["von_mises"][3]) == pytest.approx(float(at), rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda ds: analysis.along_line(ds, (0, 0, 0), (0, 0, 2)), "z = .*: must be within the result, 0 to 1 m"),
+        (lambda ds: analysis.along_line(ds, (0, 0), (1, 1)), r"\(x, y, z\) for fields below"),
+        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1)), "both"),
+        (lambda ds: analysis.along_line(ds, (0, 0, 0), (0, 0, 0)), "different from start"),
+        (lambda ds: analysis.along_line(ds, (0, 0, np.nan), (0, 0, 0)), "start"),
+        (lambda ds: analysis.along_line(ds, "here", (0, 0, 0)), "start"),
+        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1, 1), points=1), "points"),
+        (lambda ds: analysis.along_line(ds, (0, 0, 0), (1, 1, 1), variables=["von_mises", "pressure"]), "same points"),
+        (lambda ds: analysis.in_plane(ds), "exactly one"),
+        (lambda ds: analysis.in_plane(ds, x=0.1, y=0.1), "exactly one"),
+        (lambda ds: analysis.in_plane(ds, z=0.1, variables="pressure"), "fields along z"),
+        (lambda ds: analysis.in_plane(ds, y="middle"), "y = 'middle'"),
+        (lambda ds: analysis.in_plane(ds, y=-0.5), "y = -0.5"),
+    ],
+)
+def test_bad_input(call, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        call(linear())

@@ -1,0 +1,67 @@
+"""Edge factors, by hand and on studies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import InvalidInputError, analysis
+
+
+def along(values: list[float]) -> xr.Dataset:
+    cells = {"x": np.arange(len(values)) + 0.5, "y": [0.0]}
+    return xr.Dataset({"pressure": (("x", "y"), np.array(values)[:, None]), "hertz_half_width": 1.0}, coords=cells)
+
+
+def test_ends_over_the_middle() -> None:
+    result = analysis.edge_factors(along([0, 5, 6, 2, 2, 2, 2, 3, 4, 0]))
+    assert float(result["end_over_middle_first"]) == 3.0
+    assert float(result["end_over_middle_last"]) == 2.0
+
+
+def test_reach() -> None:
+    result = analysis.edge_factors(along([5, 6, 8, 2, 2, 2, 2]), reach=2.0)
+    assert float(result["end_over_middle_first"]) == 4.0
+
+
+def test_over_another_model() -> None:
+    result = analysis.edge_factors(along([2, 1, 1, 1, 3]), reference=along([4, 2, 2, 2, 4]))
+    values = [float(result[f"over_reference_{name}"]) for name in ("first", "last", "middle", "peak")]
+    assert values == [0.5, 0.75, 0.5, 0.75]
+
+
+def test_uniform_contact_has_no_edge(strip_result) -> None:
+    result = strip_result(2e-4, 1e9)
+    for variable in ("pressure", "von_mises", "tresca", "orthogonal_shear_amplitude"):
+        factors = analysis.edge_factors(result, variable, result)
+        assert np.allclose(factors.to_array(), 1.0), variable
+
+
+def test_a_field_near_one_end_only_has_no_middle(strip_result) -> None:
+    result = strip_result().isel(x_field=slice(0, 3))
+    factors = analysis.edge_factors(result, "von_mises", result)
+    assert np.isnan(float(factors["end_over_middle_first"]))
+    assert float(factors["over_reference_first"]) == 1.0
+
+
+def test_fillet_makes_an_edge(solved: xr.Dataset) -> None:
+    factors = analysis.edge_factors(solved)
+    assert float(factors["end_over_middle_first"]) > 1.2
+    assert float(factors["end_over_middle_first"]) == pytest.approx(float(factors["end_over_middle_last"]), rel=1e-6)
+
+
+def test_a_study_against_its_half_space(opened: xr.Dataset) -> None:
+    half_space = opened.sel(body="half-space").isel(e_over_a=0)
+    factors = analysis.edge_factors(opened.sel(body="finite-length"), "pressure", half_space)
+    assert factors["over_reference_peak"].sizes == {"e_over_a": 3, "friction": 2}
+    assert float(factors["over_reference_first"].sel(e_over_a=0, friction=0.1)) == pytest.approx(1.0, rel=0.05)
+
+
+def test_bad_input(strip_result) -> None:
+    with pytest.raises(InvalidInputError, match="reach"):
+        analysis.edge_factors(strip_result(), reach=0.0)
+    with pytest.raises(InvalidInputError, match="not negative"):
+        analysis.edge_factors(strip_result(), "hydrostatic")
+    with pytest.raises(InvalidInputError, match="pressure is missing"):
+        analysis.edge_factors(strip_result(), reference=xr.Dataset())

@@ -1,0 +1,76 @@
+"""Largest values and their places: Hertz' line contact, whose extremes textbooks list, and studies."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import InvalidInputError, analysis
+from tests.study.fakes import FAILS
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "depth"),
+    # Johnson, Contact Mechanics, section 4.2; von Mises for Poisson's ratio 0.3.
+    [
+        ("von_mises", 0.5575, 0.70),
+        ("tresca", 0.600, 0.786),
+        ("maximum_shear", 0.300, 0.786),
+        ("orthogonal_shear_amplitude", 0.25, 0.5),
+        ("orthogonal_shear_range", 0.5, 0.5),
+    ],
+)
+def test_line_contact(strip_result, variable: str, value: float, depth: float) -> None:
+    scale, peak_pressure = 2e-4, 1e9
+    result = analysis.section_peak(strip_result(scale, peak_pressure), variable)
+    assert result[f"peak_{variable}"].dims == ("x_field",)
+    assert result[f"peak_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
+    assert result[f"peak_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
+    overall = analysis.peak(strip_result(scale, peak_pressure), variable)
+    assert float(overall[f"peak_{variable}"]) == float(result[f"peak_{variable}"].max())
+    assert overall[f"peak_{variable}_x"].attrs["units"] == "m"
+
+
+def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
+    result = analysis.peak(strip_result(friction=0.2))
+    # A traction along +y on the body; table of the line contact with f = 0.2.
+    assert float(result["peak_von_mises"]) == pytest.approx(0.590, abs=2e-3)
+    assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
+
+
+def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
+    for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
+        together = analysis.peak(opened, variable)
+        for e in (0.0, 1.0, 2.0):
+            chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+            alone = analysis.peak(analysis.single_case(opened.sel(chosen)), variable)
+            for name, value in alone.items():
+                assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-6), name
+        assert together.sel(friction=FAILS).to_array().isnull().all()
+
+
+def test_sections_of_a_study_are_as_its_cases(opened: xr.Dataset) -> None:
+    together = analysis.section_peak(opened)
+    chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
+    alone = analysis.section_peak(analysis.single_case(opened.sel(chosen)))
+    assert np.array_equal(together["peak_von_mises"].sel(chosen), alone["peak_von_mises"])
+
+
+def test_unknown_measure_is_named_with_its_neighbour(strip_result) -> None:
+    with pytest.raises(InvalidInputError, match="did you mean 'von_mises'"):
+        analysis.peak(strip_result(), "von_misses")
+    with pytest.raises(InvalidInputError, match="tau_xy is missing"):
+        analysis.peak(strip_result().drop_vars("tau_xy"), "tresca")
+
+
+def test_variable_that_is_no_field(strip_result) -> None:
+    with pytest.raises(InvalidInputError, match="field along"):
+        analysis.peak(strip_result(), "hertz_half_width")
+    with pytest.raises(InvalidInputError, match="field along x"):
+        analysis.section_peak(xr.Dataset({"a": ("z", [1.0])}, {"z": [0.0]}), "a")
+
+
+def test_measure_of_nothing_but_padding(opened: xr.Dataset) -> None:
+    with pytest.raises(InvalidInputError, match="nan everywhere"):
+        analysis.measure(opened.sel(friction=FAILS), "tresca")

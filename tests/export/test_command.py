@@ -1,0 +1,93 @@
+"""``contactstudy export`` of fields."""
+
+from __future__ import annotations
+
+import pandas as pd
+import pytest
+import xarray as xr
+
+from contactstudy.cli import main
+from tests.export.vtk_reader import read
+from tests.study.conftest import small_study
+from tests.study.fakes import solve_fake
+
+
+@pytest.fixture(scope="module")
+def case(solved: xr.Dataset, tmp_path_factory):
+    path = tmp_path_factory.mktemp("file") / "case.nc"
+    solved.to_netcdf(path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    from contactstudy.study import run_study
+
+    path = tmp_path_factory.mktemp("study")
+    run_study(small_study(), path, workers=0, solver=solve_fake, progress=False)
+    return path
+
+
+def command(*arguments: object) -> int:
+    return main(["export", *map(str, arguments)])
+
+
+def test_file_to_vtk_beside_it(case, capsys) -> None:
+    assert command(case, "--format", "vtk", "--variable", "von_mises", "--variable", "tresca") == 0
+    assert "case.vtr" in capsys.readouterr().out
+    assert list(read(case.with_suffix(".vtr"))[1]) == ["von_mises", "tresca"]
+
+
+def test_line_of_a_file(case, tmp_path, capsys) -> None:
+    line = "--line=2.6e-4,-5e-5,0:2.6e-4,5e-5,0"
+    assert command(case, line, "--points", 5, "--variable", "tau_yz", "--out", tmp_path / "line.csv") == 0
+    assert len(pd.read_csv(tmp_path / "line.csv")) == 5
+    capsys.readouterr()
+    assert command(case, "--variable", "pressure", "--out", "-") == 0
+    assert capsys.readouterr().out.startswith("x [m],y [m],pressure [Pa]\n")
+
+
+def test_case_of_a_study(folder, capsys) -> None:
+    assert command(folder, "--select", "e_over_a=1", "--select", "friction=0.10", "--variable", "pressure") == 0
+    table = pd.read_csv(folder / "export.csv")
+    assert float(table["pressure [Pa]"].max()) > 1e9
+    assert command(folder, "--format", "vtk", "--select", "e_over_a=1", "--select", "friction=0.1") == 0
+    assert (folder / "export.vtr").exists()
+
+
+def test_summaries_are_what_a_folder_gives_alone(folder) -> None:
+    assert command(folder) == 0
+    assert len(pd.read_csv(folder / "summary.csv")) == 4
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (["--variable", "presure"], "did you mean 'pressure'"),
+        ([], "name some of them"),
+        (["--line", "0,0,0"], "X,Y,Z:X,Y,Z"),
+        (["--line", "0,0,0:1,0,0"], "within the result"),
+        (["--format", "vtk", "--line", "0,0,0:1,0,0"], "left out for VTK"),
+        (["--format", "vtk", "--out", "-"], "ends with .vtr"),
+        (["--select", "friction=0.1"], "swept parameter: none"),
+    ],
+)
+def test_wrong_use_of_a_file(case, capsys, options: list[str], message: str) -> None:
+    assert command(case, *options) == 2
+    assert message in capsys.readouterr().err
+
+
+def test_wrong_use_of_a_study(folder, tmp_path, capsys) -> None:
+    for options, message in (
+        (["--variable", "pressure"], "single case"),
+        (["--select", "friction=0.3"], "one of 0.0, 0.1"),
+        (["--select", "friction=high"], "one of 0.0, 0.1"),
+        (["--select", "speed=3"], "swept parameter: e_over_a, friction"),
+        (["--select", "friction"], "NAME=VALUE"),
+    ):
+        assert command(folder, *options) == 2
+        assert message in capsys.readouterr().err
+    (tmp_path / "text.nc").write_text("not netCDF")
+    for path in (tmp_path / "nothing.nc", tmp_path / "text.nc"):
+        assert command(path) == 2
+        assert "netCDF file or a study's folder" in capsys.readouterr().err

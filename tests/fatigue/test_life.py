@@ -1,0 +1,125 @@
+"""Relative life: integrals by hand, and the load exponents that bearing standards use."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError, analysis, fatigue
+from contactstudy.fatigue import LifeExponents
+
+
+def orthogonal(result: xr.Dataset) -> xr.DataArray:
+    return analysis.measure(result, "orthogonal_shear_amplitude")
+
+
+def test_line_contact(strip_result) -> None:
+    result = fatigue.lundberg_palmgren(strip_result())
+    # Less than a quarter by what lies between the positions along y.
+    assert result["shear_amplitude"].values == pytest.approx(0.25, abs=3e-4)
+    assert result["shear_depth"].values == pytest.approx(0.5, abs=1e-2)
+    expected = 0.25 ** (31 / 3) * 0.5 ** (1 - 7 / 3) * 4.0
+    assert float(result["risk"]) == pytest.approx(expected, rel=2e-2)
+
+
+@settings(deadline=None, max_examples=10)
+@given(factor=st.floats(0.5, 3.0))
+def test_life_falls_with_the_fourth_power_of_the_load(strip_result, factor: float) -> None:
+    """The load of a line contact goes with the square of p0, and a with p0; the roller's length stays."""
+    lives = []
+    for model in (fatigue.lundberg_palmgren, lambda result: fatigue.ioannides_harris(orthogonal(result))):
+        base, loaded = strip_result(), strip_result(factor, factor)
+        loaded = loaded.assign_coords(x_field=base["x_field"])
+        lives.append(float(fatigue.relative_life(model(loaded), model(base))))
+    assert lives == pytest.approx([factor**-8] * 2, rel=1e-6)
+
+
+def test_point_contact_exponents_give_the_cube(strip_result) -> None:
+    """A point contact grows along x as well: its risk goes with p0**10, its life with p0**-9, its load with p0**3."""
+    exponents = LifeExponents(weibull=10 / 9)
+    risks = [fatigue.lundberg_palmgren(one, exponents) for one in (strip_result(2.0, 2.0), strip_result())]
+    assert float(fatigue.relative_life(*risks, exponents)) == pytest.approx(2.0**-9)
+
+
+def test_a_fatigue_limit_makes_life_grow_without_end(strip_result) -> None:
+    base = fatigue.ioannides_harris(orthogonal(strip_result()), limit=0.2)
+    lower = strip_result(0.9, 0.9)
+    lives = []
+    for limit in (0.0, 0.1, 0.2):
+        risks = [fatigue.ioannides_harris(orthogonal(one), limit) for one in (lower, strip_result())]
+        lives.append(float(fatigue.relative_life(*risks)))
+    assert lives[0] < lives[1] < lives[2]
+    none = fatigue.ioannides_harris(orthogonal(lower), limit=0.3)
+    assert float(none["risk"]) == 0.0
+    assert np.isnan(none["mean_depth"]).all()
+    assert float(fatigue.relative_life(none, base)) == np.inf
+    assert np.isnan(float(fatigue.relative_life(none, none)))
+
+
+def test_integral_by_hand() -> None:
+    """(1 - z) on 0..1 with c = 1: volume 1/2, mean depth 1/3; over a length of 2."""
+    z = np.linspace(0, 1, 401)
+    stress = xr.DataArray(np.tile(1 - z, (3, 1)), dims=("x", "z"), coords={"x": [0.0, 0.5, 2.0], "z": z})
+    result = fatigue.ioannides_harris(stress, exponents=LifeExponents(stress=1, depth=2, weibull=1))
+    assert result["mean_depth"].values == pytest.approx(1 / 3, rel=1e-4)
+    assert float(result["risk"]) == pytest.approx(2 * 0.5 * 9, rel=1e-4)
+
+
+def test_double_length_costs_the_weibull_share(strip_result) -> None:
+    base = strip_result()
+    longer = base.assign_coords(x_field=2 * base["x_field"])
+    lives = fatigue.relative_life(fatigue.lundberg_palmgren(longer), fatigue.lundberg_palmgren(base))
+    assert float(lives) == pytest.approx(2 ** (-8 / 9))
+
+
+def test_free_ends_of_a_real_contact(solved: xr.Dataset) -> None:
+    result = fatigue.lundberg_palmgren(solved)
+    assert np.allclose(result["risk_density"], result["risk_density"][::-1], rtol=1e-3)
+    # The ends of the roller, over a fillet, are at greater risk than its middle.
+    middle = result["risk_density"].sel(x_field=0.26e-3, method="nearest")
+    assert float(result["risk_density"].max()) > 1.5 * float(middle)
+
+
+def test_other_measures_of_the_passage(solved: xr.Dataset) -> None:
+    largest = solved["von_mises"].max("y_field")
+    assert float(fatigue.ioannides_harris(largest, 600e6)["risk"]) > 0
+
+
+def test_units_follow_the_exponents(strip_result) -> None:
+    result = fatigue.lundberg_palmgren(strip_result(), LifeExponents(stress=9, depth=2, weibull=1))
+    assert result["risk"].attrs["units"] == "Pa**9 m**0"
+    assert result["risk_density"].attrs["units"] == "Pa**9 m**-1"
+
+
+def test_bad_input(strip_result) -> None:
+    result, amplitude = strip_result(), orthogonal(strip_result())
+    for call, message in (
+        (lambda: fatigue.lundberg_palmgren(result.drop_vars("tau_yz")), "tau_yz is missing"),
+        (lambda: fatigue.lundberg_palmgren(result.isel(z=[0, 1])), "three or more depths"),
+        (lambda: fatigue.lundberg_palmgren(result.isel(x_field=[0])), "two or more positions"),
+        (lambda: fatigue.lundberg_palmgren(result, 3), "LifeExponents"),
+        (lambda: fatigue.lundberg_palmgren(result.isel(x_field=[1, 0])), "increasing"),
+        (lambda: fatigue.ioannides_harris(result), "DataArray"),
+        (lambda: fatigue.ioannides_harris(result["von_mises"]), "without the rolling direction"),
+        (lambda: fatigue.ioannides_harris(amplitude, -1.0), "limit"),
+        (lambda: fatigue.relative_life(result, result), "with risk"),
+        (lambda: LifeExponents(stress=0), "stress"),
+    ):
+        with pytest.raises(InvalidInputError, match=message):
+            call()
+    other = fatigue.lundberg_palmgren(result, LifeExponents(stress=9))
+    with pytest.raises(InvalidInputError, match="same exponents"):
+        fatigue.relative_life(other, fatigue.lundberg_palmgren(result))
+
+
+def test_friction_on_the_surface_is_not_for_lundberg_and_palmgren() -> None:
+    """Heavy friction: the largest orthogonal shear is on the surface itself, and no depth divides."""
+    passage = xr.DataArray([0.0, -1.0, 0.0], dims="y", coords={"y": [-1.0, 0.0, 1.0]})
+    depth = xr.DataArray([1.0, 0.5, 0.1], dims="z", coords={"z": [0.0, 0.5, 1.0]})
+    shear = (passage * depth).expand_dims(x=[0.0, 1.0])
+    with pytest.raises(InvalidInputError, match="Ioannides and Harris"):
+        fatigue.lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
+    assert float(fatigue.ioannides_harris(orthogonal(xr.Dataset({"tau_yz": shear})))["risk"]) > 0

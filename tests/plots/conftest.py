@@ -1,0 +1,56 @@
+"""Cases to draw, and figures closed after each test."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import matplotlib
+import numpy as np
+import pytest
+import xarray as xr
+
+matplotlib.use("Agg")
+
+
+@pytest.fixture
+def one(opened: xr.Dataset) -> xr.Dataset:
+    """One case of a study: padded positions, stresses in one plane."""
+    return opened.sel(e_over_a=1, friction=0.1, body="finite-length")
+
+
+@pytest.fixture(autouse=True)
+def _closed_figures() -> Iterator[None]:
+    from matplotlib import pyplot
+
+    yield
+    pyplot.close("all")
+
+
+@pytest.fixture
+def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
+    """Check that everything drawn lies within the figure, and that every axis says what it shows."""
+
+    def check(figure: matplotlib.figure.Figure) -> None:
+        figure.canvas.draw()
+        frame = figure.bbox
+        for ax in figure.get_axes():
+            if not ax.get_visible():
+                continue
+            box = ax.get_tightbbox()
+            assert box.x0 >= frame.x0 - 1
+            assert box.y0 >= frame.y0 - 1
+            assert box.x1 <= frame.x1 + 1
+            assert box.y1 <= frame.y1 + 1
+
+    return check
+
+
+@pytest.fixture
+def inks() -> Callable[[matplotlib.figure.Figure], np.ndarray]:
+    """Draw a figure and return its pixels (row, column, rgb)."""
+
+    def draw(figure: matplotlib.figure.Figure) -> np.ndarray:
+        figure.canvas.draw()
+        return np.asarray(figure.canvas.buffer_rgba())[..., :3]
+
+    return draw

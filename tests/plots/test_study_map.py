@@ -1,0 +1,56 @@
+import numpy as np
+import pytest
+from matplotlib import pyplot
+
+from contactstudy import analysis, plots
+from contactstudy.errors import InvalidInputError
+from tests.study.fakes import FAILS
+
+
+def test_map_of_a_study(opened, assert_nothing_clipped):
+    ax = plots.plot_study_map(opened, "peak_von_mises", selection={"body": "finite-length"})
+    assert [tick.get_text() for tick in ax.get_xticklabels()] == ["0", "1", "2"]
+    assert [tick.get_text() for tick in ax.get_yticklabels()] == ["0.1", f"{FAILS:g}"]
+    # Three cases are labelled with their values in MPa, three that failed are hatched.
+    expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e6
+    assert [text.get_text() for text in ax.texts] == [f"{value:.3g}" for value in expected]
+    assert sum(bool(collection.get_hatch()) for collection in ax.collections) == 3
+    assert_nothing_clipped(ax.figure)
+
+
+def test_unit_is_readable(opened):
+    ax = plots.plot_study_map(opened, "contact_length", selection={"body": "finite-length"})
+    assert any("(mm)" in other.get_ylabel() for other in ax.figure.get_axes())
+
+
+def test_names_of_bodies_along_an_axis(opened):
+    ax = plots.plot_study_map(opened, "end_pressure", y="body", selection={"friction": 0.1})
+    assert [tick.get_text() for tick in ax.get_yticklabels()] == ["finite-length", "half-space"]
+
+
+def test_contours_of_a_computed_quantity(opened):
+    factors = analysis.edge_factors(opened.sel(body="finite-length"))["end_over_middle_first"]
+    values = factors.copy(data=np.arange(6.0).reshape(3, 2))
+    ax = plots.plot_study_map(opened, values, levels=[1.5, 2.5], label="factor")
+    assert not [text for text in ax.texts if text.get_text() not in ("1.5", "2.5")]
+    assert ax.figure.get_axes()[1].get_ylabel() == "factor"
+
+
+def test_given_axes_are_used(opened):
+    ax = pyplot.figure().add_subplot()
+    assert plots.plot_study_map(opened, "end_pressure", ax=ax, selection={"body": "finite-length"}) is ax
+
+
+def test_bad_input(opened):
+    one_body = opened.sel(body="finite-length")
+    for call, message in (
+        (lambda: plots.plot_study_map(opened, "end_pressure"), "with a value of body"),
+        (lambda: plots.plot_study_map(one_body, "end_pressures"), "end_pressures is missing"),
+        (lambda: plots.plot_study_map(one_body, "end_pressure", y="gamma"), "two swept parameters"),
+        (lambda: plots.plot_study_map(one_body, "end_pressure", y="e_over_a"), "two swept parameters"),
+        (lambda: plots.plot_study_map(opened, "end_pressure", selection={"body": "moon"}), "one of finite-length"),
+        (lambda: plots.plot_study_map(one_body, "end_pressure", selection={"speed": 1}), "of nothing"),
+        (lambda: plots.plot_study_map(one_body.isel(friction=[1]), "end_pressure"), "at least one"),
+    ):
+        with pytest.raises(InvalidInputError, match=message):
+            call()
