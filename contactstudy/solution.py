@@ -6,10 +6,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.discretisation import discretisation_error
 from contactstudy.case import Case, choose_grid
 from contactstudy.contact import solve_contact
 from contactstudy.dataset import describe
-from contactstudy.discretisation import discretisation_error
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
@@ -57,7 +57,7 @@ def solve(
         the gap, interpolated linearly to the cell centres, which they must cover.
     error_estimate : bool
         Whether to solve the contact on half the cells as well, and state peak and end pressure and half-width with
-        their discretisation error, see `contactstudy.discretisation.discretisation_error`.
+        their discretisation error, see `contactstudy.analysis.discretisation.discretisation_error`.
     tolerance : float
         Tolerance of the contact, see `solve_contact`.
 

@@ -15,6 +15,8 @@ from contactstudy.analysis.contact import (
     unloaded_gap,
 )
 from contactstudy.analysis.cuts import along_line, in_plane
+from contactstudy.analysis.discretisation import discretisation_error
+from contactstudy.analysis.edges import contact_edges
 from contactstudy.analysis.factors import edge_factors
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.analysis.peaks import peak, section_peak
@@ -26,8 +28,10 @@ __all__ = [
     "along_line",
     "axial_pressure",
     "axial_profiles",
+    "contact_edges",
     "contact_results",
     "dimension_along",
+    "discretisation_error",
     "edge_factors",
     "edge_pressure",
     "half_width",

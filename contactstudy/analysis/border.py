@@ -1,4 +1,9 @@
-"""Border of the contact across y, resolved finer than the cells."""
+"""Border of the contact across y, resolved to a few hundredths of a cell.
+
+Across the smooth edge of a contact the pressure goes to zero like the square root of the distance, and the gap opens
+like its power 3/2 (K. L. Johnson, Contact Mechanics, 1985, section 5.1). So the squared pressure inside and the gap to
+the power 2/3 outside are straight lines through the edge: quadratics are fitted to them, and their zeros averaged.
+"""
 
 from __future__ import annotations
 
@@ -7,40 +12,19 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from contactstudy.checks import FloatArray, IntArray
+
 Array = npt.NDArray[Any]
 
-FEWEST_CELLS = 8
-"""Cells across the contact below which its border is taken from whole cells."""
+# The cells on either side of an edge carry the error of a cell that the edge cuts; the fits begin behind them.
+SKIPPED = 2
+FITTED = 5
+
+EDGE_UNCERTAINTY = 0.04
+"""Largest error of an edge in cells, as seen at Hertz' contacts whose edge lies anywhere in a cell."""
 
 
-def _edge(pressure: Array, place: Array, outermost: Array, inwards: int) -> Array:
-    """Where the square of the pressure vanishes beyond the outermost loaded cell.
-
-    At the border of a smooth contact the pressure goes to zero like a square root, so its square is smooth there (and
-    a parabola in Hertz' contact): it is continued from three cells inside, without the outermost one, that the border
-    cuts.
-    """
-
-    def at(values: Array, step: int) -> Array:
-        column = np.clip(outermost + inwards * step, 0, values.shape[-1] - 1)
-        return np.asarray(np.take_along_axis(values, column[..., None], axis=-1)[..., 0])
-
-    y1, y2, y3 = (at(place, step) for step in (1, 2, 3))
-    f1, f2, f3 = (at(pressure, step) ** 2 for step in (1, 2, 3))
-    slope = (f2 - f1) / (y2 - y1)
-    curvature = ((f3 - f2) / (y3 - y2) - slope) / (y3 - y1)
-    root = y1 - f1 / slope
-    for _ in range(4):
-        value = f1 + (root - y1) * (slope + curvature * (root - y2))
-        root = root - value / (slope + curvature * (2 * root - y1 - y2))
-    # The border lies in the outermost loaded cell or, where the next one carries too little to count, the next.
-    border, step = at(place, 0), np.abs(y2 - y1)
-    inside, outside = border + 0.5 * inwards * step, border - inwards * step
-    root = np.where(np.isfinite(root), root, border - 0.5 * inwards * step)
-    return np.asarray(np.clip(root, np.minimum(inside, outside), np.maximum(inside, outside)))
-
-
-def contact_borders(pressure: Array, place: Array) -> tuple[Array, Array]:
+def contact_borders(pressure: Array, place: Array, gap: Array | None = None) -> tuple[Array, Array]:
     """First and last y in contact, for each row of cells.
 
     Parameters
@@ -48,12 +32,16 @@ def contact_borders(pressure: Array, place: Array) -> tuple[Array, Array]:
     pressure : array (..., y)
         Pressure on cells; NaN beyond a padded row.
     place : array (..., y)
-        Cell centres, increasing.
+        Cell centres, increasing and uniform; NaN beyond a padded row.
+    gap : array (..., y), optional
+        Gap after deformation, infinite where there is nothing to touch: a second opinion on the border, and the only
+        one where the contact is narrow.
 
     Returns
     -------
     tuple of array (...)
-        In the unit of `place`; NaN where nothing is loaded.
+        In the unit of `place`; NaN where nothing is loaded. Where fewer than 7 cells are fit for it, the border is
+        the face of the last loaded cell.
 
     Examples
     --------
@@ -62,18 +50,45 @@ def contact_borders(pressure: Array, place: Array) -> tuple[Array, Array]:
     >>> bool(abs(last - 1) < 1e-12), bool(abs(first + 1) < 1e-12)
     (True, True)
     """
-    place = np.broadcast_to(place, pressure.shape)
-    loaded = pressure > 0
-    count = loaded.sum(axis=-1)
-    first = loaded.argmax(axis=-1)
-    last = pressure.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
-    filled = np.where(loaded, pressure, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        low, high = _edge(filled, place, first, 1), _edge(filled, place, last, -1)
-    cells = max(place.shape[-1] - 1, 1)
-    half = 0.5 * (np.nanmax(place, axis=-1) - np.nanmin(place, axis=-1)) / cells if place.size else 0.0
-    whole = [np.take_along_axis(place, at[..., None], axis=-1)[..., 0] for at in (first, last)]
-    fine = count >= FEWEST_CELLS
-    borders = np.where(fine, low, whole[0] - half), np.where(fine, high, whole[1] + half)
-    empty = count == 0
-    return np.where(empty, np.nan, borders[0]), np.where(empty, np.nan, borders[1])
+    shape, cells = pressure.shape[:-1], pressure.shape[-1]
+    rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cells)
+    opening = np.full_like(rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cells)
+    centres = np.broadcast_to(place, pressure.shape).reshape(-1, cells)
+    begin, count = np.nanmin(centres, axis=1, initial=np.inf), np.isfinite(centres).sum(axis=1)
+    step = (np.nanmax(centres, axis=1, initial=-np.inf) - begin) / np.maximum(count - 1, 1)
+    first = cells - 1 - _last_edges(rows[:, ::-1], opening[:, ::-1])
+    last = _last_edges(rows, opening)
+    return (begin + step * first).reshape(shape), (begin + step * last).reshape(shape)
+
+
+def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
+    """Last edge along each row, in cells from the centre of the first; NaN where open."""
+    edges = np.full(pressure.shape[0], np.nan)
+    rows = np.flatnonzero(pressure.any(axis=1))
+    last = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
+    begin_inside, begin_outside = last - SKIPPED, last + 1 + SKIPPED
+    squared = _samples(pressure[rows], begin_inside, -1) ** 2
+    opening = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
+    face = last + 0.5
+    estimates = np.stack([begin_inside + _distance_to_zero(squared), begin_outside - _distance_to_zero(opening)])
+    valid = np.abs(estimates - face) <= 1
+    total = np.where(valid, estimates, 0.0).sum(axis=0)
+    edges[rows] = np.where(valid.any(axis=0), total / np.maximum(valid.sum(axis=0), 1), face)
+    return edges
+
+
+def _samples(values: FloatArray, begin: IntArray, direction: int) -> FloatArray:
+    """Values of each row from the cell `begin` on: array (row, `FITTED`); NaN unless all are positive numbers."""
+    cells = begin[:, None] + direction * np.arange(FITTED)
+    inside = (cells >= 0) & (cells < values.shape[1])
+    found = np.take_along_axis(values, np.where(inside, cells, 0), axis=1)
+    good = (inside & (found > 0) & np.isfinite(found)).all(axis=1)
+    return np.where(good[:, None], found, np.nan)
+
+
+def _distance_to_zero(values: FloatArray) -> FloatArray:
+    """How many steps before the first of growing values (of each row) the quadratic fitted to them is zero, or NaN."""
+    to_quadratic = np.linalg.pinv(np.vander(np.arange(float(FITTED)), 3))
+    bend, slope, level = to_quadratic @ values.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(2 * level / (slope + np.sqrt(slope**2 - 4 * bend * level)))

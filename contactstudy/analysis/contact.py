@@ -84,8 +84,8 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Half-width of the contact at each position along the roller's axis, and the y of its middle.
 
-    The border is resolved finer than the cells, see :mod:`contactstudy.analysis.border`; where fewer than 8 cells
-    are loaded across y it is that of whole cells. A contact solved on cells is itself wrong by a fraction of a cell.
+    The border is resolved finer than the cells, see :mod:`contactstudy.analysis.border`, from the pressure alone;
+    where few cells are loaded across y it is that of whole cells.
 
     Parameters
     ----------

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Case, FiniteLengthSpace, Grid, InvalidInputError, Material, Roller, profiles, solve
-from contactstudy.discretisation import discretisation_error, extrapolated
+from contactstudy.analysis.discretisation import discretisation_error, extrapolated
 
 STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 65e-6

@@ -6,9 +6,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.border import EDGE_UNCERTAINTY
+from contactstudy.analysis.edges import contact_edges
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import describe
-from contactstudy.edges import EDGE_UNCERTAINTY, contact_edges
 from contactstudy.errors import InvalidInputError
 from contactstudy.labelled import labelled_cells
 

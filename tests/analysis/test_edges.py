@@ -5,7 +5,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, solve_contact
-from contactstudy.edges import EDGE_UNCERTAINTY, contact_edges
+from contactstudy.analysis import contact_edges
+from contactstudy.analysis.border import EDGE_UNCERTAINTY
 
 UNIT = HalfSpace(material=Material(0.75, 0.5))
 
