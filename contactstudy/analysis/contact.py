@@ -70,11 +70,8 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
 
 def _spacing(place: Array) -> Array:
     """Distance of uniform positions along the last axis, which may be padded with NaN; 0 for a single one."""
-    return np.asarray((np.nanmax(place, axis=-1) - np.nanmin(place, axis=-1)) / np.maximum(_count(place) - 1, 1))
-
-
-def _count(place: Array) -> Array:
-    return np.asarray(np.isfinite(place).sum(axis=-1))
+    steps = np.maximum(np.isfinite(place).sum(axis=-1) - 1, 1)
+    return np.asarray((np.nanmax(place, axis=-1) - np.nanmin(place, axis=-1)) / steps)
 
 
 def _range(place: Array, chosen: Array) -> tuple[Array, Array]:
@@ -88,6 +85,7 @@ def _scalars(pressure: Array, facing: Array, x: Array, y: Array) -> tuple[Array,
     NaN for a case that has no pressure.
     """
     known = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
+    # A case that failed has no positions either.
     place_x, place_y = (np.where(known[..., None], place, 0.0) for place in (x, y))
     dx, dy = _spacing(place_x), _spacing(place_y)
     loaded = np.asarray(pressure > 0)
