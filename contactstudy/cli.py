@@ -149,8 +149,7 @@ def _report(report: RunReport, *, figure: bool) -> int:
         size = sum(path.stat().st_size for path in files)
         print(f"wrote {len(files)} netCDF files, {_bytes(size)}, in {_shown(files[0].parent)}")
         print(f"wrote {_shown(_write_summary(report.folder))}")
-        drawn = _draw(report.folder) if figure else None
-        if drawn is not None:
+        for drawn in _draw(report.folder) if figure else []:
             print(f"wrote {_shown(drawn)}")
     stale = [entry for entry in report.entries if entry.status == "stale"]
     if stale:
@@ -183,29 +182,26 @@ def _write_summary(folder: Path, target: Path | None = None) -> Path:
     return path
 
 
-def _draw(folder: Path) -> Path | None:
-    """Draw the study's figure if it is a study of e/a, without a screen."""
-    from contactstudy.study import open_study
-
-    dataset = open_study(folder)
-    if "e_over_a" not in dataset.dims or "pressure" not in dataset:
-        return None
+def _draw(folder: Path) -> list[Path]:
+    """Draw the figures that suit the study, without a screen."""
     import matplotlib
-
-    from contactstudy.plots import plot_edge_effect
 
     previous = matplotlib.get_backend()
     matplotlib.use("Agg")
     try:
-        figure = plot_edge_effect(dataset)
-        path = folder / "edge_effect.png"
-        figure.savefig(path, dpi=150)
         from matplotlib import pyplot
 
-        pyplot.close(figure)
+        from contactstudy.plots import study_figures
+        from contactstudy.study import open_study
+
+        paths = []
+        for name, figure in study_figures(open_study(folder)).items():
+            paths.append(folder / f"{name}.png")
+            figure.savefig(paths[-1], dpi=150)
+            pyplot.close(figure)
+        return paths
     finally:
         matplotlib.use(previous)
-    return path
 
 
 def _list(plan: Plan, entries: list[Entry], *, everything: bool) -> None:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, dimension_along, positions, require
-from contactstudy.analysis.contact import axial_pressure
+from contactstudy.analysis.axial import axial_pressure
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.errors import InvalidInputError

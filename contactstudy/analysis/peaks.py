@@ -13,40 +13,48 @@ from contactstudy.analysis.measures import measure
 from contactstudy.dataset import COORDINATES, VARIABLES
 from contactstudy.errors import InvalidInputError
 
+Array = npt.NDArray[Any]
 
-def _largest(values: npt.NDArray[Any], axes: int) -> tuple[npt.NDArray[Any], npt.NDArray[np.int64]]:
-    """Largest number over the last `axes` axes and its flat place; NaN and 0 where there is no number."""
-    flat = values.reshape(*values.shape[: values.ndim - axes], -1)
+
+def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
+    """Largest number over the last axes, one for each of `places`, and where it is; NaN where there is no number."""
+    lead, shape = values.shape[: values.ndim - len(places)], values.shape[values.ndim - len(places) :]
+    flat = values.reshape(*lead, -1)
     at = np.where(np.isnan(flat), -np.inf, flat).argmax(axis=-1)
-    return np.take_along_axis(flat, at[..., None], axis=-1)[..., 0], at
+    largest = np.take_along_axis(flat, at[..., None], axis=-1)[..., 0]
+    found = []
+    for place, index in zip(places, np.unravel_index(at, shape), strict=True):
+        everywhere = np.broadcast_to(place, (*lead, place.shape[-1]))
+        position = np.take_along_axis(everywhere, np.asarray(index)[..., None], axis=-1)[..., 0]
+        found.append(np.where(np.isnan(largest), np.nan, position))
+    return (largest, *found)
 
 
 def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     """Largest value of `array` over some axes, with the positions along them."""
-    dims = list(over.values())
-    value, flat = xr.apply_ufunc(
+    found = xr.apply_ufunc(
         _largest,
         array,
-        input_core_dims=[dims],
-        output_core_dims=[[], []],
-        kwargs={"axes": len(dims)},
+        *(positions(array, axis) for axis in over),
+        input_core_dims=[list(over.values()), *([dim] for dim in over.values())],
+        output_core_dims=[[]] * (1 + len(over)),
         dask="parallelized",
         dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.int64],
+        output_dtypes=[np.float64] * (1 + len(over)),
     )
-    value, flat = value.compute(), flat.compute()
-    meaning = str(array.attrs.get("long_name", name))
     known = VARIABLES.get(name)
-    value.attrs = {"units": array.attrs.get("units", known.units if known else ""), "long_name": f"largest {meaning}"}
-    result = {f"peak_{name}": value}
-    shape = tuple(array.sizes[dim] for dim in dims)
-    indices = np.unravel_index(flat.values, shape)
-    for (axis, dim), index in zip(over.items(), indices, strict=True):
-        chosen = flat.copy(data=index).reset_coords(drop=True)
-        place = positions(array, axis).isel({dim: chosen}).where(value.notnull())
-        place.attrs = {"units": COORDINATES[axis].units, "long_name": f"{axis} of the largest {meaning}"}
-        result[f"peak_{name}_{axis}"] = place.reset_coords(drop=True)
-    return xr.Dataset(result)
+    meaning = str(array.attrs.get("long_name", name))
+    result = xr.Dataset(
+        {f"peak_{name}": found[0]} | dict(zip((f"peak_{name}_{axis}" for axis in over), found[1:], strict=True))
+    )
+    result[f"peak_{name}"].attrs = {
+        "units": array.attrs.get("units", known.units if known else ""),
+        "long_name": f"largest {meaning}",
+    }
+    for axis in over:
+        attributes = {"units": COORDINATES[axis].units, "long_name": f"{axis} of the largest {meaning}"}
+        result[f"peak_{name}_{axis}"].attrs = attributes
+    return result.compute()
 
 
 def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:

@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import dimension_along, require, single_case
-from contactstudy.analysis.contact import axial_profiles
+from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.dataset import STRESSES
 from contactstudy.errors import InvalidInputError

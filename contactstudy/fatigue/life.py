@@ -71,12 +71,12 @@ class LifeExponents:
         return f"Pa**{self.stress:.6g} m**{lengths - self.depth:.6g}"
 
 
-def _ordered(stress: xr.DataArray) -> tuple[xr.DataArray, str, xr.DataArray]:
-    """Stress with the depth last, that dimension, and its positions, NaN where padded."""
+def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
+    """Dimension and positions along the depth, NaN where padded."""
     dim = dimension_along(stress, "z")
     if stress.sizes[dim] < 3:
         raise InvalidInputError("stress", dict(stress.sizes), "given at three or more depths")
-    return stress, dim, positions(stress, "z")
+    return dim, positions(stress, "z")
 
 
 def _crest(stress: Array, depth: Array) -> tuple[Array, Array]:
@@ -164,7 +164,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     """
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
-    amplitude, dim, depths = _ordered(measure(stress, "orthogonal_shear_amplitude"))
+    amplitude = measure(stress, "orthogonal_shear_amplitude")
+    dim, depths = _depths(amplitude)
     crest, at = xr.apply_ufunc(
         _crest,
         amplitude,
@@ -244,10 +245,10 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
         raise InvalidInputError(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
-    ordered, dim, depths = _ordered(stress)
+    dim, depths = _depths(stress)
     density, mean = xr.apply_ufunc(
         _risk_of_sections,
-        ordered,
+        stress,
         depths,
         input_core_dims=[[dim], [dim]],
         output_core_dims=[[], []],

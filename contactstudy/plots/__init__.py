@@ -9,6 +9,7 @@ from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.pressure import plot_axial_pressure, plot_pressure_map
 from contactstudy.plots.profile import plot_profile, plot_profiles
 from contactstudy.plots.stress import plot_end_face, plot_stress_plane
+from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
 
@@ -23,6 +24,8 @@ __all__ = [
     "plot_profile",
     "plot_profiles",
     "plot_stress_plane",
+    "plot_study_lines",
     "plot_study_map",
     "save",
+    "study_figures",
 ]

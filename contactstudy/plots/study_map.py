@@ -30,7 +30,7 @@ MOST_NUMBERS = 80
 """Cells up to which each is labelled with its value."""
 
 
-def _readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
+def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or of a quantity; stresses in MPa or GPa, lengths in um or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
     unit = str(array.attrs.get("units", "1"))
@@ -43,7 +43,7 @@ def _readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     return array, f"{text} ({unit})"
 
 
-def _one_value(array: xr.DataArray, kept: tuple[str, str], selection: Mapping[str, Any]) -> xr.DataArray:
+def one_value(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
     """Array over the two kept dimensions; others at the value selected."""
     for name in selection:
         if name not in array.dims or name in kept:
@@ -121,8 +121,8 @@ def plot_study_map(
     for parameter in (x, y):
         if parameter not in array.dims or parameter not in array.indexes or x == y:
             raise InvalidInputError("x, y", (x, y), f"two swept parameters among {', '.join(map(str, array.dims))}")
-    values = _one_value(array, (x, y), selection or {}).transpose(y, x)
-    values, meaning = _readable(values, name)
+    values = one_value(array, (x, y), selection or {}).transpose(y, x)
+    values, meaning = readable(values, name)
     numbers = np.asarray(values.values, dtype=np.float64)
     if not np.isfinite(numbers).any():
         raise InvalidInputError("dataset", name, "with a number for at least one of these cases")
@@ -152,7 +152,7 @@ def plot_study_map(
             ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
     for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
         numeric = np.issubdtype(values[parameter].dtype, np.number)
-        steps, text = _readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
+        steps, text = readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
         axis.set_ticks(ticks, [f"{step:g}" if numeric else str(step) for step in steps.values])
         axis.set_label_text(text)
     ax.figure.colorbar(drawn, ax=ax, label=label or meaning)

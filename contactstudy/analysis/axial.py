@@ -1,0 +1,191 @@
+"""The contact along the roller's axis: pressure, load, half-width and unloaded gap."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis.axes import cell_size, dimension_along, positions, require
+from contactstudy.analysis.border import contact_borders
+
+
+def labelled(array: xr.DataArray, name: str, units: str, long_name: str) -> xr.DataArray:
+    """Return `array` with a name, a unit and a meaning."""
+    named = array.rename(name)
+    named.attrs = {"units": units, "long_name": long_name}
+    return named
+
+
+def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
+    """Largest pressure across y at each position along the roller's axis.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure`, of any dimensions with one along y.
+
+    Returns
+    -------
+    DataArray
+        Pa, without the dimension along y.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no pressure.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[0.0, 1.0], [2.0, 0.0]], dims=("x", "y"))
+    >>> axial_pressure(xr.Dataset({"pressure": pressure})).values.tolist()
+    [1.0, 2.0]
+    """
+    require(dataset, "pressure")
+    pressure = dataset["pressure"]
+    largest = pressure.max(dimension_along(pressure, "y"))
+    return labelled(largest, "axial_pressure", "Pa", "largest pressure across y")
+
+
+def line_load(dataset: xr.Dataset) -> xr.DataArray:
+    """Load per length at each position along the roller's axis, the integral of the pressure across y.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure` on uniform cells.
+
+    Returns
+    -------
+    DataArray
+        N/m, without the dimension along y.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no pressure.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.0, 1.0], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray([[0.0, 1.0], [2.0, 3.0]], dims=("x", "y"), coords=cells)
+    >>> line_load(xr.Dataset({"pressure": pressure})).values.tolist()
+    [1.0, 5.0]
+    """
+    require(dataset, "pressure")
+    pressure = dataset["pressure"]
+    load = pressure.sum(dimension_along(pressure, "y"), min_count=1) * cell_size(pressure, "y")
+    return labelled(load, "line_load", "N/m", "load per length along the axis")
+
+
+def half_width(dataset: xr.Dataset) -> xr.Dataset:
+    """Half-width of the contact at each position along the roller's axis, and the y of its middle.
+
+    The border is resolved finer than the cells, see :mod:`contactstudy.analysis.border`, from the pressure alone;
+    where few cells are loaded across y it is that of whole cells.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure` on uniform cells.
+
+    Returns
+    -------
+    Dataset
+        Along x: `half_width` (m; 0 where nothing is loaded) and `contact_middle` (m, the y of the contact's middle;
+        NaN where nothing is loaded).
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no pressure.
+
+    Examples
+    --------
+    >>> y = xr.DataArray((np.arange(40) - 19.5) / 16, dims="y")
+    >>> pressure = np.sqrt(np.maximum(1 - y**2, 0)).expand_dims(x=[0.0]).assign_coords(y=y)
+    >>> half_width(xr.Dataset({"pressure": pressure})).half_width.values.round(9).tolist()
+    [1.0]
+    """
+    require(dataset, "pressure")
+    pressure = dataset["pressure"]
+    along = dimension_along(pressure, "y")
+    low, high = xr.apply_ufunc(
+        contact_borders,
+        pressure,
+        positions(pressure, "y"),
+        input_core_dims=[[along], [along]],
+        output_core_dims=[[], []],
+        dask="parallelized",
+        dask_gufunc_kwargs={"allow_rechunk": True},
+        output_dtypes=[np.float64, np.float64],
+    )
+    exists = pressure.notnull().any(along)
+    width = (0.5 * (high - low)).fillna(0.0).where(exists)
+    return xr.Dataset(
+        {
+            "half_width": labelled(width, "half_width", "m", "half-width of the contact"),
+            "contact_middle": labelled(0.5 * (low + high), "contact_middle", "m", "y of the contact's middle"),
+        }
+    )
+
+
+def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
+    """Gap before deformation at each position along the roller's axis: the profile's drop and the tilt.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `initial_gap`.
+
+    Returns
+    -------
+    DataArray
+        The smallest across y, m; NaN beyond the roller's ends.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no initial gap.
+
+    Examples
+    --------
+    >>> gap = xr.DataArray([[1e-6, 0.0], [np.inf, np.inf]], dims=("x", "y"))
+    >>> unloaded_gap(xr.Dataset({"initial_gap": gap})).values.tolist()
+    [0.0, nan]
+    """
+    require(dataset, "initial_gap")
+    gap = dataset["initial_gap"]
+    smallest = gap.min(dimension_along(gap, "y"))
+    smallest = smallest.where(np.isfinite(smallest))
+    return labelled(smallest, "unloaded_gap", "m", "smallest gap across y before deformation")
+
+
+def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:
+    """Everything about the contact along the roller's axis, in one Dataset.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure`, and `initial_gap` for the unloaded gap.
+
+    Returns
+    -------
+    Dataset
+        Along x: `axial_pressure` (Pa), `line_load` (N/m), `half_width` and `contact_middle` (m), `unloaded_gap` (m).
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no pressure.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.0, 1.0], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray([[0.0, 0.0], [2.0, 3.0]], dims=("x", "y"), coords=cells)
+    >>> sorted(axial_profiles(xr.Dataset({"pressure": pressure})).data_vars)
+    ['axial_pressure', 'contact_middle', 'half_width', 'line_load']
+    """
+    result = half_width(dataset).assign(axial_pressure=axial_pressure(dataset), line_load=line_load(dataset))
+    if "initial_gap" in dataset:
+        result = result.assign(unloaded_gap=unloaded_gap(dataset))
+    return result
