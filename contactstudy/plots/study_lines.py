@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -17,10 +18,11 @@ from contactstudy.plots.style import line_styles
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-QUANTITIES = ("peak_pressure", "end_pressure", "peak_von_mises")
+QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 """What is drawn if nothing else is asked for."""
 
 MARKERS = "osD^vPX*"
+WIDEST_LABEL = 34
 
 
 def plot_study_lines(
@@ -99,8 +101,8 @@ def plot_study_lines(
         if not numeric:
             ax.set_xticks(places, [str(value) for value in across.values], rotation=20)
         ax.set_xlabel(label)
-        ax.set_ylabel(meaning)
-        ax.set_ylim(bottom=0.0)
+        ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
+        ax.set_ylim(0.0, 1.08 * max(float(values.max()), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
     if hue is not None:
         title = readable(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
