@@ -12,7 +12,7 @@ nbclient = pytest.importorskip("nbclient")
 
 FOLDER = Path(__file__).resolve().parents[1] / "studies" / "notebooks"
 NOTEBOOKS = sorted(FOLDER.glob("*.ipynb"))
-SLOW = {"verification"}  # more than 20 s
+SLOW = {"designing_a_profile", "verification"}  # more than 20 s
 SECONDS = 300
 """Longest time that one cell may take."""
 

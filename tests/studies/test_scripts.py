@@ -1,0 +1,82 @@
+"""The scripts beside the study files, on problems small enough for a test."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from dataclasses import replace
+from pathlib import Path
+from types import ModuleType
+
+import matplotlib
+import numpy as np
+import pytest
+
+from contactstudy import HalfSpace, Study, open_study, run_study
+
+STUDIES = Path(__file__).resolve().parents[2] / "studies"
+
+
+def script(name: str) -> ModuleType:
+    specification = importlib.util.spec_from_file_location(name, STUDIES / f"{name}.py")
+    assert specification is not None
+    assert specification.loader is not None
+    module = importlib.util.module_from_spec(specification)
+    # Dataclasses look their module up while they are made.
+    sys.modules[name] = module
+    specification.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(autouse=True)
+def without_screen():
+    previous = matplotlib.get_backend()
+    matplotlib.use("Agg")
+    yield
+    matplotlib.pyplot.close("all")
+    matplotlib.use(previous)
+
+
+def test_every_study_file_can_be_planned():
+    for path in sorted(STUDIES.glob("*.toml")):
+        plan = Study.from_toml(path).plan()
+        assert plan.cases, path.name
+        assert len(plan.skipped) < len(plan.cases) / 2, path.name
+
+
+def test_regime_map_compares_every_model_with_the_exact_ends(tmp_path):
+    module = script("regime_map")
+    study = Study.from_toml(STUDIES / "regime_map.toml")
+    small = replace(
+        study,
+        base={**study.base, "cells_x": 4, "cells_y": 8, "field_z_over_a": [0.5]},
+        sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.3]},
+        zip=[study.zip[0], {"gamma": [0.078, 0.104], "field_x_over_a": [[0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0]]}],
+    )
+    run_study(small, tmp_path, workers=0)
+    error = module.errors(module.peaks(open_study(tmp_path)))
+    assert np.isfinite(error["peak_pressure"]).all()
+    assert float(error["peak_pressure"].sel(approximation="half-space", e_over_a=0.0).min()) > 10
+    assert float(np.abs(error["peak_pressure"].sel(approximation="mirrored load")).max()) < 10
+    assert module.draw(error).axes
+
+
+def test_best_profile_needs_less_crown_between_free_ends():
+    module = script("best_profile")
+    task = module.Task(length=0.8e-3, pressures=(1.5e9,), tilts=(1e-4,), cells=(96, 24))
+    found = module.designs(task)
+    crowned = found["delta"].sel(design=["half-space", "free ends"]).values
+    assert task.bounds[0] < crowned[1] < crowned[0] < task.bounds[1]
+    assert float(found["worst_pressure"].sel(design="free ends")) <= float(
+        found["worst_pressure"].sel(design="half-space")
+    )
+    assert task.worst(float(crowned[1]), HalfSpace(material=task.material)) > 1.2
+    assert "| free ends |" in module.table(found)
+
+
+def test_real_roller_is_softer_at_its_own_ends():
+    module = script("real_roller")
+    profile = module.PROFILES["Lundberg"]
+    rigid, both = (module.measured(profile, model, 2) for model in module.MODELS[1:])
+    assert both["edge_pressure"] < rigid["edge_pressure"]
+    assert 0.5 < both["peak_von_mises"] < 0.7
