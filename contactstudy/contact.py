@@ -19,7 +19,7 @@ from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowErr
 from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
 from contactstudy.pair import PairOperator
-from contactstudy.surface import surface_operator
+from contactstudy.surface import REFERENCE_LENGTHS, surface_operator
 from contactstudy.threads import one_blas_thread
 
 # A gap counts as open when it exceeds this many tolerances of the displacement's variation.
@@ -94,7 +94,7 @@ def solve_contact(
     -----
     A finite-length body has no absolute displacement, nor an absolute tilt: an eccentric load tilts it by an amount
     that grows like the logarithm of the distance from which it is seen. `approach` and `tilt` are those of the shape
-    relative to the body's top at the distance along y stated in the attributes of `displacement_z`.
+    relative to the top at the distance along y stated in their attribute `reference`.
 
     Examples
     --------
@@ -180,7 +180,22 @@ def solve_contact(
     if np.isfinite(own.reference):
         result["displacement_z"].attrs["reference_distance"] = own.reference
         result["displacement_z"].attrs["reference"] = "zero at |y| = reference_distance (m) on the top"
+    reference = _reference(body, counterbody)
+    for name in ("approach", "tilt"):
+        result[name].attrs["reference"] = reference
     return describe(result, "contact of a shape with an elastic body")
+
+
+def _reference(body: Body, counterbody: Counterbody | None) -> str:
+    """Say what approach and tilt are relative to."""
+    tops = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
+    places = [
+        f"{name} at |y| = {REFERENCE_LENGTHS * (each.extent[1] - each.extent[0]):g} m"
+        if np.isfinite(each.extent).all()
+        else f"{name} far away"
+        for name, each in tops.items()
+    ]
+    return f"undeformed top: {', '.join(places)}"
 
 
 def _prescribed(

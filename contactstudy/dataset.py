@@ -58,14 +58,14 @@ VARIABLES = {
     "hertz_half_width": Variable(SCALAR, "m", "half-width of the Hertz line contact of the same load per length"),
     "hertz_max_pressure": Variable(SCALAR, "Pa", "peak pressure of the Hertz line contact of the same load per length"),
     "load": Variable(SCALAR, "N", "normal load"),
-    "approach": Variable(SCALAR, "m", "approach of roller and body, relative to the reference of displacement_z"),
-    "tilt": Variable(SCALAR, "rad", "tilt that balances the load, positive if larger x is pressed deeper"),
+    "approach": Variable(SCALAR, "m", "approach of roller and body, relative to its reference"),
+    "tilt": Variable(SCALAR, "rad", "tilt relative to its reference, positive if larger x is pressed deeper"),
     "load_position": Variable(SCALAR, "m", "position x of the pressure's resultant"),
     "iterations": Variable(SCALAR, "1", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "resultant of the pressure minus the load, over the load"),
     "penetration_error": Variable(
-        SCALAR, "1", "largest gap or overlap under pressure, over the approach scale a**2/(2R)"
+        SCALAR, "1", "largest gap or overlap under pressure, over the variation of the displacement"
     ),
     "open_pressure_error": Variable(SCALAR, "1", "largest pressure where the gap is open, over the peak pressure"),
     "end_traction_residual": Variable(SCALAR, "1", "largest traction left on the free ends, over the peak pressure"),

@@ -16,7 +16,11 @@ from contactstudy.checks import FloatArray
 from contactstudy.dataset import COORDINATES
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
+from contactstudy.labelled import labelled_cells
 from contactstudy.measurements import check_positions, check_values, read_columns, unit_in_metres
+
+# Cells nearer to each other than this part of their size are the same.
+SAME_PLACE = 1e-3
 
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
@@ -141,20 +145,63 @@ def read_height_map(path: str | Path, grid: Grid, *, remove_slope: bool = False)
     check_positions("x", x)
     check_positions("y", y)
     check_values("height", heights, ("x", x), ("y", y))
+    _check_cover(x, y, grid)
+    if remove_slope:
+        heights = heights - _plane(x, y, heights)
+    return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
+
+
+def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
+    """Heights of a map at the cell centres of a grid, metres.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells; their centres must lie within the map.
+    heights : DataArray (x, y)
+        Height map on a uniform grid of its own, metres. Between its points heights are interpolated linearly along
+        both axes; on cells that are the grid's they stay as they are.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not such a map, holds values that are not numbers, or does not cover the grid.
+
+    Examples
+    --------
+    >>> cells = Grid((0.0, 4.0), (0.0, 2.0), 4, 2)
+    >>> slope = _height_map(cells, np.repeat(cells.x[:, None], 2, axis=1), "made up")
+    >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
+    [[1.5], [2.5]]
+    """
+    values, own = labelled_cells("roughness", heights)
+    if own.shape == grid.shape and all(
+        np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
+        for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))
+    ):
+        return values
+    _check_cover(own.x, own.y, grid, "roughness, grid")
+    return _interpolated(own.x, own.y, values, grid)
+
+
+def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, called: str = "grid") -> None:
+    """Raise unless the measured positions cover the cell centres."""
     for name, measured, centres in (("x", x, grid.x), ("y", y, grid.y)):
         slack = 1e-9 * (measured[-1] - measured[0])
         if centres[0] < measured[0] - slack or centres[-1] > measured[-1] + slack:
             raise InvalidInputError(
-                f"grid.{name}",
+                f"{called}.{name}",
                 f"{centres[0]:g} to {centres[-1]:g} m",
                 f"within the measured {measured[0]:g} to {measured[-1]:g} m",
             )
-    if remove_slope:
-        heights = heights - _plane(x, y, heights)
+
+
+def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
+    """Heights at the cell centres, bilinear between the positions."""
     from scipy.interpolate import RegularGridInterpolator
 
     inside = np.clip(grid.x, x[0], x[-1])[:, None], np.clip(grid.y, y[0], y[-1])[None, :]
-    return _height_map(grid, RegularGridInterpolator((x, y), heights)(inside), f"measured, {path.name}")
+    return np.asarray(RegularGridInterpolator((x, y), heights)(inside))
 
 
 def _plane(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:

@@ -10,10 +10,11 @@ from contactstudy.analysis.discretisation import discretisation_error
 from contactstudy.case import Case, choose_grid
 from contactstudy.contact import solve_contact
 from contactstudy.dataset import describe
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
 from contactstudy.positions import Positions
+from contactstudy.roughness import heights_on
 from contactstudy.stress import end_traction_residual, stress_field
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
@@ -21,6 +22,9 @@ DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 
 
 LEAST_CELLS = 8
 """Along each axis, for an estimate of the discretisation error."""
+
+LEAST_CONTACT = 1.0
+"""Length over the Hertz half-width that a tilted roller has to touch on, if it touches at its end."""
 
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 RESIDUAL_POSITIONS = (0.0, 0.5, 0.9, 1.1)
@@ -54,7 +58,7 @@ def solve(
         Whether to compute the stresses at all.
     roughness : DataArray (x, y), optional
         Heights of the surfaces in metres, positive out of them, as from `contactstudy.roughness`: they are taken off
-        the gap, interpolated linearly to the cell centres, which they must cover.
+        the gap, interpolated linearly to the cell centres, which they must cover, if they lie on other cells.
     error_estimate : bool
         Whether to solve the contact on half the cells as well, and state peak and end pressure and half-width with
         their discretisation error, see `contactstudy.analysis.discretisation.discretisation_error`.
@@ -71,7 +75,8 @@ def solve(
     Raises
     ------
     InvalidInputError
-        If the grid does not fit the body or a position lies outside it.
+        If the grid does not fit the body, a position lies outside it, the roughness does not cover the grid, or
+        a tilted roller touches within one Hertz half-width of its end only.
     WindowError
         If the contact reaches the grid's edge.
 
@@ -125,30 +130,57 @@ def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.D
     if not np.isfinite(clearance).any():
         raise InvalidInputError("grid", grid, "a grid with cells under the roller")
     if roughness is not None:
-        heights, own = labelled_cells("roughness", roughness)
-        if own.shape != grid.shape or not (np.allclose(own.x, grid.x) and np.allclose(own.y, grid.y)):
-            cells = f"the {grid.shape} cells of the pressure"
-            raise InvalidInputError(
-                "roughness", f"{own.shape} cells", cells, "make it on choose_grid(case), or give grid"
-            )
-        clearance = clearance - heights
+        clearance = clearance - heights_on(grid, roughness)
     return xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
 def _contact(case: Case, gap: xr.DataArray, tolerance: float) -> xr.Dataset:
     """Contact of a case with a given gap."""
-    result = solve_contact(
-        case.body,
-        gap,
-        case.normal_load,
-        case.friction,
-        case.coupled,
-        load_position=case.load_position,
-        counterbody=case.counterbody,
-        tolerance=tolerance,
-    )
-    result["tilt"] = result["tilt"] + case.tilt
+    try:
+        result = solve_contact(
+            case.body,
+            gap,
+            case.normal_load,
+            case.friction,
+            case.coupled,
+            load_position=case.load_position,
+            counterbody=case.counterbody,
+            tolerance=tolerance,
+        )
+    except WindowError as error:
+        if not case.tilt and case.load_position is None:
+            raise
+        raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {error}") from error
+    _check_on_its_length(case, gap, result)
+    result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
+    result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
     return result
+
+
+def _inclination(case: Case) -> str:
+    """Name what inclines the roller of a case, for messages."""
+    if case.load_position is not None:
+        return f"load_position = {case.load_position:g} m"
+    return f"tilt = {case.tilt:g} rad"
+
+
+def _check_on_its_length(case: Case, gap: xr.DataArray, result: xr.Dataset) -> None:
+    """Raise if a tilted roller has left its length and stands on its end."""
+    if not case.tilt and case.load_position is None:
+        return
+    facing = np.flatnonzero(np.isfinite(gap.values).any(axis=1))
+    touching = np.flatnonzero(result["pressure"].values.any(axis=1))
+    at_end = touching[0] == facing[0] or touching[-1] == facing[-1]
+    length = touching.size * case.contact_length / facing.size
+    if at_end and length < LEAST_CONTACT * case.hertz_half_width < case.contact_length:
+        name = "tilt" if case.load_position is None else "load_position"
+        raise InvalidInputError(
+            name,
+            getattr(case, name),
+            f"such that the contact reaches further from the roller's end than {LEAST_CONTACT:g} half-width a, "
+            f"{case.hertz_half_width:.3g} m, not {length:.3g} m",
+            "tilt the roller less or load it nearer to its middle",
+        )
 
 
 def roller_stress(

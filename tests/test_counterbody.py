@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy import optimize
 
 from contactstudy import (
     Case,
@@ -22,8 +23,11 @@ from contactstudy import (
     roller_stress,
     solve,
     solve_contact,
+    surface_displacement,
 )
 from contactstudy.counterbody import Counterbody
+from contactstudy.verification import closed_forms
+from contactstudy.verification.problems import on_cells
 
 STEEL, ALUMINIUM = Material(210e9, 0.3), Material(70e9, 0.33)
 HALF_WIDTH = 130e-6
@@ -66,6 +70,73 @@ def test_equal_materials_as_half_spaces_do_not_couple_with_friction():
         for coupled in (False, True)
     ]
     assert np.abs(results[0] - results[1]).max() < 1e-6 * results[0].max()
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Material(1.0, 0.0), None),
+        (Material(1.0, 0.1), Material(3.0, 0.4)),
+        (Material(3.0, 0.4), Material(1.0, 0.1)),
+        (STEEL, ALUMINIUM),
+    ],
+)
+def test_friction_moves_the_contact_of_unlike_materials(first: Material, second: Material | None):
+    """Bodies with mirrored ends only are in plane strain; the wrong sign would put the centre on the other side."""
+    friction, radius, load = 0.5, 1.0, 2e-4 * first.plane_strain_modulus
+    exact = closed_forms.sliding_line(load, radius, friction, first, second)
+    width = exact.half_width + abs(exact.centre)
+    gap = on_cells(lambda x, y: y**2 / (2 * radius) + 0 * x, (0.0, 1.0), (-1.5 * width, 1.5 * width), (4, 256))
+
+    def bar(material: Material) -> FiniteLengthSpace:
+        return FiniteLengthSpace(length=1.0, material=material, model="mirror")
+
+    counter = None if second is None else Counterbody(bar(second))
+    found = solve_contact(bar(first), gap, load, friction, coupled=True, counterbody=counter).pressure.isel(x=1)
+    assert abs(exact.centre) > 0.03 * exact.half_width
+    expected = exact.pressure(found.y.values)
+    assert np.abs(found.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
+    assert np.median(np.abs(found.values - expected)[expected > 0]) < 5e-4 * expected.max()
+    centroid, expected_centroid = (np.average(found.y, weights=weights) for weights in (found.values, expected))
+    assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact.half_width)
+
+
+def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
+    """Displacement of every cell under unit pressure on every other: array (x, y, x, y)."""
+    unit = np.eye(grid.cells_x * grid.cells_y).reshape(-1, *grid.shape)
+    columns = [
+        surface_displacement(body, xr.DataArray(each, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
+        for each in unit
+    ]
+    return np.array(columns).reshape(*grid.shape, *grid.shape)
+
+
+@pytest.mark.parametrize("start", [-2, 0, 1])
+def test_two_finite_bodies_against_quadratic_programming(start: int):
+    """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
+    per_unit, across, load = 3, (-1.5, 1.5), 1.5
+    body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
+    counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
+    grid, own = (Grid((0.0, each.length), across, round(per_unit * each.length), 9) for each in (body, counter))
+    both = flexibility(body, grid)
+    shift = per_unit * start
+    first, last = max(0, shift), min(grid.cells_x, shift + own.cells_x)
+    own_range = slice(first - shift, last - shift)
+    both[first:last, :, first:last] += flexibility(counter, own)[own_range, :, own_range]
+    gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
+    gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
+    found = solve_contact(body, gap, load, counterbody=Counterbody(counter, start), tolerance=1e-8)
+
+    possible = np.isfinite(gap.values).ravel()
+    matrix = both.reshape(possible.size, -1)[np.ix_(possible, possible)]
+    # The load as a stiff penalty, far above the flexibility's entries.
+    penalty, area = 1e6, grid.cell_area
+    factor = np.linalg.cholesky(matrix + penalty * area)
+    right = penalty * load - gap.values.ravel()[possible]
+    pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right), maxiter=10_000)
+    expected = np.zeros(possible.size)
+    expected[possible] = pressure * load / (pressure.sum() * area)
+    np.testing.assert_allclose(found.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.4])

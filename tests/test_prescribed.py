@@ -9,15 +9,18 @@ import xarray as xr
 from contactstudy import (
     Case,
     FiniteLengthSpace,
+    Grid,
     HalfSpace,
     InvalidInputError,
     Material,
     Roller,
+    WindowError,
     choose_grid,
     profiles,
     solve,
     solve_contact,
 )
+from contactstudy.roughness import self_affine
 
 STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 65e-6
@@ -83,24 +86,67 @@ def test_hertz_point_contact_by_its_approach():
     assert float(contact.pressure.max()) == pytest.approx(2 / np.pi, rel=1e-3)
 
 
-def test_wavy_surface_closes_at_westergaards_mean_pressure():
-    """A long wavy line on a half-space touches everywhere once the mean pressure is pi E* h / wavelength."""
-    case = case_with(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=16 * HALF_WIDTH))
-    grid = choose_grid(case, cells_x=16, margin=1.0)
-    wavelength = 2 * HALF_WIDTH
-    middle = case.roller_start + 0.5 * case.roller.length
-    touching = []
-    for factor in (0.5, 2.0):
-        # Under the middle of the line the mean pressure across the waves is the smooth contact's, at most 1 GPa.
-        height = factor * 1e9 * wavelength / (np.pi * STEEL.plane_strain_modulus)
-        heights = height * np.cos(2 * np.pi * (grid.x[:, None] - middle) / wavelength) + 0 * grid.y
-        rough = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-        result = solve(case, grid, roughness=rough, stresses=False)
-        assert bool(result.converged)
-        centre = result.pressure.sel(y=0.0, method="nearest").sel(x=slice(middle - wavelength, middle + wavelength))
-        touching.append(float((centre > 0).mean()))
-    assert touching[0] == 1.0
-    assert touching[1] < 0.9
+@pytest.mark.parametrize("closure", [0.2, 0.5, 0.8, 1.2])
+def test_wavy_surface_against_westergaards_solution(closure: float):
+    """Part of a wave that touches, and the pressure on it, under a given mean pressure (Johnson, section 13.2).
+
+    The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
+    """
+    modulus, wavelength = STEEL.plane_strain_modulus, 0.25 * HALF_WIDTH
+    body = FiniteLengthSpace(length=wavelength, material=STEEL, model="mirror")
+    case = Case(body=body, roller=Roller(radius=5e-3, length=wavelength), max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=256, cells_y=32, window=1.5)
+    amplitude = 1.5e9 / closure * wavelength / (np.pi * modulus)
+    phase = np.pi * (grid.x / wavelength - 0.5)
+    heights = amplitude * np.cos(2 * phase)[:, None] + 0 * grid.y
+    rough = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    result = solve(case, grid, roughness=rough, stresses=False)
+    assert bool(result.converged)
+    wave = result.pressure.sel(y=0.0, method="nearest")
+    mean = float(wave.mean())
+    ratio = mean * wavelength / (np.pi * modulus * amplitude)
+    if closure > 1:
+        assert bool((wave > 0).all())
+        expected = mean + (mean / ratio) * np.cos(2 * phase)
+    else:
+        edge = phase[wave.values > 0].max() + 0.5 * np.pi / grid.cells_x
+        assert np.sin(edge) ** 2 == pytest.approx(ratio, abs=0.025)
+        inside = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
+        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(inside)
+    assert np.abs(wave - expected).max() < 0.05 * mean / min(ratio, 1.0)
+    assert np.abs(wave - expected).mean() < 0.01 * mean
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_self_affine_surfaces_converge(seed: int):
+    case = case_with()
+    grid = choose_grid(case, window=4.0, cells_y=8)
+    rough = self_affine(
+        grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=seed
+    )
+    result = solve(case, grid, roughness=rough, stresses=False)
+    smooth = solve(case, grid, stresses=False)
+    assert bool(result.converged)
+    assert int(result.iterations) < 150
+    assert abs(float(result.load_error)) < 1e-12
+    assert float(result.penetration_error) < 1e-5
+    assert float(result.pressure.max()) > 1.5 * float(smooth.pressure.max())
+    assert int((result.pressure > 0).sum()) < int((smooth.pressure > 0).sum())
+
+
+def test_roughness_on_other_cells_is_interpolated():
+    case = case_with()
+    grid = choose_grid(case)
+    wider = Grid((-0.1 * LENGTH, 1.1 * LENGTH), (-5 * HALF_WIDTH, 5 * HALF_WIDTH), 150, 90)
+
+    def sloping(on: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+        heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
+        return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
+
+    own, other = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    np.testing.assert_allclose(other.initial_gap, own.initial_gap, atol=1e-18)
+    tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
+    assert float(own.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
 
 
 def test_a_flat_height_map_changes_nothing_but_the_approach():
@@ -152,9 +198,30 @@ def test_bad_prescriptions(arguments, parameter: str):
         solve_contact(BODY, gap, **arguments)
 
 
-def test_roughness_must_lie_on_the_cells():
+def test_roughness_must_cover_the_cells():
     case = case_with()
     grid = choose_grid(case, cells_x=2, cells_y=4)
     rough = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match="roughness"):
         solve(case, grid, roughness=rough)
+
+
+@pytest.mark.parametrize("window", [2.0, 16.0])
+def test_a_roller_tilted_on_its_end_is_refused(window: float):
+    case = case_with(tilt=0.1)
+    with pytest.raises((InvalidInputError, WindowError), match=r"tilt = 0\.1"):
+        solve(case, choose_grid(case, cells_y=8, window=window), stresses=False)
+
+
+def test_a_load_at_the_very_end_is_refused():
+    case = case_with(load_position=17.95 * HALF_WIDTH)
+    with pytest.raises(InvalidInputError, match=r"load_position = .* the contact reaches further"):
+        solve(case, choose_grid(case, cells_y=8, window=24), stresses=False)
+
+
+def test_approach_and_tilt_say_what_they_are_relative_to():
+    result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
+    for name in ("approach", "tilt"):
+        assert f"|y| = {10 * LENGTH:g} m" in result[name].attrs["reference"]
+    assert result.tilt.attrs["centre"] == "load_position"
+    assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"

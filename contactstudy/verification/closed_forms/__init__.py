@@ -7,7 +7,8 @@ Sources, by the names used in the docstrings:
 * Love, *Phil. Trans. R. Soc. A* 228 (1929) 377: uniform pressure on a rectangle;
 * Hamilton and Goodman, *J. Appl. Mech.* 33 (1966) 371; Hamilton, *Proc. IMechE* 197C (1983) 53: circular sliding
   contact;
-* McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact.
+* McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact;
+* Bufler, *Ing.-Arch.* 27 (1959) 137 and Johnson, section 7.2: sliding line contact of unlike materials.
 
 Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
 traction ``q = f p`` drags the body's surface along ``+y``. Stresses are returned as a dictionary with the keys of
@@ -36,10 +37,12 @@ from contactstudy.verification.closed_forms.rectangle import (
     rectangle,
     rectangle_displacement,
 )
+from contactstudy.verification.closed_forms.sliding import SlidingLine, sliding_line
 
 __all__ = [
     "COMPONENTS",
     "EllipticContact",
+    "SlidingLine",
     "Stress",
     "below_rectangle_corner",
     "composite_modulus",
@@ -55,5 +58,6 @@ __all__ = [
     "rectangle",
     "rectangle_displacement",
     "sliding_circle_surface",
+    "sliding_line",
     "von_mises",
 ]
