@@ -12,9 +12,25 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.errors import InvalidInputError
 from contactstudy.material import Material
 
 Extent = tuple[float, float]
+
+
+class FreedEnds(NamedTuple):
+    """Ends from which the normal stress is removed that mirroring leaves there.
+
+    Attributes
+    ----------
+    length : float
+        Distance between the ends, metres; infinite for one end.
+    mirrored_once : bool
+        Whether the loads have one pair of images only, instead of all.
+    """
+
+    length: float
+    mirrored_once: bool = False
 
 
 class Part(NamedTuple):
@@ -26,13 +42,13 @@ class Part(NamedTuple):
         Its share.
     extent : tuple of float
         Where the mirrors stand; infinite for none.
-    freed : bool
-        Whether the normal stress that mirroring leaves on the ends is removed as well.
+    freed : FreedEnds or None
+        The ends that are freed along with this part, if any.
     """
 
     weight: float
     extent: Extent
-    freed: bool
+    freed: FreedEnds | None = None
 
 
 WHOLE_LINE: Extent = (-np.inf, np.inf)
@@ -62,7 +78,15 @@ class Body:
     @property
     def parts(self) -> tuple[Part, ...]:
         """Solutions whose weighted sum is this body's."""
-        return (Part(1.0, self.extent, False),)
+        return (Part(1.0, self.extent),)
+
+    @property
+    def unbounded_row(self) -> float:
+        """Distance between the ends of a row of images without end, metres; infinite if the images are finite.
+
+        Far from such a row the displacement grows like a logarithm, so it has no absolute value.
+        """
+        return min(part.extent[1] - part.extent[0] for part in self.parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,7 +100,7 @@ class HalfSpace(Body):
     """
 
 
-MODELS = ("exact", "mirror", "mirror-factor")
+MODELS = ("exact", "mirror", "mirror-factor", "single-mirror")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,7 +112,9 @@ class EndedBody(Body):
     model : str
         How the ends are treated. "exact" frees them. The others are quick fixes in use, for comparison: "mirror"
         mirrors the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
-        `guilbault_factor` to make up for it.
+        `guilbault_factor` to make up for it. "single-mirror", for two ends only, mirrors the load once in either end
+        and takes the normal stress from both by two separate half-spaces: the scheme of Zhang, Wang and Wong, which
+        leaves some shear on the ends.
     """
 
     model: str = "exact"
@@ -104,8 +130,13 @@ class EndedBody(Body):
         """Solutions whose weighted sum is this body's."""
         if self.model == "mirror-factor":
             factor = guilbault_factor(self.material.poisson)
-            return (Part(factor, self.extent, False), Part(1 - factor, WHOLE_LINE, False))
-        return (Part(1.0, self.extent, self.model == "exact"),)
+            return (Part(factor, self.extent), Part(1 - factor, WHOLE_LINE))
+        low, high = self.extent
+        if self.model == "single-mirror":
+            # A load and one image in either end: each end's own pair, and the load that both have counted.
+            freed = FreedEnds(high, mirrored_once=True)
+            return (Part(1.0, (low, np.inf), freed), Part(1.0, (-np.inf, high)), Part(-1.0, WHOLE_LINE))
+        return (Part(1.0, self.extent, FreedEnds(high) if self.model == "exact" else None),)
 
 
 def guilbault_factor(poisson: float) -> float:
@@ -138,6 +169,14 @@ class QuarterSpace(EndedBody):
     >>> QuarterSpace(material=Material(210e9, 0.3)).extent
     (0.0, inf)
     """
+
+    def __post_init__(self) -> None:
+        """Check material and model."""
+        super().__post_init__()
+        if self.model == "single-mirror":
+            raise InvalidInputError(
+                "model", self.model, "a model of one end", 'a single mirror is exact for one end: use "exact"'
+            )
 
     @property
     def extent(self) -> Extent:

@@ -72,7 +72,7 @@ def displacement_field(
     friction = checks.finite("friction", friction)
     displacement = _displacement(body, values, friction, grid, *positions.axes)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
-    reference = REFERENCE_LENGTHS * (body.extent[1] - body.extent[0])
+    reference = REFERENCE_LENGTHS * body.unbounded_row
     if np.isfinite(reference):
         for name in COMPONENTS:
             fields[name].attrs["reference_distance"] = reference
@@ -92,7 +92,9 @@ def _displacement(
             pressure, body.material, grid, x, y, z, extent=part.extent, reference=reference, tangential=tangential
         )
         if part.freed and pressure.any():
-            problem = EndProblem(part.extent[1], body.material.poisson, pressure, grid, tangential, Resolution())
+            length, mirrored_once = part.freed
+            poisson = body.material.poisson
+            problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
             from_ends = end_displacement(problem, x, y, z, reference=reference)
             fields += part.weight / (2 * body.material.shear_modulus) * from_ends
     return np.asarray(fields[0] + friction * fields[1] if tangential else fields[0])

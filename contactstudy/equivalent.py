@@ -53,8 +53,8 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     (True, True)
     """
     checks.instance("body", body, Body, "a QuarterSpace or a FiniteLengthSpace")
-    high = body.extent[1]
-    if not any(part.freed for part in body.parts):
+    freed = next((part.freed for part in body.parts if part.freed), None)
+    if freed is None:
         raise InvalidInputError("body", body, "a body with a free end: a half-space needs no equivalent loads")
     values, grid = labelled_cells("pressure", pressure)
     check_span(body, grid)
@@ -62,7 +62,8 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     depths = checks.coordinates("z", z)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    problem = EndProblem(high, body.material.poisson, values, grid, friction != 0, Resolution())
+    length, mirrored_once = freed
+    problem = EndProblem(length, body.material.poisson, values, grid, friction != 0, Resolution(), mirrored_once)
     loads = equivalent_loads_of(problem, grid.x, grid.y, depths)
     factors = np.array([1.0, friction] if friction else [1.0])
     added, first, second = (np.tensordot(factors, load, axes=1) for load in loads)
@@ -71,6 +72,6 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
         "P_h1": (("x", "y"), values + added, attributes | {"long_name": "equivalent pressure on the top, P_h1"}),
         "P_v1": (("y", "z"), first, attributes | {"long_name": "equivalent pressure on end plane I, P_v1"}),
     }
-    if np.isfinite(high):
+    if np.isfinite(length):
         fields["P_v2"] = (("y", "z"), second, attributes | {"long_name": "equivalent pressure on end plane II, P_v2"})
     return xr.Dataset(fields, coords={"x": pressure["x"].values, "y": pressure["y"].values, "z": depths})

@@ -101,7 +101,8 @@ def _unit_fields(
             pressure, poisson, grid, x, y, z, extent=part.extent, tangential=tangential
         )
         if part.freed and pressure.any():
-            problem = EndProblem(part.extent[1], poisson, pressure, grid, tangential, Resolution())
+            length, mirrored_once = part.freed
+            problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
             from_ends = end_stress(problem, x, y, z)
             # The two auxiliary bodies leave no traction on the top, by construction.
             for component in (2, 4, 5):

@@ -94,8 +94,12 @@ class PartOperator:
     def __init__(self, material: Material, part: Part, grid: Grid, *, tangential: bool, resolution: Resolution) -> None:
         self.material, self.extent, self.grid = material, part.extent, grid
         low, high = part.extent
-        mirrored = bool(np.isfinite(low))
-        padded = grid.cells_x if np.isfinite(high) else 2 * grid.cells_x
+        mirrored = bool(np.isfinite(low) or np.isfinite(high))
+        periodic = bool(np.isfinite(low) and np.isfinite(high))
+        padded = grid.cells_x if periodic else 2 * grid.cells_x
+        # Mirrored in its second end alone, the body is seen from there.
+        self._flipped = mirrored and bool(np.isinf(low))
+        self._mirrored, self._periodic = mirrored, periodic
         self._transform = GridTransform(*grid.shape, padded, mirrored=mirrored)
         x: FloatArray = grid.dx * np.arange(padded + 1.0 if mirrored else grid.cells_x + 1.0)
         y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
@@ -110,7 +114,13 @@ class PartOperator:
         if part.freed:
             with one_blas_thread():
                 self._ends = build_end_correction(
-                    high, material, grid, reference=self.reference, tangential=tangential, resolution=resolution
+                    part.freed.length,
+                    material,
+                    grid,
+                    reference=self.reference,
+                    tangential=tangential,
+                    resolution=resolution,
+                    mirrored_once=part.freed.mirrored_once,
                 )
 
     @property
@@ -121,16 +131,16 @@ class PartOperator:
 
     def coarsened(self) -> PartOperator:
         """Return the operator on cells of twice the size, without traction."""
-        mirrored = Part(1.0, self.extent, freed=False)
+        mirrored = Part(1.0, self.extent)
         coarse = PartOperator(self.material, mirrored, self.grid.coarsened(), tangential=False, resolution=Resolution())
         coarse._ends = self._ends.coarsened() if self._ends is not None else None
         return coarse
 
     def _kernel(self, corner: CornerFunction, x: FloatArray, y: FloatArray) -> FloatArray:
         grid = self.grid
-        length = self.extent[1]
-        if np.isinf(length):
+        if not self._periodic:
             return cell_kernel(corner, x, y, grid.dx, grid.dy)
+        length = self.extent[1]
         kernel = mirrored_kernel(corner, x, y, grid.dx, grid.dy, length)
         if corner is normal_displacement_corner:
             # The images make a line load along x; its logarithm is set to zero at the reference.
@@ -140,7 +150,7 @@ class PartOperator:
     def _spectrum(self, lateral: FloatArray) -> FloatArray:
         """Spectrum along x of a kernel even in x, given at offsets from 0 on."""
         spectrum = fft.dct(lateral, type=1, axis=0)
-        if np.isfinite(self.extent[0]):
+        if self._mirrored:
             return np.asarray(spectrum[:-1])
         return np.concatenate([spectrum, spectrum[-2:0:-1]])
 
@@ -152,13 +162,14 @@ class PartOperator:
         return displacement
 
     def _apply(self, load: FloatArray, spectrum: FloatArray, *, tangential: bool) -> FloatArray:
-        lateral = self._transform.lateral(load)
+        lateral = self._transform.lateral(load[::-1] if self._flipped else load)
         correction = self._ends.apply(lateral, tangential) if self._ends is not None else None
         full = self._transform.along()
         full *= spectrum
         if tangential:
             full *= 1j
-        return self._transform.back(correction)
+        displacement = self._transform.back(correction)
+        return displacement[::-1] if self._flipped else displacement
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that sinks the cells by `gap`: the inverse of the mirrored half-space's spectrum."""

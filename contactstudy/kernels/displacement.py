@@ -62,7 +62,7 @@ def half_space_displacement(
 
     signs = np.tile(SIGN_ALONG_X, 1 + tangential)
     level = np.zeros(signs.size)
-    length = extent[1]
+    length = extent[1] - extent[0]
     if np.isfinite(length):
         # Beside a row of loads 4 pi G u is 2 (1 - nu) / r in their direction, and y**2 / r**3 adds a constant.
         row = 2 * (1 - nu) * np.log(2 * FAR_LIMIT * length / reference)

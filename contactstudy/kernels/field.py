@@ -104,7 +104,8 @@ def half_space_field(
     -------
     array (component, x, y, z)
     """
-    mirrored, periodic = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
+    in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
+    periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
     result = np.zeros((influence.sign_along_x.size, x.size, y.size, z.size))
     if not loaded.size:
@@ -112,9 +113,11 @@ def half_space_field(
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
     start = grid.x[0]
-    if mirrored:  # cells of the mirrored load lie before those of the load
+    if in_first:  # cells of the mirrored load lie before those of the load
         load = np.concatenate([load[::-1], load])
         start -= grid.cells_x * grid.dx
+    elif in_second:
+        load = np.concatenate([load, load[::-1]])
     cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(start), grid.dx)

@@ -20,6 +20,7 @@ import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
+from contactstudy.overlapping.slab import slab_factors
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +64,33 @@ class AxialModes:
         """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of what they leave on top."""
         single = 4 * np.where(self.discrete == 0, 1.0, 2.0) / self.length
         return np.concatenate([single, self.weights * 4 / np.pi])
+
+    def left_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
+        """Weighted spectrum of what V leaves on the top per scaled face load: array (wavenumber, depth).
+
+        Parameters
+        ----------
+        core : complex array (depth, wavenumber)
+            Coupling core ``M`` of equations.py.
+        depth : array
+            Depth wavenumbers ``k_z``, 1/m.
+        lateral, poisson : float
+            Wavenumber ``k_y``, 1/m, and Poisson's ratio.
+        """
+        return np.asarray(self.face_weights[:, None] * core.T)
+
+    def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
+        """Factor ``T`` on what a normal stress freed on the ends leaves on the top."""
+        return slab_factors(kappa, self.length, self.parity)[0]
+
+    def applied(self, kappa: ComplexArray) -> ComplexArray:
+        """Load on a face per normal stress freed there."""
+        return np.ones_like(kappa)
+
+    def beside_face(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Amplitude of V's harmonic from either face per normal stress freed there, and its ``tau`` (slab.py)."""
+        factor, tau = slab_factors(kappa, self.length, self.parity)
+        return factor / (1 - self.parity * np.exp(-kappa * self.length) if self.parity else 1.0), tau
 
     @property
     def on_end(self) -> ComplexArray:

@@ -19,7 +19,7 @@ import numpy as np
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.grid import Grid
 from contactstudy.material import Material
-from contactstudy.overlapping.axial import AxialModes, axial_modes
+from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
 from contactstudy.overlapping.problem import cosine_moments
@@ -27,6 +27,7 @@ from contactstudy.overlapping.quadrature import (
     Resolution,
     lateral_nodes,
 )
+from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
 
 # Wavenumbers along y that share their axial ones.
 BATCH = 16
@@ -132,6 +133,10 @@ def _sampled(
     system = EquationSet.build(modes, wavenumber, material.poisson, shortest, resolution)
     from_pressure = system.from_pressure(sources)
     columns = [from_pressure, system.from_traction(sources)] if tangential else [from_pressure]
+    if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
+        k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)
+        sunk = modes.cosine(positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
+        return [np.real(sunk.T @ system.on_top(system.solve(column))) for column in columns]
     return [factor * from_pressure.T @ system.solve(column) for column in columns]
 
 
@@ -143,6 +148,7 @@ def build_end_correction(
     reference: float,
     tangential: bool,
     resolution: Resolution,
+    mirrored_once: bool = False,
 ) -> EndCorrection:
     """Correction for a body with ends at 0 and `length` (infinite: one end) on a grid that begins at ``x = 0``.
 
@@ -160,7 +166,11 @@ def build_end_correction(
         Whether to build the part that comes from traction along y, too.
     resolution : Resolution
         Quadrature settings.
+    mirrored_once : bool
+        Whether loads have one pair of images only (single_mirror.py). They leave the far body at rest, so there is no
+        `reference`.
     """
+    relative = np.isfinite(length) and not mirrored_once
     span = grid.x_range[1]
     window = 2 * grid.dy * grid.cells_y
     shortest = 0.5 * grid.dx
@@ -168,20 +178,21 @@ def build_end_correction(
     lateral_last = max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
     first = 1e-2 / scale
     lateral, weights = lateral_nodes(first, 0.5 * window, lateral_last, resolution)
-    if np.isfinite(length):  # the first panel is integrated in closed form
+    if relative:  # the first panel is integrated in closed form
         lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.order :]])
         weights = weights[resolution.order :]
-    to_grid = _lateral_transforms(lateral, weights, grid, first, reference if np.isfinite(length) else None)
+    to_grid = _lateral_transforms(lateral, weights, grid, first, reference if relative else None)
     half = 0.5 * length if np.isfinite(length) else span
     edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)
     cell_edges = np.linspace(0.0, span, grid.cells_x + 1)
     one_side = cell_moments(edges, positions, cell_edges)
     parities = (1, -1) if np.isfinite(length) else (0,)
     samples = np.empty((len(parities), 1 + tangential, lateral.size, positions.size, positions.size))
-    modes = axial_modes(length, float(lateral.min()), shortest, resolution)
+    modes = modes_between_ends(length, float(lateral.min()), shortest, resolution, mirrored_once=mirrored_once)
     for i, wavenumber in enumerate(lateral):
         if i % BATCH == 0 and i > 0:
-            modes = axial_modes(length, float(lateral[i:].min()), shortest, resolution)
+            smallest = float(lateral[i:].min())
+            modes = modes_between_ends(length, smallest, shortest, resolution, mirrored_once=mirrored_once)
         for parity, mode in zip(parities, modes, strict=False):
             sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, tangential)
             if mode.parity == parity:

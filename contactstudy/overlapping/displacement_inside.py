@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping.equations import EquationSet, slab_factors
+from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.field import Harmonics, end_field, real_product
 from contactstudy.overlapping.problem import EndProblem
 
@@ -29,7 +29,7 @@ def end_displacement(
     array (load, 3, x, y, z)
         Under the pressure and, if wanted, under the traction: along x, y, z in Pa m.
     """
-    return end_field(problem, DISPLACEMENT, x, y, z, reference=reference if np.isfinite(problem.length) else None)
+    return end_field(problem, DISPLACEMENT, x, y, z, reference=reference if np.isfinite(reference) else None)
 
 
 def _below_equivalent_load(
@@ -63,10 +63,7 @@ def _beside_face_load(
     """
     nu, lateral, modes = system.poisson, system.lateral, system.modes
     kappa = np.sqrt(depth**2 + lateral**2)
-    factor, tau = slab_factors(kappa, modes.length, modes.parity)
-    amplitude = factor.copy()
-    if modes.parity:
-        amplitude /= 1 - modes.parity * np.exp(-kappa * modes.length)
+    amplitude, tau = modes.beside_face(kappa)
     waves = np.exp(1j * np.outer(depth, z))
     right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
     along: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)

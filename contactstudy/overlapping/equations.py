@@ -60,25 +60,6 @@ def tangential_on_end(
     return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
 
 
-def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -> tuple[ComplexArray, ComplexArray]:
-    """Factors ``T`` and ``tau`` that tell a slab from a half-space, for which they are 1 and 0.
-
-    With ``t = kappa length / 2``: ``T = 2 sinh(t)**2 / (sinh(2t) + 2t)`` and ``tau = t (coth(t) - 1)`` for even parity,
-    ``T = 2 cosh(t)**2 / (sinh(2t) - 2t)`` and ``tau = t (tanh(t) - 1)`` for odd.
-    """
-    if not parity:
-        return np.ones(kappa.shape, np.complex128), np.zeros(kappa.shape, np.complex128)
-    doubled = np.asarray(kappa * length, dtype=np.complex128)
-    decay = np.exp(-doubled)
-    denominator = 1 - decay**2 + parity * 2 * doubled * decay
-    if parity < 0:  # bending: sinh(2t) - 2t would cancel
-        square = doubled**2
-        series = 1 + square / 20 * (1 + square / 42 * (1 + square / 72 * (1 + square / 110)))
-        denominator = np.where(np.abs(doubled) < 0.5, decay * doubled**3 / 3 * series, denominator)
-    factor = (1 - parity * decay) ** 2 / denominator
-    return factor, parity * doubled * decay / (1 - parity * decay)
-
-
 @dataclass(frozen=True, eq=False)
 class EquationSet:
     """The equation set for one wavenumber along y and one parity, factorised.
@@ -103,6 +84,7 @@ class EquationSet:
     depth: FloatArray
     scale: FloatArray
     _core: ComplexArray
+    _top: ComplexArray
     _factor: tuple[FloatArray, FloatArray]
 
     @classmethod
@@ -113,13 +95,14 @@ class EquationSet:
         last = max(resolution.reach / shortest, 4 * lateral)
         depth, weights = panel_nodes(growing_edges(0.5 * lateral, last, resolution.ratio), resolution.order)
         kappa = np.sqrt(depth**2 + lateral**2)
-        scale = np.real(slab_factors(kappa, modes.length, modes.parity)[0]) * weights / kappa
+        scale = np.real(modes.face_factor(kappa)) * weights / kappa
         axial = modes.wavenumbers
         core = coupling_core(axial, depth, lateral, poisson)
         k = np.sqrt(axial**2 + lateral**2)
-        left = core * (4 / np.pi / k * modes.on_end * modes.face_weights)
-        mutual = left.real @ core.real.T - left.imag @ core.imag.T
-        return cls(modes, lateral, poisson, depth, scale, core, linalg.lu_factor(np.diag(1 / scale) - mutual))
+        top = modes.left_on_top(core, depth, lateral, poisson)
+        end = core * (4 / np.pi / k * modes.on_end)
+        mutual = end.real @ top.real - end.imag @ top.imag
+        return cls(modes, lateral, poisson, depth, scale, core, top, linalg.lu_factor(np.diag(1 / scale) - mutual))
 
     def solve(self, source: FloatArray) -> FloatArray:
         """Scaled face loads ``scale * S`` from what the top load alone asks for at the depth nodes."""
@@ -137,8 +120,7 @@ class EquationSet:
 
     def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
         """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
-        shape = (-1,) + (1,) * (scaled_face_load.ndim - 1)
-        return np.asarray(self.modes.face_weights.reshape(shape) * (self._core.T @ scaled_face_load))
+        return np.asarray(self._top @ scaled_face_load)
 
     def on_ray(
         self,

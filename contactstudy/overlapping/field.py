@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping.axial import DECAY_LENGTHS, axial_modes
+from contactstudy.overlapping.axial import DECAY_LENGTHS
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.overlapping.problem import (
@@ -184,7 +184,7 @@ def _batch_amplitudes(
     resolution = problem.resolution
     views = [
         view
-        for modes in axial_modes(problem.length, float(lateral[0]), shortest, resolution)
+        for modes in problem.axial_modes(float(lateral[0]), shortest)
         for view in views_of(modes, problem, loads, batch, x)
     ]
     amplitudes = np.zeros((harmonics.count, x.size, z.size, lateral.size, len(loads.columns)))

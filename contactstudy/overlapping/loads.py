@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.checks import FloatArray
-from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.field import BATCH
 from contactstudy.overlapping.problem import (
@@ -56,7 +55,7 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
     with one_blas_thread():
         for start in range(0, lateral.size, BATCH):
             batch = slice(start, min(start + BATCH, lateral.size))
-            for modes in axial_modes(problem.length, float(lateral[start]), shortest, resolution):
+            for modes in problem.axial_modes(float(lateral[start]), shortest):
                 for view in views_of(modes, problem, amplitudes, batch, x):
                     for number, wavenumber in enumerate(lateral[batch]):
                         system = EquationSet.build(modes, float(wavenumber), problem.poisson, shortest, resolution)
@@ -66,7 +65,8 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
                         depth, depth_weights, load = system.on_ray(p, q, equivalent, shortest, resolution)
                         top[view.rows, start + number] += np.real(view.cosine.T @ equivalent)
                         waves = np.exp(1j * np.outer(z, depth)) * depth_weights
-                        face = np.real(waves @ load)
+                        applied = modes.applied(np.sqrt(depth**2 + wavenumber**2))
+                        face = np.real(waves @ (applied[:, None] * load))
                         # The second end's load follows from the first's by parity; separate ends have a view each.
                         if modes.parity:
                             faces[0, :, start + number] += face

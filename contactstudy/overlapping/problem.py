@@ -13,6 +13,7 @@ from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.quadrature import Resolution, lateral_nodes
+from contactstudy.overlapping.single_mirror import modes_between_ends
 
 # Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
 # there, of which only the sum is finite.
@@ -43,6 +44,8 @@ class EndProblem:
         Whether the stresses under a traction along +y, equal to the pressure, are wanted as well.
     resolution : Resolution
         Quadrature settings.
+    mirrored_once : bool
+        Whether loads have one pair of images only (single_mirror.py) instead of all.
     """
 
     length: float
@@ -51,6 +54,11 @@ class EndProblem:
     grid: Grid
     tangential: bool
     resolution: Resolution
+    mirrored_once: bool = False
+
+    def axial_modes(self, lateral: float, shortest: float) -> list[AxialModes]:
+        """Axial modes for wavenumbers along y from `lateral` on, see `modes_between_ends`."""
+        return modes_between_ends(self.length, lateral, shortest, self.resolution, mirrored_once=self.mirrored_once)
 
     @property
     def corner_offset(self) -> float:

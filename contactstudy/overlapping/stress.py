@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping.equations import EquationSet, slab_factors
+from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.field import Harmonics, end_field, real_product
 from contactstudy.overlapping.problem import EndProblem
 
@@ -60,15 +60,12 @@ def _beside_face_load(
     """Stresses of V under the face loads on its two ends: array (6, x, z, column).
 
     The slab's harmonics, written as two half-space harmonics that start from either end; with ``X = kappa`` times the
-    distance from the end, ``tau`` and ``T`` of `slab_factors`, and ``Phi = 1 - 2 nu - tau - X``, each end gives
-    ``T exp(-X) / (1 - parity exp(-kappa L))`` times the terms below.
+    distance from the end, ``tau`` and the amplitude of `AxialModes.beside_face`, and ``Phi = 1 - 2 nu - tau - X``,
+    each end gives the amplitude and ``exp(-X)`` times the terms below.
     """
     nu, lateral, modes = system.poisson, system.lateral, system.modes
     kappa = np.sqrt(depth**2 + lateral**2)
-    factor, tau = slab_factors(kappa, modes.length, modes.parity)
-    amplitude = factor.copy()
-    if modes.parity:
-        amplitude /= 1 - modes.parity * np.exp(-kappa * modes.length)
+    amplitude, tau = modes.beside_face(kappa)
     waves = np.exp(1j * np.outer(depth, z))
     right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
     cosine_z: ComplexArray = np.zeros((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy

@@ -42,20 +42,21 @@ def test_comparison_models_beside_the_exact_ends(tmp_path):
         level="surface",
         base=BASE | {"stresses": False},
         sweep={
-            "model": ["exact", "mirror", "mirror-factor"],
+            "model": ["exact", "mirror", "mirror-factor", "single-mirror"],
             "e_over_a": [0.0],
             "body": ["finite-length", "half-space"],
         },
     )
     report = run_study(study, tmp_path, workers=0)
-    assert report.counts == {"ok": 4, "skipped": 2}
+    assert report.counts == {"ok": 5, "skipped": 3}
     opened = open_study(tmp_path).squeeze("e_over_a")
-    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
+    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped", "skipped"]
     assert "no free end" in opened["message"].sel(body="half-space", model="mirror").item()
     residual = opened["end_traction_residual"].sel(body="finite-length")
-    assert float(residual.sel(model="exact")) < 1e-4 < float(residual.sel(model="mirror"))
+    exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
+    assert exact < 1e-4 < once < mirror
     ends = opened["end_pressure"].sel(body="finite-length").values
-    assert len({round(value, 4) for value in ends.tolist()}) == 3
+    assert len({round(value, 4) for value in ends.tolist()}) == 4
 
 
 def test_one_is_one_case(tmp_path):

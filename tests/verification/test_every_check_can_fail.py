@@ -52,11 +52,11 @@ def everywhere(patch: Patch, name: str, value: object) -> None:
 
 
 def ends_only_mirrored(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, body.extent, False),)))
+    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, body.extent),)))
 
 
 def no_ends(patch: Patch) -> None:
-    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, WHOLE_LINE, False),)))
+    patch.setattr(EndedBody, "parts", property(lambda body: (Part(1.0, WHOLE_LINE),)))
 
 
 def wrong_poisson(patch: Patch) -> None:

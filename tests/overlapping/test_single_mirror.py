@@ -1,0 +1,154 @@
+"""The scheme with one pair of images and two vertical half-spaces: what it frees, what it leaves, its exact limits."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    displacement_field,
+    equivalent_loads,
+    solve_contact,
+    stress_field,
+    surface_displacement,
+)
+from contactstudy.dataset import STRESSES
+from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.stress import end_stress
+from contactstudy.stress import end_traction_residual, raw_stress
+from contactstudy.verification.load_cases import LINE_LOAD
+
+FRICTION = 0.3
+DEPTHS = np.array([0.02, 0.1, 0.3, 1.0, 3.0])
+ACROSS = np.array([0.0, 0.5, 1.2])
+
+
+def single_mirror(length: float, material: Material) -> FiniteLengthSpace:
+    return FiniteLengthSpace(length=length, material=material, model="single-mirror")
+
+
+@pytest.fixture(scope="module")
+def eccentric(strip_pressure) -> xr.DataArray:
+    """A strip, a third heavier at end II than at end I, on a body four half-widths long."""
+    pressure = strip_pressure(4.0, (32, 48))
+    return pressure * (1 + 0.3 * (pressure.x / 4.0 - 0.5))
+
+
+@pytest.mark.parametrize("friction", [0.0, FRICTION])
+def test_ends_are_free_of_normal_stress_and_carry_some_shear(
+    eccentric: xr.DataArray, unit_material: Material, friction: float
+) -> None:
+    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+    body = single_mirror(4.0, unit_material)
+    stress = raw_stress(body, eccentric.values, friction, grid, np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    assert np.abs(stress[0]).max() < 3e-5
+    assert np.abs(stress[4]).max() > 3e-3
+
+
+def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
+    """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
+    grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
+    problem = EndProblem(4.0, 0.3, eccentric.values, grid, True, Resolution(), mirrored_once=True)
+    added = end_stress(problem, np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))
+    assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
+    assert np.abs(added[:, 0]).max() > 0.03
+
+
+def test_added_load_and_its_two_images_sink_a_plain_half_space_as_much(on_cells, unit_material: Material) -> None:
+    """Built by hand from the labelled equivalent load: three copies side by side on a half-space.
+
+    The added load spreads like 1/y, so the window along y is wide; at the ends it grows like a logarithm, which cells
+    hold to some tenths of a percent of the displacement (half of the difference goes when they are halved along x).
+    """
+    body, half_space = single_mirror(4.0, unit_material), HalfSpace(material=unit_material)
+    window, middle = (-24.0, 24.0), slice(220, 260)
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2.2) ** 2 - y**2, 0), (0.0, 4.0), window, (32, 480))
+    load = equivalent_loads(body, pressure, z=[1.0])["P_h1"].values
+    three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 480))
+    by_hand = surface_displacement(half_space, three + np.concatenate([load[::-1], load, load[::-1]]))
+    sunk = surface_displacement(body, pressure.isel(y=middle)).values
+    difference = sunk - by_hand.values[32:64, middle]
+    assert np.abs(difference).max() < 1e-2
+    own = pressure.values
+    images = surface_displacement(half_space, three + np.concatenate([own[::-1], own, own[::-1]]))
+    assert np.abs(sunk - images.values[32:64, middle]).max() > 0.1
+
+
+def test_displacement_inside_meets_that_of_the_top(eccentric: xr.DataArray, unit_material: Material) -> None:
+    body = single_mirror(4.0, unit_material)
+    on_top = surface_displacement(body, eccentric, FRICTION)
+    inside = displacement_field(body, eccentric, FRICTION, y=eccentric.y.values[[24, 30]])
+    difference = np.abs(on_top.values[:, [24, 30]] - inside.u_z.values[..., 0]).max()
+    assert difference < 5e-4 * float(on_top.max())
+    assert "reference_distance" not in on_top.attrs
+    assert "reference_distance" not in inside.u_z.attrs
+
+
+def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_material: Material) -> None:
+    """Largest traction left on the ends over the peak pressure; uniform strip, friction 0.3, depths 0.02a to 2L.
+
+    ======  =============  =======
+    L / a   single-mirror  exact
+    ======  =============  =======
+    2.5     2.6e-2         7e-6
+    4       1.1e-2         5e-6
+    8       5.1e-3         5e-6
+    16      2.7e-3         5e-6
+    ======  =============  =======
+    """
+    left = {}
+    for length in (2.5, 4.0, 8.0, 16.0):
+        pressure = strip_pressure(length, (int(8 * length), 48))
+        grid = Grid.from_centres(pressure.x.values, pressure.y.values)
+        depths = np.append(DEPTHS, [length, 2 * length])
+        left[length] = [
+            end_traction_residual(body, pressure.values, FRICTION, grid, ACROSS, depths)
+            for body in (
+                single_mirror(length, unit_material),
+                FiniteLengthSpace(length=length, material=unit_material),
+            )
+        ]
+    residuals = np.array(list(left.values()))
+    assert (residuals[:, 1] < 1e-4).all()
+    assert (residuals[:, 0] > 10 * residuals[:, 1]).all()
+    assert (np.diff(residuals[:, 0]) < 0).all()
+
+
+def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
+    points = {"x": [0.0, 0.4, 1.0, 2.0, 50.0], "y": [0.0, 0.6], "z": [0.05, 0.5, 2.0]}
+    stress = stress_field(single_mirror(60.0, unit_material), pressure, FRICTION, **points)
+    exact = stress_field(FiniteLengthSpace(length=60.0, material=unit_material), pressure, FRICTION, **points)
+    for name in STRESSES:
+        assert np.abs(stress[name] - exact[name]).max() < 3e-4, name
+
+
+def test_contact_nears_the_exact_one_in_a_longer_body(cylinder_gap, unit_material: Material) -> None:
+    difference = []
+    for length in (2.5, 8.0, 32.0):
+        gap = cylinder_gap(length, (int(8 * length), 48))
+        pressures = [
+            solve_contact(body, gap, length * LINE_LOAD)["pressure"].max("y").values
+            for body in (
+                FiniteLengthSpace(length=length, material=unit_material),
+                single_mirror(length, unit_material),
+            )
+        ]
+        assert pressures[1].max() > 1.0
+        assert np.abs(pressures[1] - pressures[1][::-1]).max() < 1e-4
+        difference.append(np.abs(pressures[1] - pressures[0]).max())
+    assert difference[0] > difference[1] > difference[2] > 1e-4
+    assert difference[2] < 5e-3
+
+
+def test_one_end_is_refused(unit_material: Material) -> None:
+    with pytest.raises(InvalidInputError, match=r"model = 'single-mirror'.*exact for one end"):
+        QuarterSpace(material=unit_material, model="single-mirror")
