@@ -28,6 +28,7 @@ HALF_WIDTH = 2 * PRESSURE * RADIUS / MODULUS
 DESIGN = {"radius": RADIUS, "modulus": MODULUS}
 
 PROFILES: dict[str, cs.profiles.Profile] = {
+    "cylinder, fillet 0.2 mm": cs.profiles.Cylinder(fillet_radius=0.2e-3),
     "cylinder, fillet 2 mm": cs.profiles.Cylinder(fillet_radius=2e-3),
     "tapered 2 deg, fillet 2 mm": cs.profiles.Tapered(np.deg2rad(2.0), fillet_radius=2e-3),
     "Lundberg": cs.profiles.Lundberg.for_pressure(PRESSURE, **DESIGN),
@@ -142,7 +143,9 @@ def convergence(
 
 
 def with_error(value: float, error: float) -> str:
-    """Value with its error, or "grid" where the cells decide."""
+    """Value with its error, "grid" where the cells decide, "open" where nothing touches."""
+    if value == 0:
+        return "open"
     return f"{value:.3f} ± {error:.3f}" if np.isfinite(error) else f"{value:.2f} (grid)"
 
 

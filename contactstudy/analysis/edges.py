@@ -91,6 +91,10 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
     # Columns too narrow for the fits would spoil the interpolation, which has the exact zero at a smooth end.
     wide = columns[width[columns] > 2 * (SKIPPED + FITTED) * grid.dy]
     columns = wide if wide.size > 3 else columns
+    # A border found within its outermost column of cells may lie short of that column's centre.
+    columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
+    if columns.size < 2:
+        return float(np.nansum(width) * grid.dx)
     squared = width[columns] ** 2
     at = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])
     values = np.concatenate([[0.0][: smooth[0]], squared, [0.0][: smooth[1]]])

@@ -4,9 +4,20 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, solve_contact
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    choose_grid,
+    solve,
+    solve_contact,
+)
 from contactstudy.analysis import contact_edges
 from contactstudy.analysis.border import EDGE_UNCERTAINTY
+from contactstudy.profiles import Cylinder
 
 UNIT = HalfSpace(material=Material(0.75, 0.5))
 
@@ -101,3 +112,20 @@ def test_needs_pressure_and_gap(missing):
 def test_refuses_what_is_not_a_dataset():
     with pytest.raises(InvalidInputError, match="Dataset"):
         contact_edges([1.0])
+
+
+def test_a_border_short_of_its_columns_centre_still_gives_an_area():
+    """A small fillet, where the pressure piles up: the fitted border may lie within the outermost loaded column."""
+    material, modulus = Material(210e9, 0.3), 0.5 * Material(210e9, 0.3).plane_strain_modulus
+    half_width = 2 * 1.5e9 * 5e-3 / modulus
+    roller = Roller(
+        radius=5e-3, length=10 * half_width, profile=Cylinder(fillet_radius=0.2e-3), material=material, ends="none"
+    )
+    case = Case(body=HalfSpace(material=material), roller=roller, max_pressure=1.5e9)
+    areas = []
+    for cells in (4, 5, 6, 7, 8):
+        contact = solve(case, choose_grid(case, cells_x=cells, cells_y=16, window=2.2), stresses=False)
+        areas.append(float(contact_edges(contact).contact_area))
+        counted = int((contact.pressure > 0).sum()) * float(np.diff(contact.x[:2])[0] * np.diff(contact.y[:2])[0])
+        assert areas[-1] == pytest.approx(counted, rel=0.05)
+    np.testing.assert_allclose(areas, areas[-1], rtol=0.03)
