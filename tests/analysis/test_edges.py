@@ -123,7 +123,7 @@ def test_a_border_short_of_its_columns_centre_still_gives_an_area():
     )
     case = Case(body=HalfSpace(material=material), roller=roller, max_pressure=1.5e9)
     areas = []
-    for cells in (4, 5, 6, 7, 8):
+    for cells in (6, 7, 8, 9):
         contact = solve(case, choose_grid(case, cells_x=cells, cells_y=16, window=2.2), stresses=False)
         areas.append(float(contact_edges(contact).contact_area))
         counted = int((contact.pressure > 0).sum()) * float(np.diff(contact.x[:2])[0] * np.diff(contact.y[:2])[0])
