@@ -78,7 +78,10 @@ class Case:
 
     def __post_init__(self) -> None:
         """Check the parameters and complete the load."""
-        checks.instance("body", self.body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+        allowed = (
+            "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no pressure to find"
+        )
+        checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
         object.__setattr__(self, "friction", checks.finite("friction", self.friction))
         if self.end_distance is not None:

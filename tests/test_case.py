@@ -88,6 +88,8 @@ def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: 
             lambda: Case(body=BODY, roller=Roller(radius=5e-3, length=11e-3), max_pressure=1e9),
             r"roller.length = 0.011: must be at most the body's length, 0.0102 m; give end_distance",
         ),
+        (lambda: Case(body=None, roller=ROLLER, max_pressure=1e9), "body = None: must be elastic.*two rigid bodies"),
+        (lambda: Material(young=np.inf, poisson=0.3), "young = inf"),
         (lambda: Case(body=BODY, roller=ROLLER), "max_pressure, load = .*exactly one"),
         (lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, load=1.0), "exactly one"),
         (lambda: Case(body=BODY, roller=ROLLER, max_pressure=-1e9), "max_pressure = -1000000000.0"),

@@ -177,6 +177,41 @@ def test_overhanging_flush_and_inside(distance: float):
     assert abs(float(result.load_error)) < 1e-12
 
 
+@pytest.mark.parametrize("distance", [-1.5, 0.0, 1.0])
+def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
+    body = FiniteLengthSpace(length=9 * HALF_WIDTH, material=STEEL)
+    pressures = [
+        solve(
+            Case(
+                body=body,
+                roller=Roller(radius=5e-3, length=7 * HALF_WIDTH, material=material, profile=FILLET),
+                load=2e2,
+                end_distance=distance * HALF_WIDTH,
+            ),
+            Grid((0.0, body.length), (-3 * HALF_WIDTH, 3 * HALF_WIDTH), 72, 64),
+            stresses=False,
+        ).pressure.values
+        for material in (None, Material(1e7 * STEEL.young, 0.3))
+    ]
+    np.testing.assert_allclose(pressures[1], pressures[0], atol=1e-5 * pressures[0].max())
+
+
+def test_ends_between_the_borders_of_cells_cost_little():
+    """A roller whose ends cut cells: the error falls with their size, and is small away from the fillet's peak."""
+    body = FiniteLengthSpace(length=14 * HALF_WIDTH, material=STEEL)
+    roller = Roller(radius=5e-3, length=10 * HALF_WIDTH, material=STEEL, profile=FILLET)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9)
+
+    def middle(cells: int) -> float:
+        grid = Grid((0.0, body.length), choose_grid(case).y_range, cells, 32)
+        return float(solve(case, grid, stresses=False).pressure.sel(x=0.5 * body.length, method="nearest").max())
+
+    aligned = middle(112)  # 16 cells from the body's end to the roller's
+    errors = [abs(middle(cells) / aligned - 1) for cells in (58, 115)]
+    assert errors[1] < 0.6 * errors[0]
+    assert errors[1] < 0.005
+
+
 def test_the_other_bodies_work_below_an_elastic_roller():
     roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=ALUMINIUM, profile=FILLET)
     for body in (HalfSpace(material=STEEL), QuarterSpace(material=STEEL)):

@@ -76,7 +76,23 @@ def test_best_profile_needs_less_crown_between_free_ends():
 
 def test_real_roller_is_softer_at_its_own_ends():
     module = script("real_roller")
-    profile = module.PROFILES["Lundberg"]
-    rigid, both = (module.measured(profile, model, 2) for model in module.MODELS[1:])
-    assert both["edge_pressure"] < rigid["edge_pressure"]
-    assert 0.5 < both["peak_von_mises"] < 0.7
+    length = 1.2e-3
+    found = module.solved({"Lundberg": module.PROFILES["Lundberg"]}, 4, length)
+    assert dict(found.sizes) == {"raceway": 2, "profile": 1, "model": 4}
+    wide, flush = (found.isel(raceway=i, profile=0) for i in (0, 1))
+    both, rigid = "both finite", "finite raceway, rigid roller"
+    for name in ("edge_pressure", "peak_von_mises"):
+        assert float(wide[name].sel(model=both)) < float(wide[name].sel(model=rigid))
+        # Two bodies that end together are like each other, and a rigid roller on one of half the stiffness like both.
+        assert float(flush[name].sel(model=both)) == pytest.approx(float(flush[name].sel(model=rigid)), rel=1e-4)
+        first, second = (float(each[name].sel(model="half-spaces")) for each in (wide, flush))
+        assert first == pytest.approx(second, rel=1e-6)
+    assert "| Lundberg |" in module.table(found.isel(raceway=0))
+
+
+def test_real_roller_follows_the_edge_pressure_as_cells_shrink():
+    module = script("real_roller")
+    edge = module.convergence(module.PROFILES["Lundberg"], (4, 8), 1.6e-3, length=1.2e-3)
+    assert edge.shape == (4, 2)
+    assert float(edge.min()) > 0.3
+    assert "| both finite |" in module.convergence_table(edge)
