@@ -67,6 +67,12 @@ class ContactAccessor:
 
         return analysis.edge_pressure(self._dataset)
 
+    def contact_edges(self) -> xr.Dataset:
+        """See :func:`contactstudy.analysis.contact_edges`."""
+        from contactstudy import analysis
+
+        return analysis.contact_edges(self._dataset)
+
     def contact_results(self, about: float | None = None) -> xr.Dataset:
         """See :func:`contactstudy.analysis.contact_results`."""
         from contactstudy import analysis

@@ -41,7 +41,7 @@ def test_methods_take_what_the_functions_take(name: str) -> None:
 
 def test_every_function_is_a_method() -> None:
     functions = {name for name in analysis.__all__ if inspect.isfunction(getattr(analysis, name))}
-    assert functions - set(METHODS) == {"dimension_along", "positions"}
+    assert functions - set(METHODS) == {"dimension_along", "discretisation_error", "positions"}
 
 
 def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:

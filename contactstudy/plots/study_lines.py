@@ -61,7 +61,7 @@ def plot_study_lines(
     --------
     >>> values = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], dims=("friction", "e_over_a"),
     ...                       coords={"friction": [0.0, 0.1], "e_over_a": [0.0, 1.0]})
-    >>> figure = plot_study_lines(xr.Dataset({"end_pressure": values}), "friction", "e_over_a")
+    >>> figure = plot_study_lines(xr.Dataset({"peak_pressure": values}), "friction", "e_over_a")
     >>> len(figure.axes[0].lines)
     2
     """
@@ -128,7 +128,7 @@ def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:
     Examples
     --------
     >>> values = xr.DataArray([1.0, 2.0], dims="friction", coords={"friction": [0.0, 0.1]})
-    >>> list(study_figures(xr.Dataset({"end_pressure": values, "status": values})))
+    >>> list(study_figures(xr.Dataset({"peak_pressure": values, "status": values})))
     ['study']
     """
     figures = {}

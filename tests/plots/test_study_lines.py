@@ -1,0 +1,37 @@
+import numpy as np
+import pytest
+
+from contactstudy import plots
+from contactstudy.errors import InvalidInputError
+
+
+def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped):
+    figure = plots.plot_study_lines(opened, "e_over_a", "body", selection={"friction": 0.1})
+    assert len(figure.axes) == 3
+    assert all(len(ax.lines) == 2 for ax in figure.axes)
+    expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e6
+    np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), expected)
+    assert all("(" in ax.get_ylabel() for ax in figure.axes)
+    assert_nothing_clipped(figure)
+
+
+def test_names_are_spread_evenly(opened):
+    figure = plots.plot_study_lines(opened, "body", variables=["peak_pressure"], selection={"friction": 0.1})
+    assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == ["finite-length", "half-space"]
+
+
+def test_figures_that_suit_a_study(opened):
+    assert list(plots.study_figures(opened)) == ["edge_effect", "study"]
+    assert list(plots.study_figures(opened[["status", "peak_pressure"]].isel(e_over_a=[0]))) == ["study"]
+    assert plots.study_figures(opened[["status"]]) == {}
+
+
+@pytest.mark.parametrize("arguments", [("gamma",), ("e_over_a", "gamma")])
+def test_parameters_must_be_swept(opened, arguments):
+    with pytest.raises(InvalidInputError, match="swept"):
+        plots.plot_study_lines(opened, *arguments)
+
+
+def test_quantities_must_be_there(opened):
+    with pytest.raises(InvalidInputError, match="no_such_thing"):
+        plots.plot_study_lines(opened, "e_over_a", variables=["no_such_thing"])
