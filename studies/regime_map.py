@@ -11,7 +11,7 @@ separate vertical half-spaces, the published scheme, is within 0.7 % in pressure
 quarter space takes too much load to its other end, which it believes to go on, and so errs by up to 17 % at the free
 one.
 
-The half-space's peaks are a cell or two wide and not converged: 32 cells per width give 40 to 73 % instead of 37 to 86 %.
+The half-space's peaks are a cell or two wide and not converged: 32 cells per width give 40 to 73 %, not 37 to 86 %.
 """
 
 from __future__ import annotations
