@@ -168,10 +168,14 @@ def solve_complementarity(
                 # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
                 scaled = preconditioner(np.where(closed, opening, 0.0))
                 moved[closed] = np.maximum(-scaled[closed], 1e-12 * moved.max())
-            pressure = resultants.restored(moved)
-            contact = pressure > 0
-            sunk = operator(pressure)
+            moved = resultants.restored(moved)
+            settled = operator(moved)
             applications += 1
+            # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
+            part = _part_that_descends(moved - pressure, settled - sunk, opening) if closed.any() else 1.0
+            pressure = moved if part == 1.0 else pressure + part * (moved - pressure)
+            sunk = settled if part == 1.0 else sunk + part * (settled - sunk)
+            contact = pressure > 0
         else:
             pressure = moved
             sunk = sunk - step * along
@@ -182,3 +186,14 @@ def solve_complementarity(
             break
     pressure = resultants.restored(pressure)
     return ContactIterate(pressure, tuple(float(amount) for amount in motion), applications, converged)
+
+
+def _part_that_descends(change: FloatArray, sinking: FloatArray, opening: FloatArray) -> float:
+    """Part of a change of the pressure to take: all, unless it raises the energy; then what lowers it most.
+
+    Between two pressures that are nowhere negative and have the prescribed resultants, all have both properties, and
+    the energy between them is a parabola.
+    """
+    slope = -float((change * np.where(np.isfinite(opening), opening, 0.0)).sum())
+    curvature = float((change * sinking).sum())
+    return slope / curvature if 0 < slope < 0.5 * curvature else 1.0

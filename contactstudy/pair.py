@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -57,10 +59,25 @@ class PairOperator:
         """Roughly the pressure that closes the gap."""
         return self.body.precondition(gap) / self._softer
 
-    @property
-    def coarse(self) -> ScaledOperator:
-        """Roughly this operator on cells of twice the size: the first body, as much softer as the two together."""
-        return ScaledOperator(self.body.coarse, self._softer)
+    @cached_property
+    def coarse(self) -> PairOperator | ScaledOperator:
+        """Roughly this operator on cells of twice the size.
+
+        If the second body's cells cannot be joined in twos, the first body is taken, as much softer as the two are.
+        """
+        if self.counterbody.grid.cells_x % 2:
+            return ScaledOperator(self.body.coarse, self._softer)
+        coarse = copy(self)
+        coarse.body, coarse.counterbody = self.body.coarse, self.counterbody.coarse
+        if self._to_own is not None and self._from_own is not None:
+            coarse._to_own, coarse._from_own = _joined(self._to_own), _joined(self._from_own)
+        return coarse
+
+
+def _joined(shares: FloatArray) -> FloatArray:
+    """Shares of cells of twice the size in each other."""
+    rows, columns = shares.shape
+    return np.asarray(0.5 * shares.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)))
 
 
 @dataclass(frozen=True, eq=False)

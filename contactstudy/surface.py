@@ -75,6 +75,11 @@ class SurfaceOperator:
         return coarse
 
     @property
+    def grid(self) -> Grid:
+        """Cells."""
+        return self.parts[0][1].grid
+
+    @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
         return self.parts[0][1].reference

@@ -196,6 +196,25 @@ def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
     np.testing.assert_allclose(pressures[1], pressures[0], atol=1e-5 * pressures[0].max())
 
 
+def test_a_steel_roller_tilted_onto_its_sharp_end_converges():
+    # The overlap of the first guess is deep here, and cells that enter the contact all at once overshoot.
+    case = Case(
+        body=FiniteLengthSpace(length=4.2e-3, material=STEEL),
+        roller=Roller(radius=5e-3, length=4e-3, material=STEEL, profile=profiles.FullCrown(2.0)),
+        load=1225.0,
+        tilt=1e-3,
+    )
+    coarse, fine = (solve(case, choose_grid(case, cells_x=c, cells_y=12), stresses=False) for c in (12, 24))
+    for result in (coarse, fine):
+        assert bool(result.converged)
+        assert float(result.penetration_error) < 1e-6
+        assert int(result.iterations) < 60
+    line_load = [result.pressure.sum("y") * (result.y[1] - result.y[0]) for result in (coarse, fine)]
+    inside = np.linspace(1e-3, 3.5e-3, 6)
+    first, second = (line.interp(x=inside).values for line in line_load)
+    np.testing.assert_allclose(first, second, rtol=2e-3)
+
+
 def test_ends_between_the_borders_of_cells_cost_little():
     """A roller whose ends cut cells: the error falls with their size, and is small away from the fillet's peak."""
     body = FiniteLengthSpace(length=14 * HALF_WIDTH, material=STEEL)
