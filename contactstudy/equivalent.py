@@ -13,7 +13,7 @@ from contactstudy.overlapping.loads import equivalent_loads_of
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.positions import Positions
-from contactstudy.surface import check_span
+from contactstudy.surface import REFERENCE_LENGTHS, check_span
 
 
 def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, z: Positions = (0.0,)) -> xr.Dataset:
@@ -35,7 +35,9 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     Dataset
         `P_h1` (x, y) on the top, `P_v1` and, with a second end, `P_v2` (y, z) on the end planes, in Pa, positive in
         compression. They grow like a logarithm towards a corner that carries load, where only the stresses that they
-        make together are finite.
+        make together are finite. On a finite-length space those of an eccentric load have a part that makes no
+        stress and grows like the logarithm of the distance along y at which it is zero: see the attribute
+        ``reference_distance``.
 
     Raises
     ------
@@ -64,10 +66,17 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
     length, mirrored_once = freed
     problem = EndProblem(length, body.material.poisson, values, grid, friction != 0, Resolution(), mirrored_once)
-    loads = equivalent_loads_of(problem, grid.x, grid.y, depths)
+    relative = np.isfinite(length) and not mirrored_once
+    reference = REFERENCE_LENGTHS * length if relative else None
+    loads = equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
     factors = np.array([1.0, friction] if friction else [1.0])
     added, first, second = (np.tensordot(factors, load, axes=1) for load in loads)
-    attributes = {"units": "Pa"}
+    attributes: dict[str, str | float] = {"units": "Pa"}
+    if reference is not None:
+        attributes |= {
+            "reference_distance": reference,
+            "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
+        }
     fields = {
         "P_h1": (("x", "y"), values + added, attributes | {"long_name": "equivalent pressure on the top, P_h1"}),
         "P_v1": (("y", "z"), first, attributes | {"long_name": "equivalent pressure on end plane I, P_v1"}),

@@ -7,6 +7,7 @@ import pytest
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, QuarterSpace, equivalent_loads
 from contactstudy.kernels.stress import half_space_stress
+from contactstudy.overlapping import problem
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -38,3 +39,18 @@ def test_quarter_space_has_one_end_and_a_half_space_none(half_space: HalfSpace, 
     assert loads["P_h1"].attrs["long_name"].endswith("P_h1")
     with pytest.raises(InvalidInputError, match="a body with a free end"):
         equivalent_loads(half_space, pressure)
+
+
+def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
+    short_body: FiniteLengthSpace, strip_pressure, monkeypatch
+) -> None:
+    pressure = strip_pressure(8.0, (32, 32)) * (1 + 0.5 * (strip_pressure(8.0, (32, 32)).x - 4.0))
+
+    def loads():
+        return equivalent_loads(short_body, pressure, 0.3, z=[0.2, 1.0])
+
+    usual = loads()
+    assert usual["P_h1"].attrs["reference_distance"] == 80.0
+    monkeypatch.setattr(problem, "POLES_ALONE", 0.1 * problem.POLES_ALONE)
+    for name in ("P_h1", "P_v1", "P_v2"):
+        assert float(np.abs(loads()[name] - usual[name]).max()) < 1e-4 * float(np.abs(usual[name]).max())

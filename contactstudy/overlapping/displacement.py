@@ -21,16 +21,10 @@ from contactstudy.grid import Grid
 from contactstudy.material import Material
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.lateral import POLES_ALONE, LateralPanel, lateral_panels
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
-from contactstudy.overlapping.problem import cosine_moments
-from contactstudy.overlapping.quadrature import (
-    Resolution,
-    lateral_nodes,
-)
+from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
-
-# Wavenumbers along y that share their axial ones.
-BATCH = 16
 
 
 @dataclass(frozen=True, eq=False)
@@ -174,31 +168,29 @@ def build_end_correction(
     span = grid.x_range[1]
     window = 2 * grid.dy * grid.cells_y
     shortest = 0.5 * grid.dx
-    scale = min(length, 4 * max(span, window))
+    first = POLES_ALONE / min(length, 4 * max(span, window))
     lateral_last = max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
-    first = 1e-2 / scale
-    lateral, weights = lateral_nodes(first, 0.5 * window, lateral_last, resolution)
-    if relative:  # the first panel is integrated in closed form
-        lateral = np.concatenate([[first, 0.5 * first], lateral[resolution.order :]])
-        weights = weights[resolution.order :]
-    to_grid = _lateral_transforms(lateral, weights, grid, first, reference if relative else None)
+    panels = lateral_panels(first, 0.5 * window, lateral_last, resolution, reference if relative else None)
     half = 0.5 * length if np.isfinite(length) else span
     edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)
     cell_edges = np.linspace(0.0, span, grid.cells_x + 1)
     one_side = cell_moments(edges, positions, cell_edges)
     parities = (1, -1) if np.isfinite(length) else (0,)
+    lateral = np.concatenate([panel.nodes for panel in panels])
     samples = np.empty((len(parities), 1 + tangential, lateral.size, positions.size, positions.size))
-    modes = modes_between_ends(length, float(lateral.min()), shortest, resolution, mirrored_once=mirrored_once)
-    for i, wavenumber in enumerate(lateral):
-        if i % BATCH == 0 and i > 0:
-            smallest = float(lateral[i:].min())
-            modes = modes_between_ends(length, smallest, shortest, resolution, mirrored_once=mirrored_once)
-        for parity, mode in zip(parities, modes, strict=False):
-            sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, tangential)
-            if mode.parity == parity:
-                samples[abs(parity - 1) // 2 if parity else 0, :, i] = sampled
-            else:  # ends that know nothing of each other: both parities see half of either quarter space
-                samples[:, :, i] = 0.5 * np.array(sampled)
+    i = 0
+    for panel in panels:
+        smallest = float(panel.nodes[0])
+        modes = modes_between_ends(length, smallest, shortest, resolution, mirrored_once=mirrored_once)
+        for wavenumber in panel.nodes:
+            for parity, mode in zip(parities, modes, strict=False):
+                sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, tangential)
+                if mode.parity == parity:
+                    samples[abs(parity - 1) // 2 if parity else 0, :, i] = sampled
+                else:  # ends that know nothing of each other: both parities see half of either quarter space
+                    samples[:, :, i] = 0.5 * np.array(sampled)
+            i += 1
+    to_grid = _lateral_transforms(panels, grid)
     near = (grid.cells_x + 1) // 2
     moments = [
         np.ascontiguousarray((one_side + parity * one_side[:, ::-1])[:, :near]) if parity else one_side
@@ -211,26 +203,19 @@ def build_end_correction(
     return EndCorrection(moments, spread[0], spread[1] if tangential else [], grid.dx)
 
 
-def _lateral_transforms(
-    lateral: FloatArray, weights: FloatArray, grid: Grid, first: float, reference: float | None
-) -> tuple[FloatArray, FloatArray]:
+def _lateral_transforms(panels: list[LateralPanel], grid: Grid) -> tuple[FloatArray, FloatArray]:
     """Matrices from samples over the wavenumber along y to the zero-padded grid's transform.
 
-    Returns the one for even kernels and the one for odd kernels: arrays (grid wavenumber, sample). With a `reference`
-    the first two samples are at `first` and half of it, and stand for ``c / k + d`` on the interval below `first`,
-    of which the integral is taken in closed form, relative to ``|y| = reference``.
+    Returns the one for even kernels and the one for odd kernels: arrays (grid wavenumber, sample).
     """
     offsets: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
-    phase = np.outer(offsets, lateral)
-    averaged = np.zeros(lateral.size)
-    averaged[lateral.size - weights.size :] = weights / np.pi * grid.dy
-    averaged *= np.sinc(lateral * grid.dy / (2 * np.pi))
-    cosine, sine = np.cos(phase) * averaged, np.sin(phase) * averaged
-    if reference is not None:
-        _, pole, constant = cosine_moments(first, offsets, reference)
-        # c = first (C(first/2) - C(first)), d = 2 C(first) - C(first/2)
-        cosine[:, 0] += grid.dy / np.pi * (2 * constant - first * pole)
-        cosine[:, 1] += grid.dy / np.pi * (first * pole - constant)
+    columns: tuple[list[FloatArray], list[FloatArray]] = ([], [])
+    for panel in panels:
+        averaged = grid.dy * np.sinc(panel.fine * grid.dy / (2 * np.pi))
+        for waves, gathered in zip(panel.waves(offsets), columns, strict=True):
+            cells = waves.T * averaged
+            gathered.append(cells if panel.interpolation is None else cells @ panel.interpolation)
+    cosine, sine = (np.concatenate(gathered, axis=1) for gathered in columns)
     size = grid.cells_y
     turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
     twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)

@@ -18,6 +18,7 @@ set of Hetenyi's and Keer's alternating scheme, solved at once.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from scipy import linalg
@@ -58,6 +59,24 @@ def tangential_on_end(
     inverse = 1.0 / (k2 + depth2)
     bracket = 2 * poisson * lateral**2 * inverse - axial2 * (k2 - depth2) * inverse**2
     return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
+
+
+class AuxiliaryLoads(NamedTuple):
+    """Loads on the auxiliary bodies, for one wavenumber along y.
+
+    Attributes
+    ----------
+    equivalent : complex array (wavenumber, column)
+        Weighted spectrum, before `AxialModes.cosine`, of the load that is added on the top of H.
+    depth : complex array
+        Depth wavenumbers on their ray, where the face loads are an analytic function.
+    face_load : complex array (depth, column)
+        Normal stress freed on the faces of V, times the quadrature's weights.
+    """
+
+    equivalent: ComplexArray
+    depth: ComplexArray
+    face_load: ComplexArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,45 +141,36 @@ class EquationSet:
         """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
         return np.asarray(self._top @ scaled_face_load)
 
-    def on_ray(
-        self,
-        pressure: ComplexArray,
-        traction: ComplexArray,
-        equivalent: ComplexArray,
-        shortest: float,
-        resolution: Resolution,
-    ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-        """Face loads as an analytic function, on a ray of depth wavenumbers.
+    def auxiliary_loads(
+        self, spectrum: ComplexArray, *, tangential: bool, shortest: float, resolution: Resolution
+    ) -> AuxiliaryLoads:
+        """Solve for the loads on H and V that free the ends from a pressure and, if wanted, from an equal traction.
 
         Parameters
         ----------
-        pressure, traction : complex array (wavenumber, column)
-            Weighted spectra of the top's pressure and of its traction along y (without the factor i).
-        equivalent : complex array (wavenumber, column)
-            Result of `on_top`.
+        spectrum : complex array (wavenumber, column)
+            Weighted spectrum of the pressure.
+        tangential : bool
+            Whether as many columns for the traction (without its factor i) follow.
         shortest : float
             Smallest distance from a loaded corner that matters, metres.
         resolution : Resolution
             Quadrature settings.
-
-        Returns
-        -------
-        nodes, weights : complex array
-            Depth wavenumbers and their weights.
-        face_load : complex array (node, column)
-            ``S`` there.
         """
+        source = self.from_pressure(spectrum)
+        if tangential:
+            source = np.hstack([source, self.from_traction(spectrum)])
+        equivalent = self.on_top(self.solve(source))
         last = max(resolution.ray_reach / shortest, 4 * self.lateral)
         depth, weights = ray_nodes(0.5 * self.lateral, last, resolution)
         axial = self.modes.wavenumbers
-        total = pressure + self.modes.on_end[:, None] * equivalent
+        own = spectrum.shape[1]
+        total = self.modes.on_end[:, None] * equivalent
+        total[:, :own] += spectrum
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
-        for k, normal, tangential in (
-            (axial, total, traction),
-            (axial.conj(), total.conj(), traction.conj()),
-        ):
+        for k, normal, traction in ((axial, total, spectrum), (axial.conj(), total.conj(), spectrum.conj())):
             face_load += 0.5 * normal_on_end(k, depth, self.lateral, self.poisson) @ normal
-            if np.any(tangential):
-                face_load += 0.5 * tangential_on_end(k, depth, self.lateral, self.poisson) @ tangential
-        return depth, weights, face_load
+            if tangential:
+                face_load[:, own:] += 0.5 * tangential_on_end(k, depth, self.lateral, self.poisson) @ traction
+        return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)

@@ -15,21 +15,11 @@ import numpy as np
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping.axial import DECAY_LENGTHS
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.lateral import LateralLoads
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
-from contactstudy.overlapping.problem import (
-    EndProblem,
-    LateralAmplitudes,
-    View,
-    lateral_amplitudes,
-    lateral_sum,
-    parity_parts,
-    views_of,
-)
-from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.problem import EndProblem, parity_parts, views_of
 from contactstudy.threads import one_blas_thread
 
-# Wavenumbers that share one set of points and one product along y.
-BATCH = 16
 # Positions over the length that agree to this many digits are the same distance from either end.
 SAME_POSITION = 12
 
@@ -145,77 +135,41 @@ def _away_from_corner(
 ) -> dict[int, FloatArray]:
     distance = np.hypot(x[:, None], z[None, :])
     shortest = max(float(distance.min()), problem.corner_offset)
-    sum_along_y = lateral_sum(problem, y, shortest, reference)
-    if distance.min() > 0:
-        sum_along_y = sum_along_y.below(DECAY_LENGTHS / distance.min())
-    lateral = sum_along_y.wavenumbers
-    loads = lateral_amplitudes(parts, problem.grid, lateral, tangential=problem.tangential)
-    phases = np.array([column.phase for column in loads.columns])
-    even, odd = sum_along_y.synthesis(y)
-    syntheses = ((harmonics.even_in_y, even[:, phases]), (harmonics.odd_in_y, odd[:, phases]))
-    result = {parity: np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size)) for parity in parts}
-    for start in range(0, lateral.size, BATCH):
-        batch = slice(start, min(start + BATCH, lateral.size))
-        near = lateral[start] * distance < DECAY_LENGTHS
-        rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
-        amplitudes = _batch_amplitudes(problem, harmonics, loads, lateral[batch], batch, x[rows], z[columns], shortest)
-        for parity, load in {(column.parity, column.load) for column in loads.columns}:
-            own = [i for i, column in enumerate(loads.columns) if (column.parity, column.load) == (parity, load)]
-            for components, synthesis in syntheses:
-                flat = amplitudes[..., own][components].reshape(len(components) * rows.size * columns.size, -1)
-                values = flat @ synthesis[batch, own].reshape(-1, y.size)
-                for component, value in zip(components, values.reshape(len(components), -1), strict=True):
-                    shaped = value.reshape(rows.size, columns.size, y.size)
-                    result[parity][load, component, rows[:, None], columns] += shaped
+    shape = (1 + problem.tangential, harmonics.count, x.size, z.size, y.size)
+    result = {parity: np.zeros(shape) for parity in parts}
+    for panel in problem.panels(y, shortest, reference):
+        for loads in problem.batches(panel, parts, y):
+            near = loads.nodes[0] * distance < DECAY_LENGTHS
+            rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
+            if not rows.size:
+                break
+            amplitudes = _amplitudes(problem, harmonics, loads, x[rows], z[columns], shortest)
+            for parity, field in result.items():
+                own = amplitudes[..., loads.parities == parity]
+                flat = own.reshape(*own.shape[:4], -1)
+                for load, values, waves in zip(field, flat, loads.syntheses(parity), strict=False):
+                    for components, synthesis in zip((harmonics.even_in_y, harmonics.odd_in_y), waves, strict=True):
+                        for component in components:
+                            load[component, rows[:, None], columns] += values[component] @ synthesis
     return {parity: np.ascontiguousarray(field.swapaxes(3, 4)) for parity, field in result.items()}
 
 
-def _batch_amplitudes(
-    problem: EndProblem,
-    harmonics: Harmonics,
-    loads: LateralAmplitudes,
-    lateral: FloatArray,
-    batch: slice,
-    x: FloatArray,
-    z: FloatArray,
-    shortest: float,
+def _amplitudes(
+    problem: EndProblem, harmonics: Harmonics, loads: LateralLoads, x: FloatArray, z: FloatArray, shortest: float
 ) -> FloatArray:
-    """Amplitudes for a batch of wavenumbers along y: array (component, x, z, wavenumber, column)."""
-    resolution = problem.resolution
-    views = [
-        view
-        for modes in problem.axial_modes(float(lateral[0]), shortest)
-        for view in views_of(modes, problem, loads, batch, x)
-    ]
-    amplitudes = np.zeros((harmonics.count, x.size, z.size, lateral.size, len(loads.columns)))
+    """Answers to a batch of loads: array (load, component, x, z, wavenumber, column)."""
+    count = 1 + problem.tangential
+    amplitudes = np.zeros((count, harmonics.count, x.size, z.size, loads.nodes.size, loads.parities.size))
     depths = np.arange(z.size)[:, None]
-    for view in views:
-        for number, wavenumber in enumerate(lateral):
-            system = EquationSet.build(view.modes, float(wavenumber), problem.poisson, shortest, resolution)
-            field = _harmonic_field(harmonics, system, view, number, z, shortest, resolution)
-            amplitudes[:, view.rows[:, None, None], depths, number, view.columns] = field
+    for view in views_of(problem, loads, x, shortest):
+        for number, lateral in enumerate(loads.nodes):
+            system, (equivalent, depth, face_load) = problem.auxiliary_loads(view, float(lateral), number, shortest)
+            field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
+            field += harmonics.beside_face_load(system, depth, face_load, view.x, z)
+            by_load = field.reshape(*field.shape[:3], count, -1)
+            for load in range(count):
+                amplitudes[load][:, view.rows[:, None, None], depths, number, view.columns] = by_load[:, :, :, load]
     return amplitudes
-
-
-def _harmonic_field(
-    harmonics: Harmonics,
-    system: EquationSet,
-    view: View,
-    number: int,
-    z: FloatArray,
-    shortest: float,
-    resolution: Resolution,
-) -> FloatArray:
-    """Amplitudes for the batch's wavenumber `number`: array (component, x, z, column)."""
-    pressure, traction = view.pressure[:, number], view.traction[:, number]
-    source = system.from_pressure(pressure)
-    if np.any(traction):
-        source = source + system.from_traction(traction)
-    equivalent = system.on_top(system.solve(source))
-    depth, weights, face_load = system.on_ray(pressure, traction, equivalent, shortest, resolution)
-    field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
-    field += harmonics.beside_face_load(system, depth, weights[:, None] * face_load, view.x, z)
-    return field
 
 
 def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:

@@ -7,14 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.checks import FloatArray
-from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import BATCH
-from contactstudy.overlapping.problem import (
-    EndProblem,
-    lateral_amplitudes,
-    lateral_sum,
-    views_of,
-)
+from contactstudy.overlapping.problem import EndProblem, views_of
 from contactstudy.threads import one_blas_thread
 
 
@@ -34,8 +27,13 @@ class EquivalentLoads(NamedTuple):
     second: FloatArray
 
 
-def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> EquivalentLoads:
+def equivalent_loads_of(
+    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float | None = None
+) -> EquivalentLoads:
     """Equivalent loads at positions `x` and `y` on the top, and at `y` and depths `z` on the ends.
+
+    Between two ends an eccentric load tilts H and V against each other by an amount that grows like the logarithm of
+    the distance, and the loads that tilt them make no stress: they are stated relative to ``|y| = reference``.
 
     At a loaded corner they grow like a logarithm while the stresses that they make stay finite; nearer than a part
     of a cell they are evaluated at that distance.
@@ -44,42 +42,29 @@ def equivalent_loads_of(problem: EndProblem, x: FloatArray, y: FloatArray, z: Fl
     x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, problem.length - offset), x)
     z = np.maximum(z, offset)
     shortest = float(min(problem.from_end(x).min(), z.min()))
-    sum_along_y = lateral_sum(problem, y, shortest)
-    lateral = sum_along_y.wavenumbers
-    amplitudes = lateral_amplitudes({0: problem.pressure}, problem.grid, lateral, tangential=problem.tangential)
-    synthesis, _ = sum_along_y.synthesis(y)
-    columns = len(amplitudes.columns)
-    top = np.zeros((x.size, lateral.size, columns))
-    faces = np.zeros((2, z.size, lateral.size, columns))
-    resolution = problem.resolution
+    count = 1 + problem.tangential
+    added = np.zeros((count, x.size, y.size))
+    faces = np.zeros((2, count, z.size, y.size))
     with one_blas_thread():
-        for start in range(0, lateral.size, BATCH):
-            batch = slice(start, min(start + BATCH, lateral.size))
-            for modes in problem.axial_modes(float(lateral[start]), shortest):
-                for view in views_of(modes, problem, amplitudes, batch, x):
-                    for number, wavenumber in enumerate(lateral[batch]):
-                        system = EquationSet.build(modes, float(wavenumber), problem.poisson, shortest, resolution)
-                        p, q = view.pressure[:, number], view.traction[:, number]
-                        scaled = system.solve(system.from_pressure(p) + system.from_traction(q))
-                        equivalent = system.on_top(scaled)
-                        depth, depth_weights, load = system.on_ray(p, q, equivalent, shortest, resolution)
-                        top[view.rows, start + number] += np.real(view.cosine.T @ equivalent)
-                        waves = np.exp(1j * np.outer(z, depth)) * depth_weights
-                        applied = modes.applied(np.sqrt(depth**2 + wavenumber**2))
-                        face = np.real(waves @ (applied[:, None] * load))
+        for panel in problem.panels(y, shortest, reference):
+            for loads in problem.batches(panel, {0: problem.pressure}, y):
+                top = np.zeros((x.size, loads.nodes.size, count, loads.parities.size))
+                sides = np.zeros((2, z.size, loads.nodes.size, count, loads.parities.size))
+                for view in views_of(problem, loads, x, shortest):
+                    for number, wavenumber in enumerate(loads.nodes):
+                        lateral = float(wavenumber)
+                        _, (equivalent, depth, face_load) = problem.auxiliary_loads(view, lateral, number, shortest)
+                        top[view.rows, number] += np.real(view.cosine.T @ equivalent).reshape(view.rows.size, count, -1)
+                        applied = view.modes.applied(np.sqrt(depth**2 + lateral**2))
+                        side = np.real(np.exp(1j * np.outer(z, depth)) @ (applied[:, None] * face_load))
+                        side = side.reshape(z.size, count, -1)
                         # The second end's load follows from the first's by parity; separate ends have a view each.
-                        if modes.parity:
-                            faces[0, :, start + number] += face
-                            faces[1, :, start + number] += modes.parity * face
+                        if view.modes.parity:
+                            sides[0, :, number] += side
+                            sides[1, :, number] += view.modes.parity * side
                         else:
-                            faces[int(view.flipped), :, start + number] += face
-
-    def over_y(values: FloatArray) -> FloatArray:
-        """From amplitudes (..., wavenumber, column) to values (load, ..., y)."""
-        result = np.zeros((1 + problem.tangential, *values.shape[:-2], y.size))
-        for i, column in enumerate(amplitudes.columns):
-            result[column.load] += values[..., i] @ synthesis[:, column.phase]
-        return result
-
-    on_faces = -over_y(faces).swapaxes(2, 3)
-    return EquivalentLoads(over_y(top), on_faces[:, 0], on_faces[:, 1])
+                            sides[int(view.flipped), :, number] += side
+                for load, (synthesis, _) in zip(range(count), loads.syntheses(0), strict=False):
+                    added[load] += top[:, :, load].reshape(x.size, -1) @ synthesis
+                    faces[:, load] -= sides[:, :, :, load].reshape(2, z.size, -1) @ synthesis
+    return EquivalentLoads(added, faces[0].swapaxes(1, 2), faces[1].swapaxes(1, 2))

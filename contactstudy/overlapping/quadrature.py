@@ -31,6 +31,21 @@ def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
     return (middle + half * nodes).ravel(), (half * weights).ravel()
 
 
+def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
+    """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial.
+
+    Examples
+    --------
+    >>> lagrange(np.array([0.0, 1.0, 2.0]), np.array([0.5])).tolist()
+    [[0.375, 0.75, -0.125]]
+    """
+    matrix = np.empty((points.size, nodes.size))
+    for i, node in enumerate(nodes):
+        others = np.delete(nodes, i)
+        matrix[:, i] = np.prod((points[:, None] - others) / (node - others), axis=1)
+    return matrix
+
+
 def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
     """Panel edges ``0, first, ratio first, ratio**2 first, ...`` up to at least `last`.
 
@@ -62,8 +77,10 @@ class Resolution:
         Likewise on the ray of depth wavenumbers, where the loads are evaluated and no longer solved for.
     modes : int
         Axial modes that are summed one by one.
+    lateral_nodes : int
+        Wavenumbers along y per panel at which the body is asked.
     lateral_order : int
-        Gauss nodes per panel of the wavenumber along y.
+        Gauss nodes per panel of the finer wavenumbers along y, which follow the load's phase.
     lateral_reach : float
         Largest wavenumber along y, times the smallest distance from a loaded corner.
     """
@@ -74,6 +91,7 @@ class Resolution:
     reach: float = 200.0
     ray_reach: float = 50.0
     modes: int = 8
+    lateral_nodes: int = 10
     lateral_order: int = 16
     lateral_reach: float = 10.0
 
@@ -83,40 +101,3 @@ def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[Comple
     nodes, weights = panel_nodes(growing_edges(first, last, resolution.ratio), resolution.order)
     turn = np.exp(1j * resolution.angle)
     return nodes * turn, weights * turn
-
-
-def graded_then_uniform_edges(first: float, width: float, last: float) -> FloatArray:
-    """Panel edges that double from `first` until the panels are `width` wide, then go on uniformly to `last`.
-
-    Examples
-    --------
-    >>> graded_then_uniform_edges(1.0, 2.0, 8.0).tolist()
-    [0.0, 1.0, 2.0, 4.0, 6.0, 8.0]
-    """
-    edges = [0.0, first]
-    while edges[-1] < width and edges[-1] < last:
-        edges.append(min(2 * edges[-1], edges[-1] + width))
-    rest = max(0, int(np.ceil((last - edges[-1]) / width - 1e-12)))
-    return np.concatenate([edges, edges[-1] + width * np.arange(1, rest + 1)])
-
-
-def lateral_nodes(first: float, reach: float, last: float, resolution: Resolution) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of an integral over the wavenumber along y, from 0 to `last`.
-
-    Panels grow from `first`, then go on uniformly, as wide as the phase over the distance `reach` lets the Gauss
-    nodes follow.
-
-    Examples
-    --------
-    >>> nodes, weights = lateral_nodes(1e-3, 10.0, 40.0, Resolution())
-    >>> round(float(weights @ (np.exp(-nodes) * np.cos(10.0 * nodes))) * 101, 4)
-    1.0
-    """
-    width = 1.8 * resolution.lateral_order / reach
-    # The uniform panels begin where a quarter of one is behind them: near enough to 0 for their order.
-    edges = growing_edges(first, max(first, 0.25 * width), resolution.ratio)
-    edges = np.append(edges[edges < 0.25 * width], max(first, 0.25 * width))
-    graded = panel_nodes(edges, resolution.order)
-    panels = max(0, int(np.ceil((last - edges[-1]) / width - 1e-12)))
-    uniform = panel_nodes(np.linspace(edges[-1], edges[-1] + width * panels, panels + 1), resolution.lateral_order)
-    return np.concatenate([graded[0], uniform[0]]), np.concatenate([graded[1], uniform[1]])

@@ -59,6 +59,7 @@ def test_no_internal_setting_matters() -> None:
         "angle": np.pi / 7,
         "reach": 1000.0,
         "modes": 14,
+        "lateral_nodes": 16,
         "lateral_order": 24,
         "lateral_reach": 16.0,
     }

@@ -1,0 +1,222 @@
+"""The direction along the rolling: few wavenumbers ``k_y`` for the body, many for the load.
+
+What a body answers to a load varies slowly with ``k_y``; what varies fast is the phase ``k_y y`` of the load and of the
+point. So the body is asked at the Gauss nodes of panels that grow from 0, and its answers are interpolated to the many
+nodes that follow the phase. Within a panel a load is a sum of few products of a function of x and a function of
+``k_y`` (a singular value decomposition), often a single one, and only these functions of x are asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from scipy import special
+
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.grid import Grid
+from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
+
+# A part smaller than this, over the load, is left out: a contact symmetric but for its tolerance is symmetric.
+NEGLIGIBLE = 1e-9
+# Below this wavenumber along y, over the smallest length of the problem, an amplitude is its poles and a constant. The
+# double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is taken much lower.
+POLES_ALONE = 0.01
+POLE_SAMPLES = (1 / 3, 2 / 3, 1.0)
+# Phase in radians that one Gauss node follows.
+PHASE_PER_NODE = 1.8
+# Columns, over all their wavenumbers, that share one set of points and one product along y.
+BATCH = 16
+
+
+@dataclass(frozen=True, eq=False)
+class LateralPanel:
+    """Part of the integral over the wavenumber along y.
+
+    Attributes
+    ----------
+    nodes : array
+        Wavenumbers at which the body's answer is known, 1/m.
+    fine, weights : array
+        Quadrature nodes that follow the phase, and their weights; `nodes` themselves where these suffice.
+    interpolation : array (fine, node), or None
+        From `nodes` to `fine`; None where they are the same.
+    reference : float or None
+        If given, the nodes (`POLE_SAMPLES` of the panel's end) stand for an answer ``b / k**2 + c / k + d`` from 0 to
+        the panel's end, whose integral is taken in closed form; the poles' are relative to ``|y| = reference``.
+    """
+
+    nodes: FloatArray
+    fine: FloatArray
+    weights: FloatArray
+    interpolation: FloatArray | None = None
+    reference: float | None = None
+
+    def waves(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
+        if self.reference is not None:
+            powers = np.vander(1 / self.nodes, 3)
+            moments = (function(self.nodes[-1], y, self.reference) for function in (cosine_moments, _sine_moments))
+            cosine, sine = (np.asarray(np.linalg.solve(powers.T, each) / np.pi) for each in moments)
+            return cosine, sine
+        phase, weights = np.outer(self.fine, y), self.weights[:, None] / np.pi
+        return np.cos(phase) * weights, np.sin(phase) * weights
+
+
+@dataclass(frozen=True, eq=False)
+class LateralLoads:
+    """Top loads within one panel or a part of it, as columns for which the body is asked.
+
+    A column is asked for as a pressure and, where that is wanted, as a traction along y.
+
+    Attributes
+    ----------
+    nodes : array
+        Wavenumbers along y, 1/m.
+    columns : array (cell, node or 1, column)
+        Functions of x.
+    parities : array (column)
+        1 or -1 for a part of the load even or odd about mid-length, 0 for a load that is not split.
+    even, odd : array (node, column, y)
+        From the answers to their sum at positions y, for what under a pressure even in y is even or odd.
+    """
+
+    nodes: FloatArray
+    columns: FloatArray
+    parities: IntArray
+    even: FloatArray
+    odd: FloatArray
+
+    def syntheses(self, parity: int) -> list[tuple[FloatArray, FloatArray]]:
+        """`even` and `odd` of one parity for the pressure and, likewise, for the traction: arrays (node column, y).
+
+        Kernels of a traction carry a factor i against those of a pressure, which turns a cosine into a sine.
+        """
+        own = self.parities == parity
+        even, odd = (waves[:, own].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
+        return [(even, odd), (odd, -even)]
+
+    def batches(self) -> Iterator[LateralLoads]:
+        """Parts of about `BATCH` columns over all their nodes."""
+        step = max(1, BATCH // max(1, self.parities.size))
+        for start in range(0, self.nodes.size, step):
+            part = slice(start, start + step)
+            columns = self.columns if self.columns.shape[1] == 1 else self.columns[:, part]
+            yield LateralLoads(self.nodes[part], columns, self.parities, self.even[part], self.odd[part])
+
+
+def lateral_panels(
+    first: float, reach: float, last: float, resolution: Resolution, reference: float | None = None
+) -> list[LateralPanel]:
+    """Panels from 0 to `last`, growing from `first`, for phases over the distance `reach`.
+
+    Examples
+    --------
+    >>> panels = lateral_panels(1e-3, 30.0, 40.0, Resolution())
+    >>> found = 0.0
+    >>> for panel in panels:
+    ...     answer = np.exp(-panel.nodes)
+    ...     if panel.interpolation is not None:
+    ...         answer = panel.interpolation @ answer
+    ...     found += float(panel.waves(np.array([30.0]))[0][:, 0] @ answer) * np.pi
+    >>> round(found * 901, 3)
+    1.0
+    """
+    order = resolution.lateral_nodes
+    count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.ratio))))
+    edges = np.concatenate([[0.0], first * (last / first) ** (np.arange(count + 1) / count)])
+    panels = []
+    for low, high in pairwise(edges):
+        nodes, weights = panel_nodes(np.array([low, high]), order)
+        if (high - low) * reach <= PHASE_PER_NODE * order:
+            panels.append(LateralPanel(nodes, nodes, weights))
+            continue
+        pieces = int(np.ceil((high - low) * reach / (PHASE_PER_NODE * resolution.lateral_order)))
+        fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
+        panels.append(LateralPanel(nodes, fine, weights, lagrange(nodes, fine)))
+    if reference is not None:
+        samples = first * np.array(POLE_SAMPLES)
+        panels[0] = LateralPanel(samples, samples, np.ones_like(samples), reference=reference)
+    return panels
+
+
+def lateral_loads(
+    panel: LateralPanel, parts: Mapping[int, FloatArray], grid: Grid, y: FloatArray
+) -> LateralLoads | None:
+    """Columns of the `parts` (by parity) of a cell-wise uniform pressure within one panel; None if there are none."""
+    width = grid.dy * np.sinc(panel.fine * grid.dy / (2 * np.pi))
+    phase = np.outer(grid.y, panel.fine)
+    waves = [function(phase) * width for function in (np.cos, np.sin)]
+    cosine, sine = panel.waves(y)
+    columns, parities, even, odd = [], [], [], []
+    for parity, pressure in parts.items():
+        spectra = [pressure @ wave for wave in waves]
+        least = NEGLIGIBLE * max(np.abs(spectrum).max() for spectrum in spectra)
+        for spectrum, at_even, at_odd in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
+            if np.abs(spectrum).max() > least:
+                columns.append(spectrum)
+                parities.append(parity)
+                even.append(at_even)
+                odd.append(at_odd)
+    if not columns:
+        return None
+    loads = LateralLoads(
+        panel.fine, np.stack(columns, axis=-1), np.array(parities), np.stack(even, axis=1), np.stack(odd, axis=1)
+    )
+    return loads if panel.interpolation is None else _at_nodes(loads, panel.nodes, panel.interpolation)
+
+
+def _at_nodes(loads: LateralLoads, nodes: FloatArray, interpolation: FloatArray) -> LateralLoads:
+    """Return the same loads as few functions of x, asked for at few nodes; as they are, if that is not less to ask."""
+    cells, fine, _ = loads.columns.shape
+    columns, parities = [], []
+    even: list[FloatArray] = []
+    odd: list[FloatArray] = []
+    for parity in np.unique(loads.parities):
+        own = loads.parities == parity
+        spectra = loads.columns[..., own].reshape(cells, -1)
+        left, values, right = np.linalg.svd(spectra, full_matrices=False)
+        rank = int((values > NEGLIGIBLE * values[0]).sum())
+        along = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
+        columns.append(left[:, :rank])
+        parities.append(np.full(rank, parity))
+        for waves, gathered in ((loads.even, even), (loads.odd, odd)):
+            summed = (along[..., None] * waves[:, own]).sum(axis=2)
+            gathered.append((interpolation.T @ summed).swapaxes(0, 1))
+    count = np.concatenate(parities)
+    if nodes.size * count.size >= fine * loads.parities.size:
+        return loads
+    shared = np.concatenate(columns, axis=1)[:, None, :]
+    return LateralLoads(nodes, shared, count, np.concatenate(even, axis=1), np.concatenate(odd, axis=1))
+
+
+def cosine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:
+    """Integrals of ``cos(k y)`` times ``k**-2, k**-1, 1`` over k from 0 to `first`: array (3, y).
+
+    The first two are relative to ``|y| = reference``, of which all wavenumbers are taken here: they stand for rigid
+    motions, and no more than these is to be moved.
+    """
+    argument = np.maximum(first * np.abs(y), 1e-30)
+    sine_integral, cosine_integral = special.sici(argument)
+    return np.array(
+        [
+            (1 - np.cos(argument)) / first - np.abs(y) * sine_integral + 0.5 * np.pi * reference,
+            cosine_integral - np.log(argument) + np.log(first * reference),
+            first * np.sinc(argument / np.pi),
+        ]
+    )
+
+
+def _sine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:
+    """Likewise of ``sin(k y)``; the first stands for a rotation, which is moved with the cosine's second."""
+    argument = first * y
+    pole = cosine_moments(first, y, reference)[1]
+    return np.array(
+        [
+            y * (1 - np.sinc(argument / np.pi) + pole),
+            special.sici(argument)[0],
+            first * np.sin(0.5 * argument) * np.sinc(0.5 * argument / np.pi),
+        ]
+    )
