@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.bodies import Body
+from contactstudy.bodies import Body, Part
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import STRESSES, describe
@@ -94,20 +94,36 @@ def _unit_fields(
     body: Body, pressure: FloatArray, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray, *, tangential: bool
 ) -> FloatArray:
     """Stresses (load, 6, x, y, z) under the pressure and, if wanted, under an equal traction along +y."""
-    poisson = body.material.poisson
-    fields: FloatArray = np.zeros((1 + tangential, 6, x.size, y.size, z.size))
-    for part in body.parts:
-        fields += part.weight * half_space_stress(
-            pressure, poisson, grid, x, y, z, extent=part.extent, tangential=tangential
-        )
-        if part.freed and pressure.any():
-            length, mirrored_once = part.freed
-            problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
-            from_ends = end_stress(problem, x, y, z)
-            # The two auxiliary bodies leave no traction on the top, by construction.
-            for component in (2, 4, 5):
-                from_ends[:, component][..., z == 0] = 0.0
-            fields += part.weight * from_ends
+    points = (x, y, z)
+    fields, *others = (
+        _part_fields(part, body.material.poisson, pressure, grid, points, tangential=tangential) for part in body.parts
+    )
+    for other in others:
+        fields += other
+    return fields
+
+
+def _part_fields(
+    part: Part,
+    poisson: float,
+    pressure: FloatArray,
+    grid: Grid,
+    points: tuple[FloatArray, FloatArray, FloatArray],
+    *,
+    tangential: bool,
+) -> FloatArray:
+    """Stresses of one part of a body, times its weight."""
+    fields = half_space_stress(pressure, poisson, grid, *points, extent=part.extent, tangential=tangential)
+    if part.freed and pressure.any():
+        length, mirrored_once = part.freed
+        problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
+        from_ends = end_stress(problem, *points)
+        # The two auxiliary bodies leave no traction on the top, by construction.
+        for component in (2, 4, 5):
+            from_ends[:, component][..., points[2] == 0] = 0.0
+        fields += from_ends
+    if part.weight != 1:
+        fields *= part.weight
     return fields
 
 

@@ -6,13 +6,16 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
-from contactstudy.kernels.field import Influence, half_space_field
+from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.images import FAR_LIMIT
+from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.patch_displacement import normal_displacement_inside, tangential_displacement_inside
 from contactstudy.material import Material
 
-# Sign of the components x, y, z on the other side of the load along x.
-SIGN_ALONG_X = [-1.0, 1.0, 1.0]
+# Signs of the components x, y, z on the other side of a pressure along x and along y. On that of a traction along y the
+# second ones are reversed.
+SIGN_ALONG_X = np.array([-1.0, 1.0, 1.0])
+SIGN_ALONG_Y = np.array([1.0, -1.0, 1.0])
 
 
 def half_space_displacement(
@@ -60,8 +63,9 @@ def half_space_displacement(
             return normal
         return np.concatenate([normal, tangential_displacement_inside(at_x, at_y, depth, nu)])
 
-    signs = np.tile(SIGN_ALONG_X, 1 + tangential)
-    level = np.zeros(signs.size)
+    along_x = np.tile(SIGN_ALONG_X, 1 + tangential)
+    along_y = np.concatenate([SIGN_ALONG_Y, -SIGN_ALONG_Y]) if tangential else SIGN_ALONG_Y
+    level = np.zeros(along_x.size)
     length = extent[1] - extent[0]
     if np.isfinite(length):
         # Beside a row of loads 4 pi G u is 2 (1 - nu) / r in their direction, and y**2 / r**3 adds a constant.
@@ -69,5 +73,6 @@ def half_space_displacement(
         level[2] = -row / length
         if tangential:
             level[4] = -(row + 2 * nu) / length
-    field = half_space_field(pressure, Influence(corner, signs, level), grid, x, y, z, extent=extent)
+    influence = Influence(("displacement", nu, tangential, length, reference), corner, along_x, along_y, level)
+    field = half_space_field(pressure, influence, grid, x, y, z, extent=extent)
     return field.reshape(-1, 3, *field.shape[1:]) / (4 * np.pi * material.shear_modulus)

@@ -6,7 +6,6 @@ in many different ways, the field is interpolated from the cell centres and the 
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +13,9 @@ from scipy import fft
 
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.grid import Grid
-from contactstudy.kernels.images import CornerFunction, cell_kernel, mirrored_kernel
+from contactstudy.kernels.centred import centred_field
+from contactstudy.kernels.images import cell_kernel
+from contactstudy.kernels.influence import Influence
 
 # Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
@@ -22,26 +23,6 @@ OFFSET_TOLERANCE = 1e-6
 ALIGNED_GROUPS = 2
 INTERPOLATION_POINTS = 8
 NEAR_CELLS = 14
-
-
-@dataclass(frozen=True, eq=False)
-class Influence:
-    """What a unit load on one cell does around it: the components of one or more fields.
-
-    Attributes
-    ----------
-    corner : callable
-        Corner functions (component, ...) of broadcastable offsets ``X, Y`` and of the depth.
-    sign_along_x : array (component,)
-        1 or -1 for components even or odd in the offset along x.
-    image_level : array (component,)
-        Constant that the images of a unit load per area add to the kernel, see `mirrored_kernel`; it fixes the
-        reference of a quantity that grows with distance.
-    """
-
-    corner: Callable[[FloatArray, FloatArray, float], FloatArray]
-    sign_along_x: FloatArray
-    image_level: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +93,23 @@ def half_space_field(
         return result
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
+    columns = aligned_points(y, float(grid.y[first]), grid.dy)
+    rows = aligned_points(x, float(grid.x[0]), grid.dx)
+    if len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0 and (in_first or not in_second):
+        return np.moveaxis(
+            centred_field(
+                load,
+                influence,
+                (grid.dx, grid.dy),
+                rows[0].cells,
+                columns[0].cells,
+                z,
+                mirrored=in_first,
+                length=extent[1] if periodic else np.inf,
+            ),
+            1,
+            -1,
+        )
     start = grid.x[0]
     if in_first:  # cells of the mirrored load lie before those of the load
         load = np.concatenate([load[::-1], load])
@@ -119,7 +117,6 @@ def half_space_field(
     elif in_second:
         load = np.concatenate([load, load[::-1]])
     cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
-    columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(start), grid.dx)
     for column in columns:
         if len(rows) > ALIGNED_GROUPS:
@@ -143,10 +140,6 @@ class _LoadedCells:
     @property
     def periodic(self) -> bool:
         return bool(np.isfinite(self.length))
-
-    def corner(self, depth: float) -> CornerFunction:
-        """Corner functions at one depth."""
-        return lambda x, y: self.influence.corner(x, y, depth)
 
     def lateral_offsets(self, column: Aligned) -> tuple[FloatArray, IntArray]:
         """Offsets along y from any cell to any point of the column, and where among them the points lie."""
@@ -214,7 +207,7 @@ def _unaligned_field(cells: _LoadedCells, position: FloatArray, column: Aligned,
     y_edges = np.append(y - 0.5 * cells.dy, y[-1] + 0.5 * cells.dy)
 
     def correction(depth: float) -> FloatArray:
-        corner = cells.corner(depth)
+        corner = cells.influence.corner_at(depth)
         exact = np.diff(np.diff(corner(x_edges[..., None], y_edges), axis=-1), axis=-2)
         aligned = cell_kernel(corner, cells.dx * around, y, cells.dx, cells.dy)
         difference = exact - np.einsum("tka,cay->ctky", interpolation, aligned)
@@ -226,13 +219,9 @@ def _unaligned_field(cells: _LoadedCells, position: FloatArray, column: Aligned,
 
 def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:
     """Kernel at uniform offsets `x`; when they include 0 it is evaluated on one side and reflected to the other."""
-    corner = cells.corner(depth)
 
     def evaluate(offsets: FloatArray) -> FloatArray:
-        if cells.periodic:
-            level = cells.dx * cells.dy * cells.influence.image_level
-            return mirrored_kernel(corner, offsets, y, cells.dx, cells.dy, cells.length) + level[:, None, None]
-        return cell_kernel(corner, offsets, y, cells.dx, cells.dy)
+        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, cells.length, depth)
 
     steps = x / cells.dx
     before = round(-float(steps[0]))

@@ -6,11 +6,14 @@ import numpy as np
 
 from contactstudy.checks import FloatArray
 from contactstudy.grid import Grid
-from contactstudy.kernels.field import Influence, half_space_field
+from contactstudy.kernels.field import half_space_field
+from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.patch import normal_corner, tangential_corner
 
-# Sign of the components xx, yy, zz, xy, xz, yz on the other side of the load along x.
+# Signs of the components xx, yy, zz, xy, xz, yz on the other side of a pressure along x and along y. On that of a
+# traction along y the second ones are reversed.
 SIGN_ALONG_X = np.array([1.0, 1.0, 1.0, -1.0, -1.0, 1.0])
+SIGN_ALONG_Y = np.array([1.0, 1.0, 1.0, -1.0, 1.0, -1.0])
 
 
 def stress_influence(poisson: float, *, tangential: bool) -> Influence:
@@ -22,8 +25,9 @@ def stress_influence(poisson: float, *, tangential: bool) -> Influence:
             return normal
         return np.concatenate([normal, tangential_corner(x, y, z, poisson)])
 
-    signs = np.tile(SIGN_ALONG_X, 1 + tangential)
-    return Influence(corner, signs, np.zeros(signs.size))
+    along_x = np.tile(SIGN_ALONG_X, 1 + tangential)
+    along_y = np.concatenate([SIGN_ALONG_Y, -SIGN_ALONG_Y]) if tangential else SIGN_ALONG_Y
+    return Influence(("stress", poisson, tangential), corner, along_x, along_y, np.zeros(along_x.size))
 
 
 def half_space_stress(

@@ -7,7 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from contactstudy import checks
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.errors import InvalidInputError
 
 
 @lru_cache(maxsize=32)
@@ -62,6 +64,8 @@ def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
 class Resolution:
     """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 1e-5 of a load.
 
+    Reaches are over the smallest distance from a loaded corner that is asked for: points nearer to it refine them.
+
     Parameters
     ----------
     order : int
@@ -83,6 +87,11 @@ class Resolution:
         Gauss nodes per panel of the finer wavenumbers along y, which follow the load's phase.
     lateral_reach : float
         Largest wavenumber along y, times the smallest distance from a loaded corner.
+
+    Raises
+    ------
+    InvalidInputError
+        If a setting cannot resolve anything.
     """
 
     order: int = 8
@@ -91,9 +100,20 @@ class Resolution:
     reach: float = 200.0
     ray_reach: float = 50.0
     modes: int = 8
-    lateral_nodes: int = 10
+    lateral_nodes: int = 7
     lateral_order: int = 16
     lateral_reach: float = 10.0
+
+    def __post_init__(self) -> None:
+        """Refuse settings with which the ends would carry traction that looks like a result."""
+        for name in ("order", "modes", "lateral_nodes", "lateral_order"):
+            checks.count(name, getattr(self, name), least=2)
+        for name in ("reach", "ray_reach", "lateral_reach"):
+            checks.positive(name, getattr(self, name))
+        if not self.ratio > 1:
+            raise InvalidInputError("ratio", self.ratio, "more than 1: the panels grow")
+        if not 0 < self.angle < np.pi / 4:
+            raise InvalidInputError("angle", self.angle, "between 0 and pi/4, where k_x^2 + k_y^2 + k_z^2 vanishes")
 
 
 def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:

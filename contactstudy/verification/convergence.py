@@ -182,7 +182,7 @@ SETTINGS: dict[str, tuple[Any, ...]] = {
     "reach": (12.5, 50.0, 200.0, 800.0),
     "ray_reach": (6.25, 12.5, 50.0, 200.0),
     "modes": (2, 4, 8, 16),
-    "lateral_nodes": (4, 6, 10, 16),
+    "lateral_nodes": (3, 5, 7, 14),
     "lateral_order": (4, 8, 16, 32),
     "lateral_reach": (2.5, 5.0, 10.0, 20.0),
 }

@@ -1,0 +1,149 @@
+"""A field of the half-space at the centres of the cells, where every component is even or odd in both directions.
+
+So the kernel is evaluated at offsets that are not negative only, its spectrum is real, and it is kept: it depends on
+the cells and the depth, not on the load. A load that is mirrored in end I is a sum of cosines along x; what it makes is
+one of cosines or, for components odd along x, one of sines, and the mirrored half is never computed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from contactstudy.cache import BoundedCache
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.convolution import even_spectrum, odd_spectrum
+from contactstudy.kernels.influence import Influence
+
+_SPECTRA: BoundedCache[FloatArray] = BoundedCache(2**27, lambda spectrum: spectrum.nbytes)
+
+
+@dataclass(frozen=True, eq=False)
+class CentredConvolution:
+    """Convolution of a load with the kernels of an influence.
+
+    Attributes
+    ----------
+    influence : Influence
+        What a unit load does.
+    dx, dy : float
+        Cell size.
+    length : float
+        Distance between the ends that mirror the load; infinite if there are not two.
+    mirrored : bool
+        Whether the load is mirrored in end I.
+    shape : tuple of int
+        Largest offsets of the kernel, in cells: half the periods of the transforms.
+    """
+
+    influence: Influence
+    dx: float
+    dy: float
+    length: float
+    mirrored: bool
+    shape: tuple[int, int]
+
+    def fill(
+        self, layer: FloatArray, transformed: ComplexArray, depth: float, rows: IntArray, columns: IntArray
+    ) -> None:
+        """Fill a `layer` (component, row, column) of the field at one depth, from the `transform` of the load."""
+        key = (self.influence.key, self.dx, self.dy, self.length, self.shape, depth)
+        spectrum = _SPECTRA.get(key, lambda: self._spectrum(depth))
+        odd_x = self.influence.sign_along_x < 0
+        for odd, members in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
+            if members.size:
+                along_y = self._back_along_x(spectrum[members], transformed, rows, odd=odd)
+                along_y[self.influence.sign_along_y[members] < 0] *= 1j
+                layer[members] = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., columns]
+
+    def transform(self, load: FloatArray) -> ComplexArray:
+        """Spectrum of a load (cell, cell): array (wavenumber along x, wavenumber along y)."""
+        along_y = fft.rfft(load, 2 * self.shape[1], axis=1)
+        if not self.mirrored:
+            return np.asarray(fft.fft(along_y, 2 * self.shape[0], axis=0))
+        return np.asarray(fft.dct(along_y, type=2, n=self.shape[0], axis=0))
+
+    def _back_along_x(
+        self, spectrum: FloatArray, transformed: ComplexArray, rows: IntArray, *, odd: bool
+    ) -> ComplexArray:
+        """Transform along y (component, row, wavenumber) of components even or odd along x."""
+        half = self.shape[0]
+        if not self.mirrored:
+            product = np.empty((spectrum.shape[0], *transformed.shape), np.complex128)
+            np.multiply(spectrum, transformed[: half + 1], out=product[:, : half + 1])
+            np.multiply(spectrum[:, half - 1 : 0 : -1], transformed[half + 1 :], out=product[:, half + 1 :])
+            if odd:
+                product[:, : half + 1] *= 1j
+                product[:, half + 1 :] *= -1j
+            return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
+        if odd:
+            product = np.zeros((spectrum.shape[0], half, spectrum.shape[2]), np.complex128)
+            np.multiply(-spectrum[:, 1:half], transformed[1:], out=product[:, : half - 1])
+            return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
+        return np.asarray(fft.idct(spectrum[:, :half] * transformed, type=2, axis=1, overwrite_x=True)[:, rows])
+
+    def _spectrum(self, depth: float) -> FloatArray:
+        """Spectrum of the kernels at one depth, without a factor i per odd direction: (component, x, y)."""
+        x: FloatArray = self.dx * np.arange(self.shape[0] + 1.0)
+        y: FloatArray = self.dy * np.arange(self.shape[1] + 1.0)
+        spectrum = self.influence.kernel(x, y, self.dx, self.dy, self.length, depth)
+        for axis, signs in ((1, self.influence.sign_along_x), (2, self.influence.sign_along_y)):
+            moved = spectrum.swapaxes(axis, 2)
+            even = signs > 0
+            transformed = np.empty_like(moved)
+            transformed[even], transformed[~even] = even_spectrum(moved[even]), odd_spectrum(moved[~even])
+            spectrum = transformed.swapaxes(axis, 2)
+        return np.ascontiguousarray(spectrum)
+
+
+def centred_field(
+    load: FloatArray,
+    influence: Influence,
+    cell: tuple[float, float],
+    rows: IntArray,
+    columns: IntArray,
+    z: FloatArray,
+    *,
+    mirrored: bool,
+    length: float,
+) -> FloatArray:
+    """Field at the centres of cells.
+
+    Parameters
+    ----------
+    load : array (cell_x, cell_y)
+        Load; if it is mirrored, the first cell begins at end I.
+    influence : Influence
+        What a unit load does.
+    cell : tuple of float
+        Cell size along x and y, metres.
+    rows, columns : array of int
+        Cells along x and y, counted from the load's first; they may lie outside it, but not beyond a mirror.
+    z : array
+        Depths, metres.
+    mirrored : bool
+        Whether the load is mirrored in end I.
+    length : float
+        Distance from end I to end II, in which it is mirrored too; infinite if there is no such end.
+
+    Returns
+    -------
+    array (component, z, row, column)
+    """
+    cells_x, cells_y = load.shape
+    reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()), 1)
+    if not mirrored:
+        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x - int(rows.min())), real=True)
+    elif np.isinf(length):
+        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x) + cells_x, real=True)
+    else:
+        half = cells_x
+    shape = (half, fft.next_fast_len(reach_y, real=True))
+    convolution = CentredConvolution(influence, *cell, length, mirrored, shape)
+    transformed = convolution.transform(load)
+    field = np.empty((influence.sign_along_x.size, z.size, rows.size, columns.size))
+    for number, depth in enumerate(z.tolist()):
+        convolution.fill(field[:, number], transformed, depth, rows, columns)
+    return field

@@ -1,0 +1,58 @@
+"""Fields at cell centres against the same fields among points that lie otherwise."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid, Material
+from contactstudy.kernels import centred, field
+from contactstudy.kernels.displacement import half_space_displacement
+from contactstudy.kernels.stress import half_space_stress
+
+GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
+Z = np.array([0.0, 0.05, 0.4])
+
+
+def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    return half_space_stress(load, 0.3, GRID, x, y, Z, extent=extent, tangential=True)
+
+
+def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    material = Material(1.0, 0.3)
+    return half_space_displacement(load, material, GRID, x, y, Z, extent=extent, reference=20.0, tangential=True)
+
+
+@pytest.fixture
+def load() -> np.ndarray:
+    load = np.random.default_rng(0).random(GRID.shape)
+    load[:, :3] = 0.0
+    return load
+
+
+@pytest.mark.parametrize("compute", [stresses, displacements])
+@pytest.mark.parametrize(
+    ("extent", "cells_x"),
+    [((-np.inf, np.inf), range(-3, 25)), ((0.0, np.inf), range(25)), ((0.0, 2.0), range(20))],
+)
+def test_symmetry_changes_nothing(monkeypatch, compute, load: np.ndarray, extent: tuple[float, float], cells_x: range):
+    x, y = GRID.x[0] + GRID.dx * np.array(cells_x), GRID.y[0] + GRID.dy * np.arange(-2.0, 20.0)
+    calls = []
+    real = centred.centred_field
+    monkeypatch.setattr(field, "centred_field", lambda *a, **k: calls.append(1) or real(*a, **k))
+    by_symmetry = compute(load, x, y, extent)
+    # One more position along y that lies otherwise: all are convolved with the whole kernel.
+    whole = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
+    assert len(calls) == 1
+    # Images are interpolated over another span along y.
+    tolerance = 1e-13 if np.isinf(extent[1]) else 1e-8
+    np.testing.assert_allclose(by_symmetry, whole, atol=tolerance * np.abs(whole).max())
+
+
+def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
+    y, extent = GRID.y, (0.0, 2.0)
+    first = stresses(load, GRID.x, y, extent)
+    softer = half_space_stress(load, 0.1, GRID, GRID.x, y, Z, extent=extent, tangential=True)
+    assert np.abs(softer - first).max() > 1e-2
+    displacements(load, GRID.x, y, extent)
+    np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)

@@ -1,0 +1,36 @@
+"""Settings of the quadratures that cannot resolve anything are refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError
+from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("order", 1),
+        ("order", 8.5),
+        ("modes", 0),
+        ("lateral_nodes", 1),
+        ("lateral_order", -3),
+        ("reach", 0.0),
+        ("ray_reach", np.nan),
+        ("lateral_reach", -1.0),
+        ("ratio", 1.0),
+        ("angle", np.pi / 4),
+        ("angle", 0.0),
+    ],
+)
+def test_settings_too_coarse_for_anything_are_refused(name: str, value: float):
+    with pytest.raises(InvalidInputError, match=name):
+        Resolution(**{name: value})
+
+
+def test_interpolation_is_exact_for_polynomials():
+    nodes = panel_nodes(np.array([1.0, 3.0]), 6)[0]
+    points = np.linspace(1.0, 3.0, 11)
+    np.testing.assert_allclose(lagrange(nodes, points) @ nodes**5, points**5, rtol=1e-12)
