@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import FloatArray
-from contactstudy.overlapping.quadrature import growing_edges, panel_nodes
+from contactstudy.overlapping.quadrature import growing_edges, lagrange, panel_nodes
 
 POSITIONS_PER_PANEL = 8
 
@@ -59,11 +59,9 @@ def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArra
     cell = np.searchsorted(cell_edges, middles) - 1
     for number in range(edges.size - 1):
         here = (panel == number) & (cell >= 0) & (cell < moments.shape[1])
-        nodes = positions[number * order : (number + 1) * order]
-        for i in range(order):
-            others = np.delete(nodes, i)
-            lagrange = np.prod((points[here, None] - others) / (nodes[i] - others), axis=1)
-            np.add.at(moments[number * order + i], cell[here], weights[here] * lagrange)
+        own = slice(number * order, (number + 1) * order)
+        shares = weights[here, None] * lagrange(positions[own], points[here])
+        np.add.at(moments[own].T, cell[here], shares)
     return moments
 
 
@@ -110,14 +108,13 @@ def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[Floa
         return None
     matrix = np.zeros((x.size, sides * count + kept.size))
     panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
-    for i in np.flatnonzero(inside):
-        first = panel[i] * order
-        nodes = positions[first : first + order]
-        offsets = from_end[i] - nodes
-        column = first if near_first[i] else count + first
-        for j in range(order):
-            others = np.arange(order) != j
-            matrix[i, column + j] = np.prod(offsets[others] / (nodes[j] - nodes[others]))
+    for number in range(panels):
+        own = slice(number * order, (number + 1) * order)
+        for side, here in enumerate((near_first, ~near_first)[:sides]):
+            points = np.flatnonzero(inside & here & (panel == number))
+            matrix[points, side * count + own.start : side * count + own.stop] = lagrange(
+                positions[own], from_end[points]
+            )
     matrix[kept, sides * count + np.arange(kept.size)] = 1.0
     parts = [positions, length - positions] if sides == 2 else [positions]
     return np.concatenate([*parts, x[kept]]), matrix
