@@ -87,7 +87,7 @@ def raw_stress(
     """
     key = (body, grid, friction != 0, digest(pressure, x, y, z))
     fields = _FIELDS.get(key, lambda: _unit_fields(body, pressure, grid, x, y, z, tangential=friction != 0))
-    return np.asarray(fields[0] + friction * fields[1] if friction else fields[0].copy())
+    return np.asarray(fields[0] + friction * fields[1] if friction else fields[0].copy(order="K"))
 
 
 def _unit_fields(

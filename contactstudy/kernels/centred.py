@@ -130,7 +130,7 @@ def centred_field(
 
     Returns
     -------
-    array (component, z, row, column)
+    array (component, row, column, z)
     """
     cells_x, cells_y = load.shape
     reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()), 1)
@@ -143,7 +143,7 @@ def centred_field(
     shape = (half, fft.next_fast_len(reach_y, real=True))
     convolution = CentredConvolution(influence, *cell, length, mirrored, shape)
     transformed = convolution.transform(load)
-    field = np.empty((influence.sign_along_x.size, z.size, rows.size, columns.size))
+    field = np.empty((influence.sign_along_x.size, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):
-        convolution.fill(field[:, number], transformed, depth, rows, columns)
-    return field
+        convolution.fill(field[:, :, number], transformed, depth, rows, columns)
+    return field.swapaxes(2, 3)

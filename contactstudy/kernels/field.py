@@ -88,7 +88,8 @@ def half_space_field(
     in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
-    result = np.zeros((influence.sign_along_x.size, x.size, y.size, z.size))
+    # In memory the depth comes before y, as in all fields.
+    result = np.zeros((influence.sign_along_x.size, x.size, z.size, y.size)).swapaxes(2, 3)
     if not loaded.size:
         return result
     first, last = int(loaded[0]), int(loaded[-1]) + 1
@@ -96,19 +97,15 @@ def half_space_field(
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
     if len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0 and (in_first or not in_second):
-        return np.moveaxis(
-            centred_field(
-                load,
-                influence,
-                (grid.dx, grid.dy),
-                rows[0].cells,
-                columns[0].cells,
-                z,
-                mirrored=in_first,
-                length=extent[1] if periodic else np.inf,
-            ),
-            1,
-            -1,
+        return centred_field(
+            load,
+            influence,
+            (grid.dx, grid.dy),
+            rows[0].cells,
+            columns[0].cells,
+            z,
+            mirrored=in_first,
+            length=extent[1] if periodic else np.inf,
         )
     start = grid.x[0]
     if in_first:  # cells of the mirrored load lie before those of the load

@@ -82,11 +82,19 @@ def end_field(
     array (load, component, x, y, z)
         Under the pressure and, if wanted, under the traction.
     """
+    with one_blas_thread():
+        return _layers(problem, harmonics, x, y, z, reference).swapaxes(3, 4)
+
+
+def _layers(
+    problem: EndProblem, harmonics: Harmonics, x: FloatArray, y: FloatArray, z: FloatArray, reference: float | None
+) -> FloatArray:
+    """Field as an array (load, component, x, z, y), in the order in which it is summed."""
     fewer = graded_interpolation(x, problem.length, POSITIONS_PER_PANEL)
     if fewer is not None:
         positions, interpolation = fewer
-        coarse = end_field(problem, harmonics, positions, y, z, reference=reference)
-        return np.ascontiguousarray(np.moveaxis(np.tensordot(interpolation, coarse, axes=(1, 2)), 0, 2))
+        coarse = _layers(problem, harmonics, positions, y, z, reference)
+        return (interpolation @ coarse.reshape(*coarse.shape[:3], -1)).reshape(*coarse.shape[:2], -1, z.size, y.size)
     if np.isinf(problem.length):
         return _first_half(problem, {0: problem.pressure}, harmonics, x, y, z, reference)[0]
     # Parts of the load even and odd about mid-length make fields of which one half is the other's image.
@@ -94,7 +102,7 @@ def end_field(
     parts = parity_parts(problem.pressure)
     fields = _first_half(problem, parts, harmonics, problem.length * half, y, z, reference)
     beyond = x > 0.5 * problem.length
-    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, y.size, z.size))
+    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
     for parity, field in fields.items():
         signs = np.where(beyond, parity, 1.0) * np.ones((harmonics.count, 1))
         signs[harmonics.odd_along_x] *= np.where(beyond, -1.0, 1.0)
@@ -111,16 +119,14 @@ def _first_half(
     z: FloatArray,
     reference: float | None,
 ) -> dict[int, FloatArray]:
-    """Fields of the load's parts, by parity, at points no farther from end I than from end II."""
+    """Layers of the load's parts, by parity, at points no farther from end I than from end II."""
     offset = problem.corner_offset
-    with one_blas_thread():
-        result = _away_from_corner(problem, parts, harmonics, x, y, z, reference)
-        rows, columns = np.flatnonzero(x < offset), np.flatnonzero(z < offset)
-        if rows.size and columns.size:
-            at_corner = _away_from_corner(problem, parts, harmonics, x[rows], y, np.array([offset]), reference)
-            for parity, field in result.items():
-                for place, row in enumerate(rows):
-                    field[:, :, row][..., columns] = at_corner[parity][:, :, place]
+    result = _away_from_corner(problem, parts, harmonics, x, y, z, reference)
+    rows, columns = np.flatnonzero(x < offset), np.flatnonzero(z < offset)
+    if rows.size and columns.size:
+        at_corner = _away_from_corner(problem, parts, harmonics, x[rows], y, np.array([offset]), reference)
+        for parity, field in result.items():
+            field[:, :, rows[:, None], columns] = at_corner[parity]
     return result
 
 
@@ -138,6 +144,8 @@ def _away_from_corner(
     shape = (1 + problem.tangential, harmonics.count, x.size, z.size, y.size)
     result = {parity: np.zeros(shape) for parity in parts}
     for panel in problem.panels(y, shortest, reference):
+        if panel.nodes[0] * distance.min() >= DECAY_LENGTHS:
+            break
         for loads in problem.batches(panel, parts, y):
             near = loads.nodes[0] * distance < DECAY_LENGTHS
             rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
@@ -151,7 +159,7 @@ def _away_from_corner(
                     for components, synthesis in zip((harmonics.even_in_y, harmonics.odd_in_y), waves, strict=True):
                         for component in components:
                             load[component, rows[:, None], columns] += values[component] @ synthesis
-    return {parity: np.ascontiguousarray(field.swapaxes(3, 4)) for parity, field in result.items()}
+    return result
 
 
 def _amplitudes(
