@@ -1,6 +1,6 @@
 """The best crown for a roller between free ends, and what the half-space's design costs there.
 
-Usage: ``python studies/best_profile.py [--out FOLDER]``; about two minutes on two cores. Writes ``best_profile.nc`` and
+Usage: ``python studies/best_profile.py [--out FOLDER]``; about three minutes on two cores. Writes ``best_profile.nc`` and
 ``best_profile.png`` and prints a table.
 
 Lundberg's profile is scaled by its modification factor delta so that the largest pressure, over its own Hertz pressure,

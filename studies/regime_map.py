@@ -1,18 +1,19 @@
 """Draw how wrong the half-space and the quick fixes for free ends are, from the study regime_map.toml.
 
 Usage, after ``contactstudy run studies/regime_map.toml``: ``python studies/regime_map.py [FOLDER] [--finer]``, default
-``results/regime_map``. Writes ``errors.nc``, ``limits.csv`` and a figure for each crown into the folder, and prints from
-which distance on the errors stay small. With ``--finer`` it solves some cases again on cells half as long and prints by
-how much the errors change.
+``results/regime_map``. Writes ``errors.nc``, ``limits.csv`` and a figure for each crown into the folder, and prints
+from which distance on the errors stay small. With ``--finer`` it solves some cases again on cells half as long and
+prints by how much the errors change.
 
-What counts is e over the body's length, not over a: the half-space is right within 3.3 % once the free ends are a quarter
-of the length away, with either crown and with friction, and half as far it is up to 14 % wrong. Under a flush end its
-largest pressure is 4 to 8 % too high with Lundberg's full crown, 10 to 29 % with 0.8 of it, and the load on the last a is
-1.6 times (L = 8 a) to 3.5 times (64 a) too high. Mirrored load and Guilbault's factor keep the pressure within 3.2 %, but
-the stress is a quarter too low in the shortest body (2 a), and the load on the last a up to 27 and 18 % wrong. A single
-pair of mirrored loads with two separate vertical half-spaces, the published scheme, is within 0.8 % in pressure, 1.2 % in
-load, and 4.2 % (from L = 8 a on 2.3 %) in stress. A quarter space takes too much load to its other end, which it believes
-to go on: it leaves 25 to 36 % too little on the last a of a flush end, and 7 to 9 % a quarter of the length inside.
+What counts is e over the body's length, not over a: the half-space is right within 3.3 % once the free ends are a
+quarter of the length away, with either crown and with friction, and half as far it is up to 14 % wrong. Under a flush
+end its largest pressure is 4 to 8 % too high with Lundberg's full crown, 10 to 29 % with 0.8 of it, and the load on
+the last a is 1.6 times (L = 8 a) to 3.5 times (64 a) what it should be. Mirrored load and Guilbault's factor keep the pressure
+within 3.2 %, but the stress is a quarter too low in the shortest body (2 a), and the load on the last a up to 27 and
+18 % wrong. A single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is within 0.8
+% in pressure, 1.2 % in load, and 4.2 % (from L = 8 a on 2.3 %) in stress. A quarter space takes too much load to its
+other end, which it believes to go on: it leaves 25 to 36 % too little on the last a of a flush end, and 7 to 9 % a
+quarter of the length inside.
 """
 
 from __future__ import annotations
@@ -52,7 +53,7 @@ LIMITS = (5.0, 1.0)
 
 
 def evaluated(study: xr.Dataset) -> xr.Dataset:
-    """Largest pressure and von Mises stress between the end and the middle, and the load within a of the roller's end."""
+    """Largest pressure and stress between the end and the middle, and the load within a of the roller's end."""
     pressure = cs.analysis.axial_pressure(study)
     along = cs.analysis.dimension_along(pressure, "x")
     a = study["hertz_half_width"]
@@ -119,7 +120,7 @@ def table(error: xr.Dataset) -> str:
 
 
 def draw(error: xr.Dataset, profile: str) -> plt.Figure:
-    """Errors of each model and quantity over e/a and length for one crown, without friction, with lines at the limits."""
+    """Errors over e/a and length of each model and quantity for one crown, without friction; lines at the limits."""
     figure, axes = plt.subplots(
         len(QUANTITIES), len(MODELS), figsize=(15.0, 7.6), sharex=True, sharey=True, layout="constrained"
     )

@@ -83,7 +83,7 @@ def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
 
 def test_regime_map_says_from_where_on_errors_stay_small():
     module = script("regime_map")
-    # Small at 0 but not at 1, and so from 2 on only; never small; small everywhere, where longer distances do not exist.
+    # Small at 0 but not at 1, and so from 2 on only; never small; small at 0, where longer distances do not exist.
     values = [[-2.0, 9.0, -0.5], [8.0, 9.0, np.nan], [-0.5, 7.0, np.nan], [0.7, np.nan, np.nan]]
     error = xr.Dataset(
         {"end_load": (("e_over_a", "gamma"), values)}, {"e_over_a": [0.0, 1.0, 2.0, 4.0], "gamma": [3.0, 2.0, 1.0]}
