@@ -1,7 +1,7 @@
 """The best crown for a roller between free ends, and what the half-space's design costs there.
 
-Usage: ``python studies/best_profile.py [--out FOLDER]``; about three minutes on two cores. Writes ``best_profile.nc`` and
-``best_profile.png`` and prints a table.
+Usage: ``python studies/best_profile.py [--out FOLDER]``; about three minutes on two cores. Writes ``best_profile.nc``
+and ``best_profile.png`` and prints a table.
 
 Lundberg's profile is scaled by its modification factor delta so that the largest pressure, over its own Hertz pressure,
 is least in the worst of several loads and misalignments: once on a half-space, once on the body of finite length that
@@ -38,7 +38,7 @@ class Task:
     pressures: tuple[float, ...] = (1.0e9, 1.5e9, 2.0e9)
     tilts: tuple[float, ...] = (0.0, 2e-4)
     design_pressure: float = 1.5e9
-    # With less crown the pressure peaks within a tenth of a half-width of the end: no number without finer cells still.
+    # With less crown the pressure peaks so near to the end that its height depends on the cells.
     bounds: tuple[float, float] = (0.5, 4.0)
     cells: tuple[int, int] = (1024, 64)
 

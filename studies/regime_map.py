@@ -8,12 +8,12 @@ prints by how much the errors change.
 What counts is e over the body's length, not over a: the half-space is right within 3.3 % once the free ends are a
 quarter of the length away, with either crown and with friction, and half as far it is up to 14 % wrong. Under a flush
 end its largest pressure is 4 to 8 % too high with Lundberg's full crown, 10 to 29 % with 0.8 of it, and the load on
-the last a is 1.6 times (L = 8 a) to 3.5 times (64 a) what it should be. Mirrored load and Guilbault's factor keep the pressure
-within 3.2 %, but the stress is a quarter too low in the shortest body (2 a), and the load on the last a up to 27 and
-18 % wrong. A single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is within 0.8
-% in pressure, 1.2 % in load, and 4.2 % (from L = 8 a on 2.3 %) in stress. A quarter space takes too much load to its
-other end, which it believes to go on: it leaves 25 to 36 % too little on the last a of a flush end, and 7 to 9 % a
-quarter of the length inside.
+the last a is 1.6 times (L = 8 a) to 3.5 times (64 a) what it should be. Mirrored load and Guilbault's factor keep the
+pressure within 3.2 %, but the stress is a quarter too low in the shortest body (2 a), and the load on the last a up to
+27 and 18 % wrong. A single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is
+within 0.8 % in pressure, 1.2 % in load, and 4.2 % (from L = 8 a on 2.3 %) in stress. A quarter space takes too much
+load to its other end, which it believes to go on: it leaves 25 to 36 % too little on the last a of a flush end, and 7
+to 9 % a quarter of the length inside.
 """
 
 from __future__ import annotations
