@@ -43,6 +43,12 @@ class ContactAccessor:
 
         return analysis.line_load(self._dataset)
 
+    def load_between(self, start: xr.DataArray | float, stop: xr.DataArray | float) -> xr.DataArray:
+        """See :func:`contactstudy.analysis.load_between`."""
+        from contactstudy import analysis
+
+        return analysis.load_between(self._dataset, start, stop)
+
     def half_width(self) -> xr.Dataset:
         """See :func:`contactstudy.analysis.half_width`."""
         from contactstudy import analysis

@@ -1,7 +1,7 @@
 """The best crown for a roller between free ends, and what the half-space's design costs there.
 
-Usage: ``python studies/best_profile.py [--out FOLDER]``; about two minutes on two cores. Writes ``best_profile.nc`` and
-``best_profile.png`` and prints a table.
+Usage: ``python studies/best_profile.py [--out FOLDER]``; about three minutes on two cores. Writes ``best_profile.nc``
+and ``best_profile.png`` and prints a table.
 
 Lundberg's profile is scaled by its modification factor delta so that the largest pressure, over its own Hertz pressure,
 is least in the worst of several loads and misalignments: once on a half-space, once on the body of finite length that
@@ -38,8 +38,9 @@ class Task:
     pressures: tuple[float, ...] = (1.0e9, 1.5e9, 2.0e9)
     tilts: tuple[float, ...] = (0.0, 2e-4)
     design_pressure: float = 1.5e9
-    bounds: tuple[float, float] = (0.2, 4.0)
-    cells: tuple[int, int] = (512, 64)
+    # With less crown the pressure peaks so near to the end that its height depends on the cells.
+    bounds: tuple[float, float] = (0.5, 4.0)
+    cells: tuple[int, int] = (1024, 64)
 
     @property
     def half_width(self) -> float:
@@ -126,7 +127,7 @@ def draw(task: Task, found: xr.Dataset) -> plt.Figure:
         left.semilogx(factors, line, dashes, color="black", label=label)
         delta = float(found["delta"].sel(design=label))
         left.plot(delta, task.worst(delta, body), "o", color="black")
-    left.set_xticks([0.2, 0.5, 1.0, 2.0, 4.0], ["0.2", "0.5", "1", "2", "4"])
+    left.set_xticks([0.5, 1.0, 2.0, 4.0], ["0.5", "1", "2", "4"])
     left.minorticks_off()
     left.set(xlabel=r"modification factor $\delta$", ylabel="worst pressure over $p_0$")
     left.legend(frameon=False, title="largest of all loads and tilts")

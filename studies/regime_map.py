@@ -1,26 +1,31 @@
 """Draw how wrong the half-space and the quick fixes for free ends are, from the study regime_map.toml.
 
-Usage, after ``contactstudy run studies/regime_map.toml``: ``python studies/regime_map.py [FOLDER]``, default
-``results/regime_map``. Writes ``errors.nc`` and ``regime_map.png`` into the folder.
+Usage, after ``contactstudy run studies/regime_map.toml``: ``python studies/regime_map.py [FOLDER] [--finer]``, default
+``results/regime_map``. Writes ``errors.nc``, ``limits.csv`` and a figure for each crown into the folder, and prints
+from which distance on the errors stay small. With ``--finer`` it solves some cases again on cells half as long and
+prints by how much the errors change.
 
-The half-space's largest pressure is 37 to 86 % too high under a flush end, more for longer rollers, still 12 to 39 %
-at e = 2 a (3 % on the shortest body), and within 5 % at 8 a only. The mirrored load comes within 2 % at flush ends
-and errs by up to 9 % around e = a; Guilbault's factor is within 1 % flush and 5 % elsewhere. Stresses of either are
-up to 13 % too low in short bodies (8 a), where they leave the ends loaded. A single pair of mirrored loads with two
-separate vertical half-spaces, the published scheme, is within 0.7 % in pressure and 1.7 % in stress everywhere. A
-quarter space takes too much load to its other end, which it believes to go on, and so errs by up to 17 % at the free
-one.
-
-The half-space's peaks are a cell or two wide and not converged: 32 cells per width give 40 to 73 %, not 37 to 86 %.
+What counts is e over the body's length, not over a: the half-space is right within 3.3 % once the free ends are a
+quarter of the length away, with either crown and with friction, and half as far it is up to 14 % wrong. Under a flush
+end its largest pressure is 4 to 8 % too high with Lundberg's full crown, 10 to 29 % with 0.8 of it, and the load on
+the last a is 1.6 times (L = 8 a) to 3.5 times (64 a) what it should be. Mirrored load and Guilbault's factor keep the
+pressure within 3.2 %, but the stress is a quarter too low in the shortest body (2 a), and the load on the last a up to
+27 and 18 % wrong. A single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is
+within 0.8 % in pressure, 1.2 % in load, and 4.2 % (from L = 8 a on 2.3 %) in stress. A quarter space takes too much
+load to its other end, which it believes to go on: it leaves 25 to 36 % too little on the last a of a flush end, and 7
+to 9 % a quarter of the length inside.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 import xarray as xr
+from matplotlib.colors import BoundaryNorm
 
 import contactstudy as cs
 
@@ -36,17 +41,32 @@ MODELS = {
 RADIUS = 5e-3
 """Of the study's roller, metres."""
 
-QUANTITIES = {"peak_pressure": "largest pressure", "peak_von_mises": "largest von Mises stress"}
+QUANTITIES = {
+    "peak_pressure": "largest pressure",
+    "peak_von_mises": "von Mises stress, $y = 0$",
+    "end_load": "load on the last $a$",
+}
+"""What is compared. The load, unlike a pressure, does not hang on single cells; the stress is the largest at y = 0."""
+
+LIMITS = (5.0, 1.0)
+"""Errors, in percent, below which one may stop worrying."""
 
 
-def peaks(study: xr.Dataset) -> xr.Dataset:
-    """Largest pressure and von Mises stress between the end and the middle, by e/a, gamma, friction and model."""
+def evaluated(study: xr.Dataset) -> xr.Dataset:
+    """Largest pressure and stress between the end and the middle, and the load within a of the roller's end."""
     pressure = cs.analysis.axial_pressure(study)
     along = cs.analysis.dimension_along(pressure, "x")
-    middle = 0.5 * study["gamma"] * RADIUS / study["hertz_half_width"]
-    near = study["x_over_a"] <= middle
-    result = xr.Dataset({"peak_pressure": pressure.where(near).max(along), "peak_von_mises": study["peak_von_mises"]})
-    return result.compute()
+    a = study["hertz_half_width"]
+    near = study["x_over_a"] <= 0.5 * study["gamma"] * RADIUS / a
+    start = study["e_over_a"] * a
+    result = xr.Dataset(
+        {
+            "peak_pressure": pressure.where(near).max(along),
+            "peak_von_mises": study["peak_von_mises"],
+            "end_load": cs.analysis.load_between(study, start, start + a),
+        }
+    )
+    return result.assign_coords(length_over_a=(study["gamma"] * RADIUS / a.max()).round(3)).compute()
 
 
 def errors(found: xr.Dataset) -> xr.Dataset:
@@ -55,9 +75,9 @@ def errors(found: xr.Dataset) -> xr.Dataset:
     parts = [100 * (pick(found, words) / exact - 1) for words in MODELS.values()]
     result = xr.concat(parts, xr.DataArray(list(MODELS), dims="approximation", name="approximation"))
     for name, meaning in QUANTITIES.items():
-        result[name].attrs = {"units": "percent", "long_name": f"error of the {meaning}"}
+        result[name].attrs = {"units": "percent", "long_name": f"error of the {meaning.replace('$', '')}"}
     result.attrs = {"Conventions": "CF-1.11", "title": "errors of approximations for free ends"}
-    return result
+    return result.assign_coords(length_over_a=found["length_over_a"])
 
 
 def pick(found: xr.Dataset, words: dict[str, str]) -> xr.Dataset:
@@ -70,27 +90,101 @@ def pick(found: xr.Dataset, words: dict[str, str]) -> xr.Dataset:
     return found.isel(body_and_model=place, drop=True).reset_coords(drop=True)
 
 
-def draw(error: xr.Dataset) -> plt.Figure:
-    """One map over e/a and gamma for each model and quantity, without friction."""
-    figure, axes = plt.subplots(
-        len(QUANTITIES), len(MODELS), figsize=(4.2 * len(MODELS), 3.2 * len(QUANTITIES)), layout="constrained"
+def limits(error: xr.Dataset) -> xr.Dataset:
+    """Smallest e/a of the study from which on the errors stay below each limit; NaN if they never do."""
+    size = abs(error)
+    distances = error["e_over_a"]
+    from_here_on = [size.sel(e_over_a=slice(e, None)).max("e_over_a") for e in distances.values]
+    worst = xr.concat(from_here_on, distances)
+    return xr.concat(
+        [distances.where(worst < limit).min("e_over_a") for limit in LIMITS],
+        xr.DataArray(list(LIMITS), dims="below", name="below", attrs={"units": "percent"}),
     )
-    for row, (name, meaning) in zip(axes, QUANTITIES.items(), strict=True):
+
+
+def table(error: xr.Dataset) -> str:
+    """Markdown: e/a from which on errors stay below 5 and 1 %, whatever the study's crown and friction."""
+    largest = abs(error).max(["profile", "friction"])
+    reach = largest["e_over_a"].where(largest["peak_pressure"].notnull()).max(["e_over_a", "approximation"])
+    lengths = [f"L = {length:g} a" for length in error["length_over_a"].values]
+    lines = [f"| model | quantity | {' | '.join(lengths)} |", "|---" * (2 + len(lengths)) + "|"]
+    for model in MODELS:
+        for name, meaning in QUANTITIES.items():
+            found = limits(largest)[name].sel(approximation=model).transpose("gamma", "below").values
+            cells = [
+                " / ".join(f"{e:g}" if np.isfinite(e) else f"> {last:g}" for e in pair)
+                for pair, last in zip(found, reach.values, strict=True)
+            ]
+            lines.append(f"| {model} | {meaning.replace('$', '')} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def draw(error: xr.Dataset, profile: str) -> plt.Figure:
+    """Errors over e/a and length of each model and quantity for one crown, without friction; lines at the limits."""
+    figure, axes = plt.subplots(
+        len(QUANTITIES), len(MODELS), figsize=(15.0, 7.6), sharex=True, sharey=True, layout="constrained"
+    )
+    bands = [0.0, 1.0, 5.0, 20.0, 1000.0]
+    colours = plt.get_cmap("viridis_r", len(bands) - 1)
+    for row, name in zip(axes, QUANTITIES, strict=True):
         for ax, model in zip(row, MODELS, strict=True):
-            array = error[name].sel(approximation=model, friction=0.0).round()
-            cs.plots.plot_study_map(error, array, "e_over_a", "gamma", ax, label=f"error of the {meaning} (%)")
-            ax.set_title(model, fontsize="medium")
+            one = error[name].sel(approximation=model, friction=0.0, profile=profile).transpose("gamma", "e_over_a")
+            size = np.ma.masked_invalid(abs(one.values))
+            drawn = ax.pcolormesh(size, cmap=colours, norm=BoundaryNorm(bands, colours.N))
+            # Lines that follow the cells' borders: the values repeated on a much finer grid.
+            fine = np.repeat(np.repeat(size, 40, axis=0), 40, axis=1)
+            up, across = ((np.arange(n) + 0.5) / 40 for n in fine.shape)
+            ax.contour(across, up, fine, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6)
+            for (i, j), value in np.ndenumerate(one.values):
+                if np.isfinite(value):
+                    colour = "white" if abs(value) > 5 else "black"
+                    text = f"{value:+.0f}" if abs(value) >= 9.95 else f"{value:+.1f}"
+                    ax.text(j + 0.5, i + 0.5, text, ha="center", va="center", color=colour, fontsize=8)
+            ax.patch.set(facecolor="white", edgecolor="0.8", hatch="///")
+    for ax, model in zip(axes[0], MODELS, strict=True):
+        ax.set_title(model, fontsize="medium")
+    for ax, meaning in zip(axes[:, 0], QUANTITIES.values(), strict=True):
+        ax.set_ylabel(f"{meaning}\n$L_f/a$")
+        ax.set_yticks(np.arange(error.sizes["gamma"]) + 0.5, [f"{v:g}" for v in error["length_over_a"].values])
+    for ax in axes[-1]:
+        ax.set_xlabel("$e/a$")
+        ax.set_xticks(np.arange(error.sizes["e_over_a"]) + 0.5, [f"{v:g}" for v in error["e_over_a"].values])
+    bar = figure.colorbar(drawn, ax=axes, ticks=bands[1:-1], shrink=0.6, pad=0.01)
+    bar.set_label("size of the error (%); lines: solid 5 %, dashed 1 %")
+    figure.suptitle(f"{profile}: error against exact free ends (%)")
     return figure
 
 
-def main(folder: Path) -> None:
-    """Evaluate and draw the study in `folder`."""
-    error = errors(peaks(cs.open_study(folder)))
+def finer(study: cs.Study) -> cs.Study:
+    """Return some of the study's cases, without friction, on cells half as long."""
+    lengths = [i for i, gamma in enumerate(study.zip[1]["gamma"]) if gamma in (0.026, 0.104, 0.832)]
+    shorter = {name: [column[i] for i in lengths] for name, column in study.zip[1].items()}
+    sweep = {**study.sweep, "e_over_a": [0.0, 2.0, 8.0], "friction": [0.0]}
+    base = {**study.base, "cells_x": 2 * study.base["cells_x"]}
+    return replace(study, name=f"{study.name}_finer", base=base, sweep=sweep, zip=[study.zip[0], shorter])
+
+
+def main() -> None:
+    """Evaluate and draw the study, or check its cells."""
+    parser = argparse.ArgumentParser(description="Errors of the half-space and of quick fixes for free ends.")
+    parser.add_argument("folder", type=Path, nargs="?", default=Path("results/regime_map"))
+    parser.add_argument("--finer", action="store_true", help="solve some cases on finer cells and compare")
+    options = parser.parse_args()
+    folder: Path = options.folder
+    error = errors(evaluated(cs.open_study(folder)))
+    if options.finer:
+        cs.run_study(finer(cs.Study.from_toml(Path(__file__).with_suffix(".toml"))), folder / "finer", workers=2)
+        change = abs(errors(evaluated(cs.open_study(folder / "finer"))) - error)
+        for model in MODELS:
+            largest = change.sel(approximation=model).max()
+            print(f"{model}: errors change by at most", *(f"{float(largest[n]):.2f} % ({n})" for n in QUANTITIES))
+        return
     error.to_netcdf(folder / "errors.nc")
-    figure = draw(error)
-    figure.savefig(folder / "regime_map.png", dpi=80)
-    print(f"wrote {folder / 'errors.nc'} and {folder / 'regime_map.png'}")
+    limits(error).to_dataframe().to_csv(folder / "limits.csv")
+    for number, profile in enumerate(error["profile"].values, start=1):
+        draw(error, str(profile)).savefig(folder / f"regime_map_{number}.png", dpi=80)
+    print(table(error))
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1] if len(sys.argv) > 1 else "results/regime_map"))
+    main()

@@ -16,6 +16,7 @@ from contactstudy.accessor import ContactAccessor
 ARGUMENTS = {
     "along_line": ((0.1e-3, 0, 0), (0.4e-3, 0, 50e-6)),
     "in_plane": {"y": 0.0},
+    "load_between": (0.1e-3, 0.2e-3),
     "measure": ("tresca",),
     "section_peak": ("maximum_shear",),
     "slices": (5,),

@@ -5,7 +5,14 @@ where that has a meaning, on a whole study opened by :func:`contactstudy.open_st
 """
 
 from contactstudy.analysis.axes import dimension_along, positions, single_case
-from contactstudy.analysis.axial import axial_pressure, axial_profiles, half_width, line_load, unloaded_gap
+from contactstudy.analysis.axial import (
+    axial_pressure,
+    axial_profiles,
+    half_width,
+    line_load,
+    load_between,
+    unloaded_gap,
+)
 from contactstudy.analysis.contact import contact_results, edge_pressure
 from contactstudy.analysis.cuts import along_line, in_plane
 from contactstudy.analysis.discretisation import discretisation_error
@@ -30,6 +37,7 @@ __all__ = [
     "half_width",
     "in_plane",
     "line_load",
+    "load_between",
     "measure",
     "normalized",
     "peak",

@@ -77,6 +77,40 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     return labelled(load, "line_load", "N/m", "load per length along the axis")
 
 
+def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.DataArray | float) -> xr.DataArray:
+    """Load carried between two positions along the roller's axis.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure` on uniform cells.
+    start, stop : float or DataArray
+        Positions, metres; an array has a position for each case of a study. They may be infinite.
+
+    Returns
+    -------
+    DataArray
+        N, without the dimensions along x and y. A cell that a position cuts counts by its part, so that the load next
+        to an end, unlike the pressure there, hardly depends on the grid.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no pressure.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5, 2.5], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray([[1.0, 1.0], [2.0, 2.0], [3.0, 3.0]], dims=("x", "y"), coords=cells)
+    >>> float(load_between(xr.Dataset({"pressure": pressure}), 0.0, 1.5))
+    4.0
+    """
+    load = line_load(dataset)
+    along, place, half_cell = dimension_along(load, "x"), positions(load, "x"), 0.5 * cell_size(load, "x")
+    shared = (np.minimum(place + half_cell, stop) - np.maximum(place - half_cell, start)).clip(0.0)
+    return labelled((load * shared).sum(along, min_count=1), "load", "N", "load between two positions along the axis")
+
+
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
     """Half-width of the contact at each position along the roller's axis, and the y of its middle.
 

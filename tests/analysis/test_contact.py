@@ -30,6 +30,16 @@ def test_along_the_axis_by_hand() -> None:
     assert profiles["contact_middle"].values[1:4].tolist() == [0, 0, 0.5]
 
 
+@pytest.mark.parametrize(
+    ("start", "stop", "expected"),
+    [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0), (3, 2, 0)],
+)
+def test_load_between_counts_cells_by_their_part(start: float, stop: float, expected: float) -> None:
+    load = analysis.load_between(contact(VALUES), start, stop)
+    assert float(load) == pytest.approx(expected)
+    assert load.attrs["units"] == "N"
+
+
 def test_scalars_by_hand() -> None:
     result = analysis.contact_results(contact(VALUES))
     expected = {
@@ -111,6 +121,19 @@ def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
     assert together.sel(friction=FAILS).to_array().isnull().all()
 
 
+def test_load_between_takes_a_position_of_each_case(opened: xr.Dataset) -> None:
+    start = opened["e_over_a"] * opened["hertz_half_width"]
+    stop = start + 2 * opened["hertz_half_width"]
+    together = analysis.load_between(opened, start, stop)
+    assert together.dims == ("e_over_a", "friction", "body")
+    for e in (0.0, 2.0):
+        chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
+        alone = analysis.single_case(opened.sel(chosen))
+        share = analysis.load_between(alone, float(start.sel(chosen)), float(stop.sel(chosen)))
+        assert float(together.sel(chosen)) == pytest.approx(float(share), rel=1e-12)
+    assert together.sel(friction=FAILS).isnull().all()
+
+
 def test_surfaces_of_a_study_stay_lazy(opened: xr.Dataset) -> None:
     assert analysis.axial_profiles(opened)["half_width"].chunks is not None
 
@@ -134,6 +157,7 @@ def test_nothing_in_contact() -> None:
         analysis.unloaded_gap,
         analysis.slices,
         analysis.edge_factors,
+        lambda dataset: analysis.load_between(dataset, 0.0, 1.0),
     ],
 )
 def test_missing_variables_are_named(function) -> None:
