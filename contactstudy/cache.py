@@ -42,13 +42,17 @@ class BoundedCache(Generic[Value]):
 
     def get(self, key: Hashable, make: Callable[[], Value]) -> Value:
         """Return the value of `key`, making it if it is not at hand."""
-        kept: OrderedDict[Hashable, Value] = self._threads.__dict__.setdefault("kept", OrderedDict())
-        if key not in kept:
-            kept[key] = make()
-        kept.move_to_end(key)
-        while len(kept) > 1 and sum(map(self._size, kept.values())) > self.limit:
-            kept.popitem(last=False)
-        return kept[key]
+        own = self._threads.__dict__
+        kept: OrderedDict[Hashable, tuple[Value, int]] = own.setdefault("kept", OrderedDict())
+        if key in kept:
+            kept.move_to_end(key)
+            return kept[key][0]
+        value = make()
+        kept[key] = value, self._size(value)
+        own["held"] = own.get("held", 0) + kept[key][1]
+        while len(kept) > 1 and own["held"] > self.limit:
+            own["held"] -= kept.popitem(last=False)[1][1]
+        return value
 
 
 def digest(*arrays: FloatArray) -> str:

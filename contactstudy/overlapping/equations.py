@@ -123,6 +123,12 @@ class EquationSet:
         mutual = end.real @ top.real - end.imag @ top.imag
         return cls(modes, lateral, poisson, depth, scale, core, top, linalg.lu_factor(np.diag(1 / scale) - mutual))
 
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        arrays = (self.depth, self.scale, self._core, self._top, *self._factor)
+        return sum(array.nbytes for array in arrays)
+
     def solve(self, source: FloatArray) -> FloatArray:
         """Scaled face loads ``scale * S`` from what the top load alone asks for at the depth nodes."""
         return np.asarray(linalg.lu_solve(self._factor, source))

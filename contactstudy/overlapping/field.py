@@ -101,12 +101,14 @@ def _layers(
     half, where = np.unique(np.round(problem.from_end(x) / problem.length, SAME_POSITION), return_inverse=True)
     parts = parity_parts(problem.pressure)
     fields = _first_half(problem, parts, harmonics, problem.length * half, y, z, reference)
+    signs = np.ones((harmonics.count, 1, 1, 1))
+    signs[harmonics.odd_along_x] = -1.0
+    first = sum(fields.values())
+    second = sum(field * (parity * signs) for parity, field in fields.items())
+    result = np.empty((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
     beyond = x > 0.5 * problem.length
-    result = np.zeros((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
-    for parity, field in fields.items():
-        signs = np.where(beyond, parity, 1.0) * np.ones((harmonics.count, 1))
-        signs[harmonics.odd_along_x] *= np.where(beyond, -1.0, 1.0)
-        result += signs[:, :, None, None] * field[:, :, where]
+    for rows, seen in ((np.flatnonzero(~beyond), first), (np.flatnonzero(beyond), second)):
+        result[:, :, rows] = np.asarray(seen)[:, :, where[rows]]
     return result
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import AxialModes
@@ -25,6 +26,8 @@ from contactstudy.overlapping.single_mirror import modes_between_ends
 # Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
 # there, of which only the sum is finite.
 CORNER_OFFSET = 1e-2
+
+_EQUATION_SETS: BoundedCache[EquationSet] = BoundedCache(2**26, lambda system: system.nbytes)
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,7 +92,12 @@ class EndProblem:
         self, view: View, lateral: float, number: int, shortest: float
     ) -> tuple[EquationSet, AuxiliaryLoads]:
         """Equation set and its solution at wavenumber `lateral`, the `number`-th of the view's."""
-        system = EquationSet.build(view.modes, lateral, self.poisson, shortest, self.resolution)
+        modes = view.modes
+        key = (type(modes), modes.length, modes.parity, digest(modes.ray.view(np.float64)), lateral, shortest)
+        system = _EQUATION_SETS.get(
+            (*key, self.poisson, self.resolution),
+            lambda: EquationSet.build(modes, lateral, self.poisson, shortest, self.resolution),
+        )
         spectrum = view.spectra[:, number if view.spectra.shape[1] > 1 else 0]
         return system, system.auxiliary_loads(
             spectrum, tangential=self.tangential, shortest=shortest, resolution=self.resolution

@@ -14,7 +14,9 @@ from contactstudy import contact, stress, surface
 from contactstudy.bodies import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
 from contactstudy.cache import BoundedCache
 from contactstudy.dataset import STRESSES
+from contactstudy.kernels import centred
 from contactstudy.material import Material
+from contactstudy.overlapping import problem
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import (
@@ -37,7 +39,13 @@ Patch = pytest.MonkeyPatch
 def switched_off(physics: Callable[[Patch], None]) -> Iterator[None]:
     """Change the physics; what was solved and kept before would hide it."""
     with pytest.MonkeyPatch.context() as patch:
-        for module, name in ((surface, "_OPERATORS"), (contact, "_CONTACTS"), (stress, "_FIELDS")):
+        for module, name in (
+            (surface, "_OPERATORS"),
+            (contact, "_CONTACTS"),
+            (stress, "_FIELDS"),
+            (centred, "_SPECTRA"),
+            (problem, "_EQUATION_SETS"),
+        ):
             kept = getattr(module, name)
             patch.setattr(module, name, BoundedCache(kept.limit, kept._size))
         physics(patch)
