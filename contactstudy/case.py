@@ -17,7 +17,13 @@ from contactstudy.roller import Roller
 LARGEST_TILT = 0.1
 """Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
 
-MOST_CELLS = 1.25
+LARGEST_HALF_WIDTH = 0.5
+"""Hertz half-width over the roller's radius beyond which a unit is wrong rather than the load high."""
+
+MOST_CELLS = 10**8
+"""Of a chosen grid: a wrong unit asks for many more."""
+
+MOST_EXTRA = 1.25
 """How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
 
 
@@ -86,10 +92,8 @@ class Case:
         object.__setattr__(self, "friction", checks.finite("friction", self.friction))
         if self.end_distance is not None:
             object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
-        tilt = checks.finite("tilt", self.tilt, "radians")
-        if abs(tilt) > LARGEST_TILT:
-            raise InvalidInputError("tilt", tilt, f"a small angle, at most {LARGEST_TILT} radians")
-        object.__setattr__(self, "tilt", tilt)
+        object.__setattr__(self, "tilt", small_tilt(self.tilt))
+        checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         if self.end_distance is None and self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
             raise InvalidInputError(
                 "roller.length",
@@ -119,6 +123,15 @@ class Case:
             object.__setattr__(self, "max_pressure", checks.positive("max_pressure", self.max_pressure, "Pa"))
         if self.load is not None:
             object.__setattr__(self, "load", checks.positive("load", self.load, "N"))
+        if self.hertz_half_width > LARGEST_HALF_WIDTH * self.roller.radius:
+            name = "load" if self.max_pressure is None else "max_pressure"
+            raise InvalidInputError(
+                name,
+                getattr(self, name),
+                f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
+                f"of the roller's radius, {self.roller.radius:g} m",
+                f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
+            )
 
     @property
     def roller_start(self) -> float:
@@ -183,6 +196,16 @@ class Case:
         return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
 
+def small_tilt(value: object) -> float:
+    """Return a tilt in radians, or raise if it is not a small angle."""
+    tilt = checks.finite("tilt", value, "radians")
+    if abs(tilt) > LARGEST_TILT:
+        raise InvalidInputError(
+            "tilt", tilt, f"a small angle, at most {LARGEST_TILT} radians", "degrees need numpy.radians"
+        )
+    return tilt
+
+
 def choose_grid(
     case: Case, *, cells_x: float = 8, cells_y: float = 16, window: float = 2.0, margin: float = 4.0
 ) -> Grid:
@@ -210,7 +233,12 @@ def choose_grid(
     Raises
     ------
     InvalidInputError
-        If a setting is not positive.
+        If a setting is not positive, or so many cells would be needed that a unit must be wrong.
+
+    Notes
+    -----
+    A rigid roller's end between two borders of cells is moved to the nearer one, by at most half a cell. Where that
+    matters, as in a fine sweep over the end distance, take more cells per half-width or a `Grid` of your own.
 
     Examples
     --------
@@ -237,10 +265,17 @@ def choose_grid(
             ("cells_y", 2 * half_window, cells_y),
         )
     ]
+    if least[0] * least[1] > MOST_CELLS:
+        raise InvalidInputError(
+            "cells_x, cells_y",
+            (cells_x, cells_y),
+            f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
+            f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
+        )
     counts = [next_fast_len(count, real=True) for count in least]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
-        while candidates[-1] < MOST_CELLS * counts[0]:
+        while candidates[-1] < MOST_EXTRA * counts[0]:
             candidates.append(next_fast_len(candidates[-1] + 1))
         at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
         counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from numbers import Integral, Real
 
 import numpy as np
@@ -61,6 +62,16 @@ def known_name(name: str, value: str, known: Iterable[str]) -> str:
     nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
     hint = f"did you mean {nearest[0]!r}?" if nearest else ""
     raise InvalidInputError(name, value, f"one of {', '.join(names)}", hint)
+
+
+@contextmanager
+def writing(path: object) -> Iterator[None]:
+    """Turn what the system says against writing a file into an error that names the path."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or str(error)
+        raise InvalidInputError("path", str(path), "a file that can be written", reason.lower()) from None
 
 
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:

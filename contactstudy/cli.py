@@ -133,10 +133,15 @@ def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
 
 def _report(report: RunReport, *, figure: bool) -> int:
     """Say what a run did and wrote."""
+    from contactstudy.errors import ContactStudyError
+
     counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
     print(f"{len(report.plan.cases)} cases: {counts}; {report.solved} solved now")
-    for case, entry in report.failures[:SHOWN]:
-        print(f"  failed: {case.name}: {entry.reason}")
+    reasons: dict[str, list[str]] = {}
+    for case, entry in report.failures:
+        reasons.setdefault(entry.reason, []).append(case.name)
+    for reason, names in list(reasons.items())[:SHOWN]:
+        print(f"  failed: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}")
     if report.failures:
         print(f"  details in {_shown(report.folder / 'run.log')}")
         print(f"  again with: contactstudy rerun {_shown(report.folder)}")
@@ -149,8 +154,11 @@ def _report(report: RunReport, *, figure: bool) -> int:
         size = sum(path.stat().st_size for path in files)
         print(f"wrote {len(files)} netCDF files, {_bytes(size)}, in {_shown(files[0].parent)}")
         print(f"wrote {_shown(_write_summary(report.folder))}")
-        for drawn in _draw(report.folder) if figure else []:
-            print(f"wrote {_shown(drawn)}")
+        try:
+            for drawn in _draw(report.folder) if figure else []:
+                print(f"wrote {_shown(drawn)}")
+        except ContactStudyError as error:
+            print(f"  no figure: {error}")
     stale = [entry for entry in report.entries if entry.status == "stale"]
     if stale:
         print(f"{len(stale)} stale ({stale[0].reason}); again with: contactstudy rerun {_shown(report.folder)}")

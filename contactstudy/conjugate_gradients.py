@@ -117,7 +117,12 @@ def solve_complementarity(
     sunk = operator(pressure)
     if resultants.total is None:
         # The best multiple of the guess: the one that the prescribed approach does as much work on as the displacement.
-        factor = -float((pressure * np.where(possible, gap, 0.0)).sum()) / float((pressure * sunk).sum())
+        work = -float((pressure * np.where(possible, gap, 0.0)).sum())
+        if work <= 0:  # a guess that lies where the shape does not reach
+            pressure = np.where(gap < 0, 1.0, 0.0)
+            sunk, work = operator(pressure), -float(gap[gap < 0].sum())
+            applications += 1
+        factor = work / float((pressure * sunk).sum())
         pressure, sunk = factor * pressure, factor * sunk
     motions = resultants.motions
     direction = np.zeros_like(pressure)
@@ -136,9 +141,9 @@ def solve_complementarity(
         inside = np.where(contact, height, 0.0)
         # Weighted so, the descent has no resultants: the prescribed ones stay as they are.
         if motions:
-            work = [float((weight * inside).sum()) for weight in weights]
+            works = [float((weight * inside).sum()) for weight in weights]
             # Least squares, for a contact of one column of cells cannot tilt.
-            motion = np.asarray(np.array(work) / gram[0] if len(motions) == 1 else np.linalg.lstsq(gram, work)[0])
+            motion = np.asarray(np.array(works) / gram[0] if len(motions) == 1 else np.linalg.lstsq(gram, works)[0])
         level = sum((amount * each for amount, each in zip(motion, motions, strict=True)), np.zeros((1, 1)))
         opening = height - level
         residual = np.where(contact, opening, 0.0)

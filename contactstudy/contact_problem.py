@@ -151,17 +151,22 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
     last one's change makes worth while.
     """
     iterate = solve_normal(operator, replace(problem, tolerance=max(problem.tolerance, ROUGH_TOLERANCE)))
-    applications = iterate.applications
-    tolerance = ROUGH_TOLERANCE
+    scale = float(np.ptp(operator(iterate.pressure)))
+    applications = iterate.applications + 1
+    bent: FloatArray = np.zeros_like(iterate.pressure)
+    change = ROUGH_TOLERANCE
     for _ in range(COUPLED_ROUNDS):
-        previous = iterate.pressure
+        previous, bent_before = iterate.pressure, bent
         bent = operator(np.zeros_like(previous), problem.friction * previous)
-        tolerance = max(problem.tolerance, tolerance)
+        applications += 1
+        # What the friction of this pressure bends the surface otherwise than that of the last one.
+        unsettled = float(np.ptp((bent - bent_before)[previous > 0])) / scale
+        if change <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
+            return ContactIterate(previous, iterate.motion, applications, True)
+        tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
         iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)
-        applications += iterate.applications + 1
+        applications += iterate.applications
+        if not iterate.converged:
+            break
         change = float(np.abs(iterate.pressure - previous).sum() / iterate.pressure.sum())
-        settled = tolerance == problem.tolerance and change <= 3 * problem.tolerance
-        if settled or not iterate.converged:
-            return ContactIterate(iterate.pressure, iterate.motion, applications, iterate.converged)
-        tolerance = ROUND_ACCURACY * change
     return ContactIterate(iterate.pressure, iterate.motion, applications, False)

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.case import Case
+from contactstudy.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import COORDINATES, package_version
 from contactstudy.errors import InvalidInputError
@@ -25,7 +25,7 @@ STEEL = 0.5 * 207e9 / (1 - 0.3**2)
 EXPONENT = 10 / 9
 
 
-def slice_model(case: Case, *, slices: int = 30, tilt: float = 0.0, edge_riser: bool = False) -> xr.Dataset:
+def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge_riser: bool = False) -> xr.Dataset:
     """Load and pressure along a roller by the slice model of ISO/TS 16281.
 
     Each of the ``n`` slices of a contact of length ``L`` carries ``c_s (E* / E*_steel) (2 d_k)**(10/9)`` with
@@ -39,8 +39,9 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float = 0.0, edge_riser: 
         overhangs only the part over the body is cut.
     slices : int
         Number ``n`` of slices; the standard asks for at least 30.
-    tilt : float
+    tilt : float, optional
         Angle of the roller's axis about its mid-length, radians; positive presses the end at larger `x` deeper.
+        Default: the case's.
     edge_riser : bool
         Whether the pressure contains the standard's stress riser for rollers without profile: the load of slice
         ``k`` times ``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, 2.33 at the ends and 1 in the middle.
@@ -54,7 +55,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float = 0.0, edge_riser: 
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind or out of range.
+        If an argument is of the wrong kind or out of range, or the case prescribes where the load acts.
 
     Notes
     -----
@@ -82,9 +83,9 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float = 0.0, edge_riser: 
     """
     checks.instance("case", case, Case, "a Case")
     slices = checks.count("slices", slices, least=2)
-    tilt = checks.finite("tilt", tilt, "radians")
-    if abs(tilt) >= 0.1:
-        raise InvalidInputError("tilt", tilt, "a small angle, below 0.1 rad", "degrees need numpy.radians")
+    if case.load_position is not None:
+        raise InvalidInputError("case.load_position", case.load_position, "None: the slice model takes a tilt")
+    tilt = small_tilt(case.tilt if tilt is None else tilt)
     checks.instance("edge_riser", edge_riser, bool, "True or False")
     start, _ = case.contact_range
     length, roller = case.contact_length, case.roller

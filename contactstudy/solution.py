@@ -128,7 +128,12 @@ def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.D
     """Gap of a case before deformation, less the heights of its rough surfaces."""
     clearance = case.gap(grid)
     if not np.isfinite(clearance).any():
-        raise InvalidInputError("grid", grid, "a grid with cells under the roller")
+        raise InvalidInputError(
+            "grid",
+            grid.shape,
+            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
+            "move the roller by end_distance, or take more cells along x",
+        )
     if roughness is not None:
         clearance = clearance - heights_on(grid, roughness)
     return xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
@@ -148,9 +153,10 @@ def _contact(case: Case, gap: xr.DataArray, tolerance: float) -> xr.Dataset:
             tolerance=tolerance,
         )
     except WindowError as error:
+        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
-            raise
-        raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {error}") from error
+            raise WindowError(advice) from error
+        raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
     _check_on_its_length(case, gap, result)
     result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
     result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"

@@ -24,15 +24,15 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Scalars `peak_pressure` with ``_x`` and ``_y``, `end_pressure_first` and `end_pressure_last` (the pressure over
-        p0 in the first and the last loaded cells along the axis), their mean `end_pressure`, `contact_length` and
-        `contact_width` (m, over whole cells).
+        Scalars `peak_pressure` with ``_x`` and ``_y``, `end_pressure_over_p0_first` and ``_last`` (in the first and the
+        last loaded cells along the axis), their mean `end_pressure_over_p0`, `contact_length` and `contact_width` (m,
+        over whole cells).
 
     Examples
     --------
     >>> pressure = xr.DataArray([[0.0], [3.0], [1.0], [2.0]], dims=("x", "y"), coords={"x": [0, 1, 2, 3], "y": [0]})
     >>> result = pressure_summary(xr.Dataset({"pressure": pressure, "hertz_max_pressure": 2.0}))
-    >>> float(result.peak_pressure_x), float(result.end_pressure), float(result.contact_length)
+    >>> float(result.peak_pressure_x), float(result.end_pressure_over_p0), float(result.contact_length)
     (1.0, 1.25, 3.0)
     """
     contact = contact_results(dataset)
@@ -40,9 +40,9 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     result = {name: _scalar(contact[name], **contact[name].attrs) for name in kept}
     scale = float(dataset["hertz_max_pressure"])
     first, last = (float(contact[f"edge_pressure_{end}"]) / scale for end in ("first", "last"))
-    result["end_pressure_first"] = _scalar(first, "1", "pressure in the first loaded cells, over p0")
-    result["end_pressure_last"] = _scalar(last, "1", "pressure in the last loaded cells, over p0")
-    result["end_pressure"] = _scalar(0.5 * (first + last), "1", "mean of the pressures at both ends, over p0")
+    result["end_pressure_over_p0_first"] = _scalar(first, "1", "pressure in the first loaded cells, over p0")
+    result["end_pressure_over_p0_last"] = _scalar(last, "1", "pressure in the last loaded cells, over p0")
+    result["end_pressure_over_p0"] = _scalar(0.5 * (first + last), "1", "mean of the pressures at both ends, over p0")
     return xr.Dataset(result)
 
 
@@ -88,7 +88,8 @@ def summarize(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Scalars only: those of `dataset`, of :func:`pressure_summary` and of :func:`stress_summary`.
+        Scalars only: those of :func:`pressure_summary`, of :func:`stress_summary` and of `dataset`, which count where
+        names agree: a peak with an estimated error is more than that of the cells.
 
     Examples
     --------
@@ -99,4 +100,4 @@ def summarize(dataset: xr.Dataset) -> xr.Dataset:
     """
     own = dataset[[name for name, variable in dataset.data_vars.items() if variable.ndim == 0]]
     own = own.reset_coords(drop=True).drop_attrs(deep=False)
-    return own.assign(pressure_summary(dataset).data_vars).assign(stress_summary(dataset).data_vars)
+    return pressure_summary(dataset).assign(stress_summary(dataset).data_vars).assign(own.data_vars)

@@ -107,3 +107,28 @@ def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: 
 def test_bad_values_are_named(make, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         make()
+
+
+@pytest.mark.parametrize(
+    ("material", "load", "named"),
+    [
+        (Material(210.0, 0.3), {"max_pressure": 1.5e9}, "max_pressure = .* in Pa"),
+        (STEEL, {"max_pressure": 1e11}, "max_pressure = "),
+        (STEEL, {"load": 1e7}, "load = .* loads in N"),
+    ],
+    ids=["modulus in GPa", "pressure", "load"],
+)
+def test_contacts_as_wide_as_the_roller_are_refused(material: Material, load: dict[str, float], named: str) -> None:
+    with pytest.raises(InvalidInputError, match=named):
+        Case(body=FiniteLengthSpace(length=10e-3, material=material), roller=replace(ROLLER, length=10e-3), **load)
+
+
+@pytest.mark.parametrize("pressure", [1.5, 1500.0])
+def test_a_pressure_in_another_unit_asks_for_too_many_cells(pressure: float) -> None:
+    with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells.*pressures are in Pa"):
+        choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=pressure))
+
+
+def test_coupled_is_yes_or_no() -> None:
+    with pytest.raises(InvalidInputError, match="coupled = 1"):
+        Case(body=BODY, roller=ROLLER, max_pressure=1e9, coupled=1)  # type: ignore[arg-type]

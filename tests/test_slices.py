@@ -130,3 +130,12 @@ def steel_case() -> Case:
 def test_bad_values_are_named(call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         call()
+
+
+def test_the_tilt_is_the_cases_unless_given() -> None:
+    tilted = slice_model(replace(CASE, tilt=1e-3))
+    np.testing.assert_array_equal(tilted["pressure"], slice_model(CASE, tilt=1e-3)["pressure"])
+    assert tilted.attrs["tilt"] == 1e-3
+    assert float(slice_model(replace(CASE, tilt=1e-3), tilt=0.0)["pressure"].std()) < 1.0
+    with pytest.raises(InvalidInputError, match="load_position"):
+        slice_model(replace(CASE, load_position=4e-3))

@@ -194,3 +194,10 @@ def test_bad_points_are_named(
 ) -> None:
     with pytest.raises(InvalidInputError, match=message):
         stress_field(short_body, strip_pressure(8.0, (16, 16)), **change)  # type: ignore[arg-type]
+
+
+def test_a_body_too_thin_to_be_freed_is_refused(on_cells) -> None:
+    pressure = on_cells(lambda x, y: np.sqrt(np.maximum(1 - y**2, 0)) + 0 * x, (0.0, 0.005), (-1.5, 1.5), (4, 48))
+    thin = FiniteLengthSpace(material=Material(1.0, 0.3), length=0.005)
+    with pytest.raises(InvalidInputError, match=r"body.length = 0.005: must be at least 0.004 of the width"):
+        stress_field(thin, pressure, z=[0.1])

@@ -25,8 +25,8 @@ def test_peak_and_its_place():
 
 def test_ends_are_the_first_and_last_loaded_cells():
     result = pressure_summary(contact(VALUES))
-    assert (float(result["end_pressure_first"]), float(result["end_pressure_last"])) == (0.5, 2.0)
-    assert float(result["end_pressure"]) == 1.25
+    assert (float(result["end_pressure_over_p0_first"]), float(result["end_pressure_over_p0_last"])) == (0.5, 2.0)
+    assert float(result["end_pressure_over_p0"]) == 1.25
 
 
 def test_extent_in_whole_cells():
@@ -36,14 +36,14 @@ def test_extent_in_whole_cells():
 
 def test_no_contact_at_all():
     result = pressure_summary(contact(np.zeros((3, 2))))
-    assert np.isnan(float(result["end_pressure"]))
+    assert np.isnan(float(result["end_pressure_over_p0"]))
     assert float(result["contact_length"]) == 0
 
 
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
     one, other = pressure_summary(contact(VALUES)), pressure_summary(contact(np.multiply(VALUES, scale), 2 * scale))
-    assert float(other["end_pressure"]) == pytest.approx(float(one["end_pressure"]))
+    assert float(other["end_pressure_over_p0"]) == pytest.approx(float(one["end_pressure_over_p0"]))
 
 
 def test_stress_points_of_their_own():
@@ -75,4 +75,4 @@ def test_summary_is_scalar_described_and_keeps_what_was_there():
     result = summarize(contact(VALUES).assign(iterations=7))
     assert all(variable.ndim == 0 for variable in result.variables.values())
     assert int(result["iterations"]) == 7
-    assert result["end_pressure"].attrs["units"] == "1"
+    assert result["end_pressure_over_p0"].attrs["units"] == "1"

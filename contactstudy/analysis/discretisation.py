@@ -149,7 +149,9 @@ def _sharp_ends(contact: xr.Dataset) -> set[str]:
         sharp.add("end_pressure_first")
     if last < along.size - 1 and along[last] > 0:
         sharp.add("end_pressure_last")
-    return sharp | {"peak_pressure"} if sharp else sharp
+    at_first = "end_pressure_first" in sharp and along.argmax() < first + FITTED
+    at_last = "end_pressure_last" in sharp and along.argmax() > last - FITTED
+    return sharp | {"peak_pressure"} if at_first or at_last else sharp
 
 
 def _measured(name: str, contact: xr.Dataset) -> dict[str, float]:

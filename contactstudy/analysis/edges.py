@@ -7,6 +7,7 @@ import xarray as xr
 from scipy.interpolate import CubicSpline
 
 from contactstudy import checks
+from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.border import FITTED, SKIPPED, contact_borders
 from contactstudy.checks import FloatArray
 from contactstudy.dataset import describe
@@ -25,7 +26,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     ----------
     contact : Dataset
         With `pressure` (Pa) and `gap` (metres, after deformation; infinite where there is nothing to touch) on
-        (x, y), as from `solve_contact`.
+        (x, y), as from `solve_contact`; or one case selected from a study.
 
     Returns
     -------
@@ -52,6 +53,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     (1.0, 1.0)
     """
     checks.instance("contact", contact, xr.Dataset, "a Dataset")
+    contact = single_case(contact)
     for name in ("pressure", "gap"):
         if name not in contact:
             raise InvalidInputError("contact", sorted(map(str, contact.data_vars)), f"a Dataset with {name}")

@@ -93,6 +93,7 @@ def edge_factors(
     (3.0, 2.0)
     """
     require(dataset, "pressure", "hertz_half_width")
+    checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)
     values = {

@@ -117,7 +117,7 @@ def to_csv(
     Raises
     ------
     InvalidInputError
-        As :func:`to_table`.
+        As :func:`to_table`, or if the file cannot be written.
 
     Examples
     --------
@@ -129,5 +129,7 @@ def to_csv(
     """
     checks.instance("path", path, (str, Path), "a path")
     target = Path(path)
-    to_table(dataset, variables, line=line, points=points).to_csv(target, index=False)
+    table = to_table(dataset, variables, line=line, points=points)
+    with checks.writing(target):
+        table.to_csv(target, index=False)
     return target

@@ -52,7 +52,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     ------
     InvalidInputError
         If there is more than one case, the path ends otherwise, or the variables are missing or lie on different
-        points.
+        points, or the file cannot be written.
 
     Examples
     --------
@@ -89,7 +89,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
         components = np.stack([data[name] for name in STRESSES], axis=-1)
         data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
     # Not compressed: uvw 0.7 spoils compressed arrays of a multiple of 32 KiB, and stresses hardly get smaller.
-    with RectilinearGrid(str(target), tuple(place[axis][order[axis]] for axis in AXES)) as grid:
+    with checks.writing(target), RectilinearGrid(str(target), tuple(place[axis][order[axis]] for axis in AXES)) as grid:
         for name, values in data.items():
             grid.addPointData(DataArray(values, range(3), name))
     return target

@@ -121,8 +121,8 @@ def lateral_panels(
     ...     if panel.interpolation is not None:
     ...         answer = panel.interpolation @ answer
     ...     found += float(panel.waves(np.array([30.0]))[0][:, 0] @ answer) * np.pi
-    >>> round(found * 901, 3)
-    1.0
+    >>> abs(found - 1 / 901) < 1e-5
+    True
     """
     order = resolution.lateral_nodes
     count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.ratio))))

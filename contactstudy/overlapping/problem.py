@@ -9,6 +9,7 @@ import numpy as np
 
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
+from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
@@ -26,6 +27,8 @@ from contactstudy.overlapping.single_mirror import modes_between_ends
 # Points on the loaded corner itself are evaluated this part of a cell below it: both bodies' parts have a logarithm
 # there, of which only the sum is finite.
 CORNER_OFFSET = 1e-2
+# Length over the width of the load: at this one the ends keep 6e-4 of the pressure, at a third of it a tenth.
+THINNEST = 0.004
 
 _EQUATION_SETS: BoundedCache[EquationSet] = BoundedCache(2**26, lambda system: system.nbytes)
 
@@ -59,6 +62,19 @@ class EndProblem:
     tangential: bool
     resolution: Resolution
     mirrored_once: bool = False
+
+    def __post_init__(self) -> None:
+        """Refuse a body too thin for its ends to be freed by these quadratures."""
+        loaded = np.flatnonzero(self.pressure.any(axis=0))
+        width = self.grid.dy * (loaded[-1] - loaded[0] + 1) if loaded.size else 0.0
+        if self.length < THINNEST * width:
+            raise InvalidInputError(
+                "body.length",
+                self.length,
+                f"at least {THINNEST:g} of the width of the contact, {width:.3g} m: the traction left on the ends of a "
+                "thinner body exceeds 1e-3 of the pressure",
+                "such a disc is in plane stress",
+            )
 
     def axial_modes(self, lateral: float, shortest: float) -> list[AxialModes]:
         """Axial modes for wavenumbers along y from `lateral` on, see `modes_between_ends`."""

@@ -175,7 +175,12 @@ def plot_end_face(
     reach = float(places["x"].max() - places["x"].min())
     face = float(places["x"].max()) if end == "last" else 0.0
     if abs(float(places["x"].min()) - face) > 1e-9 * reach and end == "first":
-        raise InvalidInputError("x", float(places["x"].min()), "0, the end face, for the first position of stresses")
+        raise InvalidInputError(
+            "x",
+            float(places["x"].min()),
+            "0, the end face, for the first position of stresses",
+            "by default they are at the cells' centres: solve(case, x=...) with 0 among the positions",
+        )
     inside = in_plane(one, variables=variable, y=0.0)[variable]
     on_face = in_plane(one, variables=variable, x=face)[variable]
     y_dim = dimension_along(on_face, "y")

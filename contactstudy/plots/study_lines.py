@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
@@ -46,11 +47,12 @@ def plot_study_lines(
     variables : sequence of str
         Scalars of each case; those that the study lacks are left out.
     selection : mapping, optional
-        Values of the other swept parameters; the first of each if left out.
+        Values of the other swept parameters; the first with a solved case if left out.
 
     Returns
     -------
     Figure
+        Its title says at which values of the other parameters.
 
     Raises
     ------
@@ -78,36 +80,49 @@ def plot_study_lines(
     figure, axes = plt.subplots(
         1, len(drawn), figsize=(4.0 * len(drawn) + 0.6, 3.6), squeeze=False, layout="constrained", sharex=True
     )
+    chosen = _first_solved(dataset[drawn[0]], kept, selection or {})
     for ax, name in zip(axes[0], drawn, strict=True):
-        array = dataset[name]
-        first = {str(dim): array[dim].values[0] for dim in array.dims if str(dim) not in kept}
-        chosen = {dim: (selection or {}).get(dim, value) for dim, value in first.items()}
-        values, meaning = readable(one_value(array, kept, chosen), name)
+        values, meaning = readable(one_value(dataset[name], kept, chosen), name)
         numeric = np.issubdtype(values[x].dtype, np.number)
         across, label = readable(values[x], x) if numeric else (values[x], x.replace("_", " "))
         places = across.values if numeric else np.arange(across.size)
-        levels = [None] if hue is None else list(values[hue].values)
-        for number, (level, style) in enumerate(zip(levels, line_styles(len(levels)), strict=True)):
-            line = values if level is None else values.sel({hue: level})
-            text = f"{level:g}" if isinstance(level, int | float | np.number) else str(level)
-            ax.plot(
-                places,
-                line.values,
-                **style,
-                marker=MARKERS[number % len(MARKERS)],
-                markersize=4,
-                label=None if level is None else text,
-            )
+        lines = [values] if hue is None else [values.isel({hue: number}) for number in range(values.sizes[hue])]
+        labels = [None] if hue is None else _texts(values[hue], hue)
+        for number, (line, text, style) in enumerate(zip(lines, labels, line_styles(len(lines)), strict=True)):
+            marker = MARKERS[number % len(MARKERS)]
+            ax.plot(places, line.values, **style, marker=marker, markersize=4, label=text)
         if not numeric:
             ax.set_xticks(places, [str(value) for value in across.values], rotation=20)
         ax.set_xlabel(label)
         ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
-        ax.set_ylim(0.0, 1.08 * max(float(values.max()), 1e-300))
+        ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.max())), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
     if hue is not None:
         title = readable(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
         axes[0, 0].legend(title=title, frameon=False, fontsize="small", title_fontsize="small")
+    if chosen:
+        stated = ", ".join(
+            f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {value}"
+            for dim, value in chosen.items()
+        )
+        figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")
     return figure
+
+
+def _texts(values: xr.DataArray, name: str) -> list[str]:
+    """Values of a parameter as a figure states them, in the unit of its label."""
+    if not np.issubdtype(values.dtype, np.number):
+        return [str(value) for value in values.values]
+    return [f"{value:g}" for value in readable(values, name)[0].values]
+
+
+def _first_solved(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
+    """Value of every other parameter: the one selected, or the first ones for which any case was solved."""
+    others = [str(dim) for dim in array.dims if str(dim) not in kept]
+    choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in others]
+    combinations = [dict(zip(others, values, strict=True)) for values in itertools.product(*choices)]
+    solved = (each for each in combinations if bool(np.isfinite(one_value(array, kept, each)).any()))
+    return next(solved, combinations[0])
 
 
 def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:
@@ -133,7 +148,8 @@ def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:
     """
     figures = {}
     if "e_over_a" in dataset.dims and "pressure" in dataset:
-        figures["edge_effect"] = plot_edge_effect(dataset)
+        chosen = _first_solved(dataset["hertz_half_width"], ("e_over_a", "body"), {})
+        figures["edge_effect"] = plot_edge_effect(dataset, selection=chosen)
     swept = sorted(
         (dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1), key=lambda dim: -dataset.sizes[dim]
     )

@@ -38,7 +38,7 @@ def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
         return array, text
     if unit in SCALES:
         largest = float(abs(array).max())
-        factor, unit = next(entry[1:] for entry in SCALES[unit] if largest >= entry[0])
+        factor, unit = next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
         array = array / factor
     return array, f"{text} ({unit})"
 
@@ -110,7 +110,7 @@ def plot_study_map(
     --------
     >>> values = xr.DataArray([[1.0, 2.0], [3.0, 4.0]], dims=("e_over_a", "friction"),
     ...                       coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
-    >>> plot_study_map(xr.Dataset({"end_pressure": values}), "end_pressure").get_ylabel()
+    >>> plot_study_map(xr.Dataset({"end_pressure_over_p0": values}), "end_pressure_over_p0").get_ylabel()
     'friction, $f$'
     """
     if isinstance(variable, xr.DataArray):
@@ -121,6 +121,8 @@ def plot_study_map(
     for parameter in (x, y):
         if parameter not in array.dims or parameter not in array.indexes or x == y:
             raise InvalidInputError("x, y", (x, y), f"two swept parameters among {', '.join(map(str, array.dims))}")
+    if not np.issubdtype(array.dtype, np.number):
+        raise InvalidInputError("variable", name, "a number of each case")
     values = one_value(array, (x, y), selection or {}).transpose(y, x)
     values, meaning = readable(values, name)
     numbers = np.asarray(values.values, dtype=np.float64)

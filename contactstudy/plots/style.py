@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -138,7 +139,7 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     Raises
     ------
     InvalidInputError
-        If matplotlib cannot write a format.
+        If matplotlib cannot write a format, or a file cannot be written.
 
     Examples
     --------
@@ -158,7 +159,7 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     if base.suffix.removeprefix(".") in formats:
         base = base.with_suffix("")
     files = [base.with_name(f"{base.name}.{name}") for name in formats]
-    with matplotlib.rc_context({"pdf.fonttype": 42}):
+    with matplotlib.rc_context({"pdf.fonttype": 42}), checks.writing(base.parent):
         for file in files:
             figure.savefig(file, dpi=200, bbox_inches="tight")
     return files

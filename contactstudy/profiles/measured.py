@@ -28,8 +28,8 @@ FEWEST = 5
 
 SPIKE_BENDS, SPIKE_SHARE = 8.0, 0.02
 """A point is an outlier if it stands out of the median of five points by more than this many times the usual bend
-around it (median of half the second differences of eleven points), and by more than this share of the profile's
-height (without the outer tenth of its values)."""
+around it (median of half the second differences of eleven points, or of all if that is more), and by more than this
+share of the profile's height (without the outer tenth of its values)."""
 
 
 @dataclass(frozen=True)
@@ -195,7 +195,9 @@ def refuse_outliers(x: FloatArray, drops: FloatArray, largest: float | None = No
     if largest is None:
         low, high = np.quantile(drops, [0.05, 0.95])
         bends = np.pad(0.5 * np.abs(np.diff(drops, 2)), 1, mode="reflect")
-        limits = np.maximum(SPIKE_BENDS * _running_median(bends, 5, "even"), SPIKE_SHARE * (high - low))
+        # The median of eleven bends of mere noise is now and then small; that of all is not.
+        usual = np.maximum(_running_median(bends, 5, "even"), np.median(bends))
+        limits = np.maximum(SPIKE_BENDS * usual, SPIKE_SHARE * (high - low))
     else:
         limits = np.full(drops.shape, largest)
     # beside an outlier the median is that of other points: only the worst of neighbours is named

@@ -170,7 +170,9 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     low, high = case.body.extent
     if x is not None and not (low <= x.min() and x.max() <= high * (1 + 1e-12)):
         raise InvalidInputError(
-            "field_x_over_a", float(x.max() / half_width), f"inside the body, 0 to {high / half_width:g}"
+            "field_x_over_a",
+            float((x.min() if x.min() < low else x.max()) / half_width),
+            f"inside the body, 0 to {high / half_width:g}",
         )
     tolerance = checks.positive("tolerance", values["tolerance"])
     return Setup(case, grid, x, y, z, values["stresses"], tolerance, values["error_estimate"])

@@ -15,6 +15,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from contactstudy.dataset import package_version
@@ -139,8 +140,8 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     Returns
     -------
     Record
-        With status "failed" if the case raised an error of the package; other errors are errors of the program
-        and pass through.
+        With status "failed" if the case raised an error of the package, or asked for more memory than there is or for
+        a solution that does not exist; other errors are errors of the program and pass through.
 
     Raises
     ------
@@ -166,7 +167,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
             scalars = summarize(dataset)
     except StoreError:
         raise
-    except ContactStudyError as error:
+    except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
         return Record(job.id, "failed", time.perf_counter() - began, error=type(error).__name__, message=str(error))
     seconds = time.perf_counter() - began
     scalars["seconds"] = xr.DataArray(seconds, attrs={"units": "s", "long_name": "time of solving"})

@@ -71,3 +71,11 @@ def test_richardson_removes_the_leading_error():
 def test_richardson_refuses_what_says_nothing(arguments):
     with pytest.raises(InvalidInputError):
         extrapolated(*arguments)
+
+
+def test_a_peak_away_from_a_sharp_end_has_a_limit():
+    crowned = case_of(4 * HALF_WIDTH, profiles.FullCrown(0.015))
+    result = discretisation_error(solved(crowned, 64), solved(crowned, 32))
+    assert float(result.end_pressure_first) > 0
+    assert np.isinf(float(result.end_pressure_first_error))
+    assert float(result.peak_pressure_error) < 0.02 * float(result.peak_pressure)

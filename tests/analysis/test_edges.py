@@ -129,3 +129,8 @@ def test_a_border_short_of_its_columns_centre_still_gives_an_area():
         counted = int((contact.pressure > 0).sum()) * float(np.diff(contact.x[:2])[0] * np.diff(contact.y[:2])[0])
         assert areas[-1] == pytest.approx(counted, rel=0.05)
     np.testing.assert_allclose(areas, areas[-1], rtol=0.03)
+
+
+def test_a_case_of_a_study(opened):
+    one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
+    assert float(one.contact.contact_edges()["contact_length"]) > 0

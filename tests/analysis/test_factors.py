@@ -61,6 +61,8 @@ def test_a_study_against_its_half_space(opened: xr.Dataset) -> None:
 def test_bad_input(strip_result) -> None:
     with pytest.raises(InvalidInputError, match="reach"):
         analysis.edge_factors(strip_result(), reach=0.0)
+    with pytest.raises(InvalidInputError, match="reference="):
+        analysis.edge_factors(strip_result(), strip_result())
     with pytest.raises(InvalidInputError, match="not negative"):
         analysis.edge_factors(strip_result(), "hydrostatic")
     with pytest.raises(InvalidInputError, match="pressure is missing"):

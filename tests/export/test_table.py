@@ -61,3 +61,10 @@ def test_more_than_one_case(opened: xr.Dataset, tmp_path) -> None:
         export.to_csv(opened, tmp_path / "a.csv", "pressure")
     with pytest.raises(InvalidInputError, match="path"):
         export.to_csv(opened, None)  # type: ignore[arg-type]
+
+
+def test_a_file_that_cannot_be_written(solved: xr.Dataset, tmp_path) -> None:
+    with pytest.raises(InvalidInputError, match=r"path = .*can be written"):
+        export.to_csv(solved, tmp_path / "nowhere" / "a.csv", "pressure")
+    with pytest.raises(InvalidInputError, match=r"path = .*can be written"):
+        export.to_vtk(solved, tmp_path / "nowhere" / "a.vtr", "pressure")

@@ -45,7 +45,7 @@ def test_few_columns_say_what_every_wavenumber_says(seed: int, rank: int, split:
     asked = 0
     for panel in panels:
         direct = replace(panel, nodes=panel.fine, interpolation=None)
-        np.testing.assert_allclose(answered(panel, parts), answered(direct, parts), atol=2e-6 * rank)
+        np.testing.assert_allclose(answered(panel, parts), answered(direct, parts), atol=1e-5 * rank)
         loads = lateral_loads(panel, parts, GRID, Y)
         assert loads is not None
         asked += loads.nodes.size

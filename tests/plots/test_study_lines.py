@@ -35,3 +35,21 @@ def test_parameters_must_be_swept(opened, arguments):
 def test_quantities_must_be_there(opened):
     with pytest.raises(InvalidInputError, match="no_such_thing"):
         plots.plot_study_lines(opened, "e_over_a", variables=["no_such_thing"])
+
+
+def test_the_first_solved_cases_are_drawn_and_named(opened):
+    failed_first = opened.isel(friction=[1, 0])
+    figure = plots.plot_study_lines(failed_first, "e_over_a", "body")
+    assert figure.get_suptitle() == "friction = 0.1"
+    assert np.isfinite(figure.axes[0].lines[0].get_ydata()).all()
+    assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
+    only_failed = plots.plot_study_lines(opened.isel(friction=[1]), "e_over_a", "body")
+    assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
+
+
+def test_the_legend_has_the_unit_of_its_title(opened):
+    by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
+    by_pressure["max_pressure"].attrs["units"] = "Pa"
+    legend = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").axes[0].get_legend()
+    assert "GPa" in legend.get_title().get_text()
+    assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]

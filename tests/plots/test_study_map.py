@@ -24,7 +24,7 @@ def test_unit_is_readable(opened):
 
 
 def test_names_of_bodies_along_an_axis(opened):
-    ax = plots.plot_study_map(opened, "end_pressure", y="body", selection={"friction": 0.1})
+    ax = plots.plot_study_map(opened, "end_pressure_over_p0", y="body", selection={"friction": 0.1})
     assert [tick.get_text() for tick in ax.get_yticklabels()] == ["finite-length", "half-space"]
 
 
@@ -38,19 +38,23 @@ def test_contours_of_a_computed_quantity(opened):
 
 def test_given_axes_are_used(opened):
     ax = pyplot.figure().add_subplot()
-    assert plots.plot_study_map(opened, "end_pressure", ax=ax, selection={"body": "finite-length"}) is ax
+    assert plots.plot_study_map(opened, "end_pressure_over_p0", ax=ax, selection={"body": "finite-length"}) is ax
 
 
 def test_bad_input(opened):
     one_body = opened.sel(body="finite-length")
     for call, message in (
-        (lambda: plots.plot_study_map(opened, "end_pressure"), "with a value of body"),
+        (lambda: plots.plot_study_map(opened, "end_pressure_over_p0"), "with a value of body"),
+        (lambda: plots.plot_study_map(one_body, "status"), "a number of each case"),
         (lambda: plots.plot_study_map(one_body, "end_pressures"), "end_pressures is missing"),
-        (lambda: plots.plot_study_map(one_body, "end_pressure", y="gamma"), "two swept parameters"),
-        (lambda: plots.plot_study_map(one_body, "end_pressure", y="e_over_a"), "two swept parameters"),
-        (lambda: plots.plot_study_map(opened, "end_pressure", selection={"body": "moon"}), "one of finite-length"),
-        (lambda: plots.plot_study_map(one_body, "end_pressure", selection={"speed": 1}), "of nothing"),
-        (lambda: plots.plot_study_map(one_body.isel(friction=[1]), "end_pressure"), "at least one"),
+        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="gamma"), "two swept parameters"),
+        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="e_over_a"), "two swept parameters"),
+        (
+            lambda: plots.plot_study_map(opened, "end_pressure_over_p0", selection={"body": "moon"}),
+            "one of finite-length",
+        ),
+        (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", selection={"speed": 1}), "of nothing"),
+        (lambda: plots.plot_study_map(one_body.isel(friction=[1]), "end_pressure_over_p0"), "at least one"),
     ):
         with pytest.raises(InvalidInputError, match=message):
             call()

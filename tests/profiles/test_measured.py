@@ -101,6 +101,14 @@ def test_what_is_no_outlier(drop: np.ndarray) -> None:
     Measured(X, drop)
 
 
+@pytest.mark.parametrize("points", [41, 501, 2001])
+def test_noise_alone_is_no_outlier(points: int) -> None:
+    x = np.linspace(0.0, LENGTH, points)
+    for seed in range(30):
+        drop = (x - 0.5 * LENGTH) ** 2 / 2 + 0.2e-6 * np.random.default_rng(seed).standard_normal(points)
+        Measured(x, drop - drop.min())
+
+
 @pytest.mark.parametrize("at", [1, 3, 100, 199])
 @pytest.mark.parametrize("spike", [1e-6, 1e-5])
 @pytest.mark.parametrize("noise", [0.0, 2e-8])

@@ -17,8 +17,8 @@ from contactstudy.dataset import STRESSES, describe
 from contactstudy.errors import WindowError
 from contactstudy.grid import Grid
 
-FAILS, DIES, IS_WRONG = 0.66, 0.77, 0.88
-"""Coefficients of friction at which the case fails, kills its process, or meets an error of the program."""
+FAILS, DIES, IS_WRONG, IS_LARGE = 0.66, 0.77, 0.88, 0.99
+"""Friction at which the case fails, kills its process, meets an error of the program, or asks for too much memory."""
 
 
 def solve_fake(
@@ -30,6 +30,8 @@ def solve_fake(
         os.kill(os.getpid(), signal.SIGKILL)
     if case.friction == IS_WRONG:
         raise ZeroDivisionError("a bug")
+    if case.friction == IS_LARGE:
+        raise MemoryError("Unable to allocate 7 EiB")
     half_width, peak = case.hertz_half_width, case.hertz_max_pressure
     start, stop = case.contact_range
     inside = (grid.x > start) & (grid.x < stop)

@@ -14,7 +14,7 @@ from contactstudy.study.folder import Folder
 from contactstudy.study.progress import Progress
 from contactstudy.study.store import load_case, read_header
 from tests.study.conftest import identity, small_study
-from tests.study.fakes import DIES, FAILS, IS_WRONG, solve_fake
+from tests.study.fakes import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
 
 NOBODY = 65534
 
@@ -52,6 +52,12 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
     assert run(study, tmp_path).solved == 0
     assert "this friction fails" in (tmp_path / "run.log").read_text()
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
+
+
+def test_a_case_larger_than_the_memory_fails_alone(tmp_path):
+    report = run(small_study(sweep={"e_over_a": [0], "friction": [IS_LARGE, 0.1]}), tmp_path)
+    assert report.counts == {"failed": 1, "ok": 1}
+    assert report.failures[0][1].reason == "MemoryError: Unable to allocate 7 EiB"
 
 
 def repaired(case, grid, **settings):

@@ -22,8 +22,8 @@ def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
         assert float(pressed.min()) == pytest.approx(e_over_a + step / 2, abs=step)
         assert float(case["end_traction_residual"]) < 1e-4
     # A sharp roller carries less at a free end than inside, where its edge presses into the face.
-    assert float(opened["end_pressure_first"].sel(e_over_a=0.0)) < 1.0
-    assert float(opened["end_pressure_first"].sel(e_over_a=2.0)) > 1.0
+    assert float(opened["end_pressure_over_p0_first"].sel(e_over_a=0.0)) < 1.0
+    assert float(opened["end_pressure_over_p0_first"].sel(e_over_a=2.0)) > 1.0
 
 
 def test_a_study_gives_what_the_solver_gives(tmp_path):
@@ -55,7 +55,7 @@ def test_comparison_models_beside_the_exact_ends(tmp_path):
     residual = opened["end_traction_residual"].sel(body="finite-length")
     exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
     assert exact < 1e-4 < once < mirror
-    ends = opened["end_pressure"].sel(body="finite-length").values
+    ends = opened["end_pressure_over_p0"].sel(body="finite-length").values
     assert len({round(value, 4) for value in ends.tolist()}) == 4
 
 
