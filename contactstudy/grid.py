@@ -104,5 +104,5 @@ class Grid:
         return np.asarray(middle + self.dy * (np.arange(self.cells_y) - 0.5 * (self.cells_y - 1)))
 
     def coarsened(self) -> Grid:
-        """Return the grid of cells of twice the size; the numbers of cells must be even."""
+        """Return the grid of cells of twice the size; a little more where a number of cells is odd."""
         return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)

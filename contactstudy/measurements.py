@@ -9,12 +9,16 @@ from __future__ import annotations
 import csv
 import re
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 METRES = {
     "m": 1.0,
@@ -33,6 +37,17 @@ WIDEST_STEP = 3.0
 """A step between positions that is this many times as wide as the steps beside it is a gap."""
 
 COMMENT = "#"
+
+
+def read_netcdf(path: Path) -> xr.Dataset:
+    """Content of a netCDF file, or an error that names it."""
+    import xarray as xr
+
+    try:
+        with xr.open_dataset(path) as opened:
+            return opened.load()
+    except (OSError, ValueError) as error:
+        raise InvalidInputError("path", str(path), "a netCDF file that can be read", str(error)) from error
 
 
 def unit_in_metres(name: str, unit: object) -> float:

@@ -17,7 +17,7 @@ from contactstudy.dataset import COORDINATES
 from contactstudy.errors import InvalidInputError
 from contactstudy.grid import Grid
 from contactstudy.labelled import labelled_cells
-from contactstudy.measurements import check_positions, check_values, read_columns, unit_in_metres
+from contactstudy.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 
 # Cells nearer to each other than this part of their size are the same.
 SAME_PLACE = 1e-3
@@ -232,11 +232,7 @@ def _read_csv(path: Path) -> Map:
 
 def _read_netcdf(path: Path) -> Map:
     """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
-    try:
-        with xr.open_dataset(path) as opened:
-            dataset = opened.load()
-    except (OSError, ValueError) as error:
-        raise InvalidInputError("path", str(path), "a netCDF file that can be read", str(error)) from error
+    dataset = read_netcdf(path)
     if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
         raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
     scales = {name: unit_in_metres(name, dataset[name].attrs.get("units")) for name in ("x", "y", "height")}

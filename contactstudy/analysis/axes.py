@@ -20,6 +20,10 @@ def require(dataset: object, *names: str) -> None:
     if not isinstance(dataset, xr.Dataset):
         raise InvalidInputError("dataset", type(dataset).__name__, "an xarray.Dataset")
     missing = [name for name in names if name not in dataset]
+    status = dataset.get("status")
+    if missing and status is not None and status.ndim == 0 and str(status.item()) != "ok":
+        reason = str(dataset["message"].item()) if "message" in dataset else ""
+        raise InvalidInputError("dataset", f"a {status.item()} case", "a solved case", reason)
     if missing:
         raise InvalidInputError(
             "dataset",

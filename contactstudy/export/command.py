@@ -114,6 +114,10 @@ def export(
         If the path holds no result, or an option does not suit.
     """
     dataset = _select(_open(path), select)
+    swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
+    if swept:
+        example = f"--select {swept[0]}={dataset[swept[0]].values[0]}"
+        raise InvalidInputError("select", list(select), f"with a value of {', '.join(swept)} too", f"such as {example}")
     default = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
     target = default if out is None else out
     if kind == "vtk":

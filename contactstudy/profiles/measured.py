@@ -14,7 +14,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.measurements import check_positions, check_values, read_columns, unit_in_metres
+from contactstudy.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.base import Shape
 
 VALUES = ("drop", "height")
@@ -160,13 +160,7 @@ class Measured(Shape):
 
 def _read_netcdf(path: Path) -> dict[str, FloatArray]:
     """Positions and values of a netCDF file, in metres."""
-    import xarray as xr
-
-    try:
-        with xr.open_dataset(path) as opened:
-            dataset = opened.load()
-    except (OSError, ValueError) as error:
-        raise InvalidInputError("path", str(path), "a netCDF file that can be read", str(error)) from error
+    dataset = read_netcdf(path)
     present = [name for name in VALUES if name in dataset.data_vars]
     if len(present) != 1 or "x" not in dataset.variables or dataset[present[0]].dims != dataset["x"].dims:
         raise InvalidInputError("path", str(path), f"a file with x and one of {', '.join(VALUES)} along it")

@@ -46,6 +46,8 @@ def test_one_case_of_a_study_looks_like_a_result(opened: xr.Dataset) -> None:
 def test_a_case_that_failed_has_no_fields(opened: xr.Dataset) -> None:
     one = analysis.single_case(opened.sel(e_over_a=1, friction=FAILS, body="finite-length"))
     assert "pressure" not in one
+    with pytest.raises(InvalidInputError, match=r"'a failed case': must be a solved case; .*this friction fails"):
+        one.contact.slices()
 
 
 def test_more_than_one_case_is_refused(opened: xr.Dataset) -> None:

@@ -79,7 +79,7 @@ def test_wrong_use_of_a_file(case, capsys, options: list[str], message: str) -> 
 
 def test_wrong_use_of_a_study(folder, tmp_path, capsys) -> None:
     for options, message in (
-        (["--variable", "pressure"], "single case"),
+        (["--variable", "pressure"], "a value of e_over_a, friction too; such as --select e_over_a="),
         (["--select", "friction=0.3"], "one of 0.0, 0.1"),
         (["--select", "friction=high"], "one of 0.0, 0.1"),
         (["--select", "speed=3"], "swept parameter: e_over_a, friction"),
