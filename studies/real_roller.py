@@ -1,6 +1,6 @@
 """One real roller on real raceways: what each profile and each model of the ends makes of it.
 
-Usage: ``python studies/real_roller.py [--out FOLDER] [--cells N]``; about five minutes on two cores. Prints Markdown
+Usage: ``python studies/real_roller.py [--out FOLDER] [--cells N]``; about three minutes. Prints Markdown
 tables and writes ``real_roller.nc``. Radius 5 mm, length 10 mm, steel on steel, 1.5 GPa Hertz pressure; raceways 14 mm
 wide and as wide as the roller.
 
