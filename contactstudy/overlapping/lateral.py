@@ -170,26 +170,24 @@ def lateral_loads(
 
 def _at_nodes(loads: LateralLoads, nodes: FloatArray, interpolation: FloatArray) -> LateralLoads:
     """Return the same loads as few functions of x, asked for at few nodes; as they are, if that is not less to ask."""
-    cells, fine, _ = loads.columns.shape
-    columns, parities = [], []
-    even: list[FloatArray] = []
-    odd: list[FloatArray] = []
+    cells, fine, asked = loads.columns.shape
+    columns, parities, factors = [], [], []
     for parity in np.unique(loads.parities):
         own = loads.parities == parity
-        spectra = loads.columns[..., own].reshape(cells, -1)
-        left, values, right = np.linalg.svd(spectra, full_matrices=False)
+        left, values, right = np.linalg.svd(loads.columns[..., own].reshape(cells, -1), full_matrices=False)
         rank = int((values > NEGLIGIBLE * values[0]).sum())
         along = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
         columns.append(left[:, :rank])
         parities.append(np.full(rank, parity))
-        for waves, gathered in ((loads.even, even), (loads.odd, odd)):
-            summed = (along[..., None] * waves[:, own]).sum(axis=2)
-            gathered.append((interpolation.T @ summed).swapaxes(0, 1))
+        factors.append((own, interpolation.T[:, None, :, None] * along))
     count = np.concatenate(parities)
-    if nodes.size * count.size >= fine * loads.parities.size:
+    if nodes.size * count.size >= fine * asked:
         return loads
-    shared = np.concatenate(columns, axis=1)[:, None, :]
-    return LateralLoads(nodes, shared, count, np.concatenate(even, axis=1), np.concatenate(odd, axis=1))
+    even, odd = (
+        np.concatenate([np.tensordot(factor, waves[:, own], axes=2) for own, factor in factors], axis=1)
+        for waves in (loads.even, loads.odd)
+    )
+    return LateralLoads(nodes, np.concatenate(columns, axis=1)[:, None, :], count, even, odd)
 
 
 def cosine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:
