@@ -3,7 +3,9 @@
 The scheme of I. A. Polonsky and L. M. Keer, Wear 231 (1999) 206, with two changes that save most of its iterations:
 the descent direction is preconditioned by the inverse of the operator's spectrum, restricted to the contact (J. Zhao,
 E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375, use the like for Hertz' problem), and the gap is
-updated along the search direction while the contact area stays as it is.
+updated along the search direction while the contact area stays as it is. And one that keeps it from going astray after
+a bad guess: cells that enter the contact all at once may press too hard, so of a change of the area that would raise
+the energy only the part is taken that lowers it most.
 """
 
 from __future__ import annotations
