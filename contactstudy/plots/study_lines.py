@@ -47,7 +47,7 @@ def plot_study_lines(
     variables : sequence of str
         Scalars of each case; those that the study lacks are left out.
     selection : mapping, optional
-        Values of the other swept parameters; the first with a solved case if left out.
+        Values of the other swept parameters; those with most solved cases, or the first of these, if left out.
 
     Returns
     -------
@@ -98,7 +98,8 @@ def plot_study_lines(
         ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.max())), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
     if hue is not None:
-        title = readable(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
+        numeric = np.issubdtype(dataset[hue].dtype, np.number) and not _parameters_of(dataset[hue], hue)
+        title = readable(dataset[hue], hue)[1] if numeric else hue.replace("_", " ")
         axes[0, 0].legend(title=title, frameon=False, fontsize="small", title_fontsize="small")
     if chosen:
         stated = ", ".join(
@@ -110,19 +111,25 @@ def plot_study_lines(
 
 
 def _texts(values: xr.DataArray, name: str) -> list[str]:
-    """Values of a parameter as a figure states them, in the unit of its label."""
+    """Values of a parameter as a figure states them, in the unit of its label; of a table those of its parameters."""
+    if together := _parameters_of(values, name):
+        return [", ".join(str(values[own].values[i]) for own in together) for i in range(values.size)]
     if not np.issubdtype(values.dtype, np.number):
         return [str(value) for value in values.values]
     return [f"{value:g}" for value in readable(values, name)[0].values]
 
 
+def _parameters_of(values: xr.DataArray, name: str) -> list[str]:
+    """Parameters that change together along a dimension of a study; none if it is a parameter itself."""
+    return [str(own) for own in values.coords if own != name and values[own].dims == values.dims]
+
+
 def _first_solved(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
-    """Value of every other parameter: the one selected, or the first ones for which any case was solved."""
+    """Value of every other parameter: the one selected, or the first ones for which most cases were solved."""
     others = [str(dim) for dim in array.dims if str(dim) not in kept]
     choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in others]
     combinations = [dict(zip(others, values, strict=True)) for values in itertools.product(*choices)]
-    solved = (each for each in combinations if bool(np.isfinite(one_value(array, kept, each)).any()))
-    return next(solved, combinations[0])
+    return max(combinations, key=lambda each: int(np.isfinite(one_value(array, kept, each)).sum()))
 
 
 def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:

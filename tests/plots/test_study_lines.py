@@ -53,3 +53,14 @@ def test_the_legend_has_the_unit_of_its_title(opened):
     legend = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").axes[0].get_legend()
     assert "GPa" in legend.get_title().get_text()
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
+
+
+def test_parameters_that_change_together_are_named_together(opened):
+    one = opened.sel(friction=0.1).isel(e_over_a=[0])
+    together = one.rename(body="body_and_model").assign_coords(
+        body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
+    )
+    together["body_and_model"] = [0, 1]
+    legend = plots.plot_study_lines(together, "e_over_a", "body_and_model").axes[0].get_legend()
+    assert legend.get_title().get_text() == "body and model"
+    assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
