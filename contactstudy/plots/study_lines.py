@@ -23,7 +23,8 @@ QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 """What is drawn if nothing else is asked for."""
 
 MARKERS = "osD^vPX*"
-WIDEST_LABEL = 34
+WIDEST_LABEL, WIDEST_LEGEND = 34, 22
+"""Characters after which the text of an axis and of the legend's title goes on in the next line."""
 
 
 def plot_study_lines(
@@ -78,7 +79,12 @@ def plot_study_lines(
             swept = ", ".join(map(str, dataset[drawn[0]].dims))
             raise InvalidInputError("x, hue", kept, f"swept parameters: {swept}")
     figure, axes = plt.subplots(
-        1, len(drawn), figsize=(4.0 * len(drawn) + 0.6, 3.6), squeeze=False, layout="constrained", sharex=True
+        1,
+        len(drawn),
+        figsize=(4.0 * len(drawn) + (0.6 if hue is None else 2.0), 3.6),
+        squeeze=False,
+        layout="constrained",
+        sharex=True,
     )
     chosen = _first_solved(dataset[drawn[0]], kept, selection or {})
     for ax, name in zip(axes[0], drawn, strict=True):
@@ -100,7 +106,10 @@ def plot_study_lines(
     if hue is not None:
         numeric = np.issubdtype(dataset[hue].dtype, np.number) and not _parameters_of(dataset[hue], hue)
         title = readable(dataset[hue], hue)[1] if numeric else hue.replace("_", " ")
-        axes[0, 0].legend(title=title, frameon=False, fontsize="small", title_fontsize="small")
+        wrapped = "\n".join(textwrap.wrap(title, WIDEST_LEGEND))
+        handles, labels = axes[0, 0].get_legend_handles_labels()
+        small = {"fontsize": "small", "title_fontsize": "small"}
+        figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
     if chosen:
         stated = ", ".join(
             f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {value}"

@@ -50,7 +50,7 @@ def test_the_first_solved_cases_are_drawn_and_named(opened):
 def test_the_legend_has_the_unit_of_its_title(opened):
     by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
     by_pressure["max_pressure"].attrs["units"] = "Pa"
-    legend = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").axes[0].get_legend()
+    (legend,) = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").legends
     assert "GPa" in legend.get_title().get_text()
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
 
@@ -61,6 +61,6 @@ def test_parameters_that_change_together_are_named_together(opened):
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
     )
     together["body_and_model"] = [0, 1]
-    legend = plots.plot_study_lines(together, "e_over_a", "body_and_model").axes[0].get_legend()
+    (legend,) = plots.plot_study_lines(together, "e_over_a", "body_and_model").legends
     assert legend.get_title().get_text() == "body and model"
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
