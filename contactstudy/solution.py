@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+
 import numpy as np
 import xarray as xr
 
@@ -26,6 +28,10 @@ LEAST_CELLS = 8
 LEAST_CONTACT = 1.0
 """Length over the Hertz half-width that a tilted roller has to touch on, if it touches at its end."""
 
+WINDOWS = (2.0, 3.0, 5.0, 8.0)
+"""Half-widths of the window over that of the Hertz contact, tried in turn where no grid is given: a short or a tilted
+contact is wider than the line contact of the same load."""
+
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 RESIDUAL_POSITIONS = (0.0, 0.5, 0.9, 1.1)
 
@@ -49,7 +55,7 @@ def solve(
     case : Case
         Body, roller, load and friction.
     grid : Grid, optional
-        Cells of pressure and gap; default: chosen from the case by `choose_grid`.
+        Cells of pressure and gap; default: chosen from the case by `choose_grid`, wider where the contact asks for it.
     x, y : sequence of float, optional
         Positions of the stresses, metres; default: the cell centres.
     z : sequence of float, optional
@@ -78,7 +84,7 @@ def solve(
         If the grid does not fit the body, a position lies outside it, the roughness does not cover the grid, or
         a tilted roller touches within one Hertz half-width of its end only.
     WindowError
-        If the contact reaches the grid's edge.
+        If the contact reaches the edge of the grid given, or of the widest one that is tried.
 
     Examples
     --------
@@ -91,10 +97,11 @@ def solve(
     """
     checks.instance("case", case, Case, "a Case")
     if grid is None:
-        grid = choose_grid(case)
-    checks.instance("grid", grid, Grid, "a Grid")
-    gap = _initial_gap(case, grid, roughness)
-    result = _contact(case, gap, tolerance)
+        grid, gap, result = _with_room(case, roughness, tolerance)
+    else:
+        checks.instance("grid", grid, Grid, "a Grid")
+        gap = _initial_gap(case, grid, roughness)
+        result = _contact(case, gap, tolerance)
     if error_estimate:
         if min(grid.shape) < LEAST_CELLS:
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
@@ -122,6 +129,21 @@ def solve(
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
     return describe(result, "roller on an elastic body: contact and stresses")
+
+
+def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
+    """Grid, initial gap and contact of a case on the first of some wider and wider windows that holds it."""
+
+    def within(window: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
+        grid = choose_grid(case, window=window, margin=2 * window)
+        gap = _initial_gap(case, grid, roughness)
+        return grid, gap, _contact(case, gap, tolerance)
+
+    *narrower, widest = WINDOWS
+    for window in narrower:
+        with contextlib.suppress(WindowError):
+            return within(window)
+    return within(widest)
 
 
 def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.DataArray:

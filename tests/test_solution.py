@@ -5,7 +5,19 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, Material, Roller, solve
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    WindowError,
+    choose_grid,
+    profiles,
+    solve,
+)
 from contactstudy.dataset import STRESSES, VARIABLES
 
 STEEL = Material(young=210e9, poisson=0.3)
@@ -83,3 +95,15 @@ def test_grid_beside_the_roller_is_refused() -> None:
         solve(case, Grid((1.0, 2.0), (-1e-4, 1e-4), 8, 8))
     with pytest.raises(InvalidInputError, match="case = 1"):
         solve(1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("body", [FiniteLengthSpace(length=4e-3, material=STEEL), HalfSpace(material=STEEL)])
+def test_a_short_contact_gets_the_room_it_asks_for(body) -> None:
+    strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
+    case = Case(body=body, roller=strongly_crowned, load=400.0)
+    with pytest.raises(WindowError, match="choose_grid"):
+        solve(case, choose_grid(case), stresses=False)
+    found = solve(case, stresses=False)
+    assert bool(found.converged)
+    wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
+    assert float(found.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
