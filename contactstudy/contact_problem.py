@@ -150,7 +150,8 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
     The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``, so a few are enough; each is solved no further than the
     last one's change makes worth while.
     """
-    iterate = solve_normal(operator, replace(problem, tolerance=max(problem.tolerance, ROUGH_TOLERANCE)))
+    tolerance = max(problem.tolerance, ROUGH_TOLERANCE)
+    iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
     scale = float(np.ptp(operator(iterate.pressure)))
     applications = iterate.applications + 1
     bent: FloatArray = np.zeros_like(iterate.pressure)
@@ -161,7 +162,7 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
         applications += 1
         # What the friction of this pressure bends the surface otherwise than that of the last one.
         unsettled = float(np.ptp((bent - bent_before)[previous > 0])) / scale
-        if change <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
+        if max(tolerance, change) <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
             return ContactIterate(previous, iterate.motion, applications, True)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
         iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)

@@ -132,14 +132,17 @@ def solve(
 
 
 def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
-    """Grid, initial gap and contact of a case on the first of some wider and wider windows that holds it."""
+    """Grid, initial gap and contact of a case on the first of some wider and wider windows that holds it.
+
+    Rough surfaces are known where they were measured or made: their window is the first.
+    """
 
     def within(window: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
         grid = choose_grid(case, window=window, margin=2 * window)
         gap = _initial_gap(case, grid, roughness)
         return grid, gap, _contact(case, gap, tolerance)
 
-    *narrower, widest = WINDOWS
+    *narrower, widest = WINDOWS if roughness is None else WINDOWS[:1]
     for window in narrower:
         with contextlib.suppress(WindowError):
             return within(window)

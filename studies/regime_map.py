@@ -184,6 +184,7 @@ def main() -> None:
     for number, profile in enumerate(error["profile"].values, start=1):
         draw(error, str(profile)).savefig(folder / f"regime_map_{number}.png", dpi=80)
     print(table(error))
+    print(f"\nwrote errors.nc, limits.csv and a figure for each crown in {folder}")
 
 
 if __name__ == "__main__":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from contactstudy import (
     Case,
@@ -107,3 +108,15 @@ def test_a_short_contact_gets_the_room_it_asks_for(body) -> None:
     assert bool(found.converged)
     wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
     assert float(found.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
+
+
+def test_rough_surfaces_keep_the_window_they_cover() -> None:
+    case = Case(
+        body=FiniteLengthSpace(length=4e-3, material=STEEL),
+        roller=Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02)),
+        load=400.0,
+    )
+    grid = choose_grid(case)
+    smooth = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    with pytest.raises(WindowError, match="choose_grid"):
+        solve(case, stresses=False, roughness=smooth)

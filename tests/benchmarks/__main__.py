@@ -2,7 +2,7 @@
 
 Usage: ``python -m tests.benchmarks [--repeats N] [--only WORD ...] [--markdown FILE]``.
 
-The peers are optional (``pip install tamaas aspher ContactMechanics``); a missing one is skipped, with the reason.
+The peers are optional (``pip install -e ".[benchmark]"``); a missing one is skipped, with the reason.
 `aspher` is built from source and needs the Eigen headers: without a copy in the system,
 ``pip install cmeel-eigen`` and ``CMAKE_ARGS=-DEigen3_DIR=<its share/eigen3/cmake>`` before ``pip install aspher``.
 """
