@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     parser = _parser()
     options = parser.parse_args(arguments)
     if options.version:
-        from contactstudy.dataset import package_version
+        from contactstudy.arrays.variables import package_version
 
         print(f"contactstudy {package_version()}")
         return ALL_OK

@@ -9,15 +9,16 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.discretisation import discretisation_error
-from contactstudy.case import Case, choose_grid
-from contactstudy.contact import solve_contact
-from contactstudy.dataset import describe
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import choose_grid
+from contactstudy.case.roughness import heights_on
+from contactstudy.contact.solve import solve_contact
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.grid import Grid
-from contactstudy.labelled import labelled_cells
-from contactstudy.positions import Positions
-from contactstudy.roughness import heights_on
-from contactstudy.stress import end_traction_residual, stress_field
+from contactstudy.fields.positions import Positions
+from contactstudy.fields.stress import end_traction_residual, stress_field
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""

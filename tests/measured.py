@@ -14,8 +14,8 @@ from typing import TypeVar
 import numpy as np
 
 from contactstudy import FiniteLengthSpace, HalfSpace, Study, solve, solve_contact, stress_field
+from contactstudy.fields.surface import surface_operator
 from contactstudy.study.setup import build_setup
-from contactstudy.surface import surface_operator
 from contactstudy.verification import run
 from contactstudy.verification.load_cases import LINE_LOAD
 from contactstudy.verification.problems import on_cells, unit_material

@@ -19,7 +19,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.dataset import STRESSES, VARIABLES
+from contactstudy.arrays.variables import STRESSES, VARIABLES
 
 STEEL = Material(young=210e9, poisson=0.3)
 BODY = FiniteLengthSpace(length=0.6e-3, material=STEEL)

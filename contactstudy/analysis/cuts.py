@@ -10,8 +10,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import AXES, axis_dimensions, positions, require, single_case
 from contactstudy.analysis.measures import measure
+from contactstudy.arrays.variables import COORDINATES
 from contactstudy.checks import FloatArray
-from contactstudy.dataset import COORDINATES
 from contactstudy.errors import InvalidInputError
 
 ROUNDING = 1e-9

@@ -8,10 +8,10 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.border import EDGE_UNCERTAINTY
 from contactstudy.analysis.edges import contact_edges
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
-from contactstudy.dataset import describe
 from contactstudy.errors import InvalidInputError
-from contactstudy.labelled import labelled_cells
 
 ASSUMED_ORDER = 1.0
 """Below the orders observed (1.5 to 2 where the pressure is smooth), so that the estimate errs on the high side."""

@@ -9,11 +9,11 @@ from scipy.interpolate import CubicSpline
 from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.border import FITTED, SKIPPED, contact_borders
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
-from contactstudy.dataset import describe
 from contactstudy.errors import InvalidInputError
-from contactstudy.grid import Grid
-from contactstudy.labelled import labelled_cells
 
 
 def contact_edges(contact: xr.Dataset) -> xr.Dataset:

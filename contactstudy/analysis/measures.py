@@ -9,9 +9,9 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import require
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.invariants import hydrostatic, maximum_shear, orthogonal_shear_range, tresca, von_mises
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
-from contactstudy.invariants import hydrostatic, maximum_shear, orthogonal_shear_range, tresca, von_mises
 
 MEASURES: dict[str, tuple[tuple[str, ...], Callable[[xr.Dataset], xr.DataArray]]] = {
     "von_mises": (STRESSES, von_mises),

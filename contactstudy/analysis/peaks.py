@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.measures import measure
-from contactstudy.dataset import COORDINATES, VARIABLES
+from contactstudy.arrays.variables import COORDINATES, VARIABLES
 from contactstudy.errors import InvalidInputError
 
 Array = npt.NDArray[Any]

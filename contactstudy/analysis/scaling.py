@@ -5,7 +5,7 @@ from __future__ import annotations
 import xarray as xr
 
 from contactstudy.analysis.axes import AXES, require
-from contactstudy.dataset import VARIABLES
+from contactstudy.arrays.variables import VARIABLES
 
 SCALES = {"m": (1, 0), "m2": (2, 0), "Pa": (0, 1), "N/m": (1, 1), "N": (2, 1), "N m": (3, 1)}
 """Powers of a and of p0 in each unit: a length is divided by a, a load by p0 a**2, and so on."""

@@ -9,7 +9,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import dimension_along, require, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
 
 SHEARS = ("von_mises", "maximum_shear", "orthogonal_shear_amplitude")

@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
 from contactstudy.analysis.axes import require
-from contactstudy.dataset import COORDINATES, VARIABLES
+from contactstudy.arrays.variables import COORDINATES, VARIABLES
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import measure, single_case
 from contactstudy.analysis.axes import AXES, axis_dimensions, positions, require
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
 
 TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)

@@ -154,7 +154,7 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     --------
     A cycle of pure shear at the limit in torsion: on the limit.
 
-    >>> from contactstudy.dataset import STRESSES
+    >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
     >>> shear = xr.Dataset({name: 0 * wave for name in STRESSES} | {"tau_yz": wave})
     >>> round(float(findley(shear, FatigueLimits(bending=1.6, torsion=1.0)).utilisation), 9)

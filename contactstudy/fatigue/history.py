@@ -16,7 +16,7 @@ import xarray as xr
 
 from contactstudy.analysis import dimension_along
 from contactstudy.analysis.axes import require
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
 
 Array = npt.NDArray[Any]

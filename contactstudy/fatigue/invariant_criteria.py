@@ -84,7 +84,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     --------
     A cycle of pure shear of amplitude 1: the criterion is the amplitude.
 
-    >>> from contactstudy.dataset import STRESSES
+    >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
     >>> shear = xr.Dataset({name: 0 * wave for name in STRESSES} | {"tau_yz": wave})
     >>> result = dang_van(shear, FatigueLimits(bending=1.8, torsion=1.0))
@@ -154,7 +154,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     --------
     A push-pull cycle at the limit in bending: on the limit.
 
-    >>> from contactstudy.dataset import STRESSES
+    >>> from contactstudy.arrays.variables import STRESSES
     >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
     >>> tension = xr.Dataset({name: 0 * wave for name in STRESSES} | {"sigma_xx": wave})
     >>> round(float(crossland(tension, FatigueLimits(bending=1.0, torsion=0.65)).utilisation), 9)

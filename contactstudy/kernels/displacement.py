@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.grid import Grid
 from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.images import FAR_LIMIT
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.patch_displacement import normal_displacement_inside, tangential_displacement_inside
-from contactstudy.material import Material
 
 # Signs of the components x, y, z on the other side of a pressure along x and along y. On that of a traction along y the
 # second ones are reversed.

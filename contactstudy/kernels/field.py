@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.grid import Grid
 from contactstudy.kernels.centred import centred_field
 from contactstudy.kernels.images import cell_kernel
 from contactstudy.kernels.influence import Influence

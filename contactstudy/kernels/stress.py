@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
-from contactstudy.grid import Grid
 from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.patch import normal_corner, tangential_corner

@@ -16,9 +16,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.grid import Grid
-from contactstudy.material import Material
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral import POLES_ALONE, LateralPanel, lateral_panels

@@ -15,8 +15,8 @@ from itertools import pairwise
 import numpy as np
 from scipy import special
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.grid import Grid
 from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
 
 # A part smaller than this, over the load, is left out: a contact symmetric but for its tolerance is symmetric.

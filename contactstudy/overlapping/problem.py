@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.cache import BoundedCache, digest
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.grid import Grid
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
 from contactstudy.overlapping.lateral import (

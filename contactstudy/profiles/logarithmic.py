@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy import checks, hertz
+from contactstudy import checks
+from contactstudy.bodies import hertz
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
+from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.profiles.base import Shape
 
 VALUES = ("drop", "height")

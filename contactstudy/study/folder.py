@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from contactstudy.dataset import package_version
+from contactstudy.arrays.variables import package_version
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.plan import LEVELS, Plan

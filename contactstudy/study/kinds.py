@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from contactstudy.bodies import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.errors import InvalidInputError
-from contactstudy.material import Material
 
 
 def _half_space(material: Material, length: float, model: str) -> Body:

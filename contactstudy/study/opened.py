@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from contactstudy.dataset import COORDINATES, package_version
+from contactstudy.arrays.variables import COORDINATES, package_version
 from contactstudy.study.cube import Cube
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Entry, Folder

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.bodies import MODELS
+from contactstudy.bodies.models import MODELS
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.kinds import BODIES, ROLLER_BODIES
 from contactstudy.study.profile_kinds import profile_table

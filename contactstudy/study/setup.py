@@ -6,13 +6,15 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from contactstudy import checks, hertz
-from contactstudy.case import Case, choose_grid
+from contactstudy import checks
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies import hertz
+from contactstudy.bodies.material import Material
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import choose_grid
+from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.grid import Grid
-from contactstudy.material import Material
-from contactstudy.roller import Roller
 from contactstudy.study.kinds import BODIES, ROLLER_BODIES
 from contactstudy.study.parameters import checked, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from contactstudy.dataset import COORDINATES
+from contactstudy.arrays.variables import COORDINATES
 from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
 

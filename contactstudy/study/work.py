@@ -18,13 +18,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.dataset import package_version
+from contactstudy.analysis.summary import summarize
+from contactstudy.arrays.variables import package_version
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup
 from contactstudy.study.store import Header, write_case
-from contactstudy.summary import summarize
 
 Solver = Callable[..., xr.Dataset]
 """What solves a case: called as :func:`contactstudy.solve`."""
@@ -122,7 +122,7 @@ def single_threaded() -> Iterator[None]:
 
 def default_solver() -> Solver:
     """Return the package's own solver."""
-    from contactstudy import solve
+    from contactstudy.solution import solve
 
     return solve
 

@@ -6,16 +6,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactstudy.bodies import FiniteLengthSpace
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.checks import FloatArray
-from contactstudy.contact import solve_contact
-from contactstudy.dataset import STRESSES
-from contactstudy.grid import Grid
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import end_traction_residual, stress_field
+from contactstudy.fields.surface import surface_displacement
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.stress import end_traction_residual, stress_field
-from contactstudy.surface import surface_displacement
 from contactstudy.verification.check import Check, compare, compare_fields
 from contactstudy.verification.load_cases import LINE_LOAD, quartic
 from contactstudy.verification.problems import on_cells, strip, unit_material

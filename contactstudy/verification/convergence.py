@@ -13,16 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from contactstudy.bodies import FiniteLengthSpace, HalfSpace
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
-from contactstudy.contact import solve_contact
-from contactstudy.dataset import STRESSES
-from contactstudy.grid import Grid
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
-from contactstudy.stress import stress_field
-from contactstudy.surface import SurfaceOperator
 from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, compare
 from contactstudy.verification.finite_elements import pressure_of

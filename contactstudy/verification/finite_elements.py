@@ -11,13 +11,13 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from contactstudy.bodies import FiniteLengthSpace
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.checks import FloatArray
-from contactstudy.contact import solve_contact
-from contactstudy.dataset import STRESSES
-from contactstudy.grid import Grid
-from contactstudy.stress import stress_field
-from contactstudy.surface import surface_displacement
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import surface_displacement
 from contactstudy.verification.check import Check, Curve, compare_fields
 from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES, LoadCase
 from contactstudy.verification.problems import on_cells, on_grid, unit_material

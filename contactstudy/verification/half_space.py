@@ -6,11 +6,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactstudy.bodies import HalfSpace
-from contactstudy.contact import solve_contact
-from contactstudy.grid import Grid
-from contactstudy.stress import stress_field
-from contactstudy.surface import surface_displacement
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.models import HalfSpace
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import surface_displacement
 from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
 from contactstudy.verification.load_cases import LINE_LOAD

@@ -10,9 +10,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactstudy.bodies import FiniteLengthSpace, HalfSpace, QuarterSpace
-from contactstudy.contact import solve_contact
-from contactstudy.stress import stress_field
+from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import stress_field
 from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
 from contactstudy.verification.load_cases import LINE_LOAD

@@ -9,10 +9,10 @@ import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.dataset import STRESSES
-from contactstudy.grid import Grid
-from contactstudy.material import Material
 
 Range = tuple[float, float]
 

@@ -20,11 +20,11 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactstudy.bodies import HalfSpace, QuarterSpace
+from contactstudy.arrays.invariants import maximum_shear
+from contactstudy.bodies.models import HalfSpace, QuarterSpace
 from contactstudy.checks import FloatArray
-from contactstudy.invariants import maximum_shear
-from contactstudy.stress import stress_field
-from contactstudy.surface import surface_displacement
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import surface_displacement
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
 from contactstudy.verification.problems import (
     cell_means,

@@ -14,15 +14,15 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from contactstudy.bodies import HalfSpace, QuarterSpace
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.invariants import von_mises
+from contactstudy.bodies.models import HalfSpace, QuarterSpace
 from contactstudy.checks import FloatArray
-from contactstudy.grid import Grid
-from contactstudy.invariants import von_mises
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import surface_displacement
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.stress import stress_field
-from contactstudy.surface import surface_displacement
 from contactstudy.verification.check import Check, compare, compare_fields
 from contactstudy.verification.problems import on_cells, point_pressure, unit_material
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks as arguments
-from contactstudy.dataset import package_version
+from contactstudy.arrays.variables import package_version
 from contactstudy.verification import (
     consistency,
     convergence,

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import Body, FiniteLengthSpace, Grid, HalfSpace, stress_field
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.surface import SurfaceOperator, surface_operator
 from tests.benchmarks.peers import contact_of
 from tests.benchmarks.problems import HALF_WIDTH, STEEL, roller
 from tests.benchmarks.timing import Report, Row, medians, nudge, show

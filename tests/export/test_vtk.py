@@ -8,7 +8,7 @@ import xarray as xr
 
 from contactstudy import InvalidInputError, export, tresca
 from contactstudy.analysis import normalized
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 from tests.export.vtk_reader import read
 
 

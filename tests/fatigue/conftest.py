@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 
 
 @pytest.fixture(scope="session")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from contactstudy import InvalidInputError, fatigue
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.fatigue import FatigueLimits
 from contactstudy.fatigue.critical_plane import _damage, _turned, _worst_planes
 

@@ -19,11 +19,11 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.dataset import STRESSES
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.fields.stress import end_traction_residual, raw_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
-from contactstudy.stress import end_traction_residual, raw_stress
 from contactstudy.verification.load_cases import LINE_LOAD
 
 FRICTION = 0.3

@@ -12,10 +12,10 @@ import time
 import numpy as np
 import xarray as xr
 
-from contactstudy.case import Case
-from contactstudy.dataset import STRESSES, describe
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES, describe
+from contactstudy.case.case import Case
 from contactstudy.errors import WindowError
-from contactstudy.grid import Grid
 
 FAILS, DIES, IS_WRONG, IS_LARGE = 0.66, 0.77, 0.88, 0.99
 """Friction at which the case fails, kills its process, meets an error of the program, or asks for too much memory."""

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from contactstudy.bodies import HalfSpace
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import HalfSpace
 from contactstudy.errors import InvalidInputError
-from contactstudy.material import Material
 from contactstudy.study.setup import build_setup
 from tests.study.conftest import BASE
 

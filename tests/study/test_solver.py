@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from contactstudy import solve, surface
+from contactstudy import solve
+from contactstudy.fields import surface
 from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup

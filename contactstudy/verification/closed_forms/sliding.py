@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from contactstudy.material import Material
+from contactstudy.bodies.material import Material
 
 
 class SlidingLine(NamedTuple):

@@ -1,0 +1,7 @@
+"""Elastic bodies: material, ends, a second body in its place, and the Hertz line contact."""
+
+from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
+
+__all__ = ["Body", "Counterbody", "FiniteLengthSpace", "HalfSpace", "Material", "QuarterSpace"]

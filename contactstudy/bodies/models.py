@@ -1,0 +1,221 @@
+"""The elastic bodies: where they have free end faces.
+
+Axes are those of the whole package: x along the roller's axis, y the rolling and sliding direction, z into the
+body from its loaded top ``z = 0``. No body has a boundary in y or at depth.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.bodies.material import Material
+from contactstudy.errors import InvalidInputError
+
+Extent = tuple[float, float]
+
+
+class FreedEnds(NamedTuple):
+    """Ends from which the normal stress is removed that mirroring leaves there.
+
+    Attributes
+    ----------
+    length : float
+        Distance between the ends, metres; infinite for one end.
+    mirrored_once : bool
+        Whether the loads have one pair of images only, instead of all.
+    """
+
+    length: float
+    mirrored_once: bool = False
+
+
+class Part(NamedTuple):
+    """One of the solutions whose weighted sum is a body's: a half-space with the load mirrored in its ends.
+
+    Attributes
+    ----------
+    weight : float
+        Its share.
+    extent : tuple of float
+        Where the mirrors stand; infinite for none.
+    freed : FreedEnds or None
+        The ends that are freed along with this part, if any.
+    """
+
+    weight: float
+    extent: Extent
+    freed: FreedEnds | None = None
+
+
+WHOLE_LINE: Extent = (-np.inf, np.inf)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Body:
+    """An elastic body below ``z = 0``; use one of its kinds.
+
+    Parameters
+    ----------
+    material : Material
+        What the body is made of.
+    """
+
+    material: Material
+
+    def __post_init__(self) -> None:
+        """Check the material."""
+        checks.instance("material", self.material, Material, "a Material")
+
+    @property
+    def extent(self) -> Extent:
+        """Smallest and largest x inside the body, metres (infinite where it has no end)."""
+        return WHOLE_LINE
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Solutions whose weighted sum is this body's."""
+        return (Part(1.0, self.extent),)
+
+    @property
+    def unbounded_row(self) -> float:
+        """Distance between the ends of a row of images without end, metres; infinite if the images are finite.
+
+        Far from such a row the displacement grows like a logarithm, so it has no absolute value.
+        """
+        return min(part.extent[1] - part.extent[0] for part in self.parts)
+
+
+@dataclass(frozen=True, kw_only=True)
+class HalfSpace(Body):
+    """Elastic half-space ``z >= 0``: no free end.
+
+    Examples
+    --------
+    >>> HalfSpace(material=Material(210e9, 0.3)).extent
+    (-inf, inf)
+    """
+
+
+MODELS = ("exact", "mirror", "mirror-factor", "single-mirror")
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndedBody(Body):
+    """A body with free ends; use one of its kinds.
+
+    Parameters
+    ----------
+    model : str
+        How the ends are treated. "exact" frees them. The others are quick fixes in use, for comparison: "mirror"
+        mirrors the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
+        `guilbault_factor` to make up for it. "single-mirror", for two ends only, mirrors the load once in either end
+        and takes the normal stress from both by two separate half-spaces: the scheme of Zhang, Wang and Wong, which
+        leaves some shear on the ends.
+    """
+
+    model: str = "exact"
+
+    def __post_init__(self) -> None:
+        """Check material and model."""
+        super().__post_init__()
+        checks.instance("model", self.model, str, "a name")
+        checks.known_name("model", self.model, MODELS)
+
+    @property
+    def parts(self) -> tuple[Part, ...]:
+        """Solutions whose weighted sum is this body's."""
+        if self.model == "mirror-factor":
+            factor = guilbault_factor(self.material.poisson)
+            return (Part(factor, self.extent), Part(1 - factor, WHOLE_LINE))
+        low, high = self.extent
+        if self.model == "single-mirror":
+            # A load and one image in either end: each end's own pair, and the load that both have counted.
+            freed = FreedEnds(high, mirrored_once=True)
+            return (Part(1.0, (low, np.inf), freed), Part(1.0, (-np.inf, high)), Part(-1.0, WHOLE_LINE))
+        return (Part(1.0, self.extent, FreedEnds(high) if self.model == "exact" else None),)
+
+
+def guilbault_factor(poisson: float) -> float:
+    """Guilbault's factor on mirrored loads, ``1.29 - (0.08 - 0.5 nu) / (1 - nu)``.
+
+    Quoted second-hand from R. Guilbault, A fast correction for elastic quarter-space applied to 3D modeling of edge
+    contact problems, J. Tribology 133 (2011) 031402; compare with the exact ends before relying on it.
+
+    Examples
+    --------
+    >>> round(guilbault_factor(0.3), 3)
+    1.39
+    """
+    return 1.29 - (0.08 - 0.5 * poisson) / (1 - poisson)
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuarterSpace(EndedBody):
+    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
+
+    Parameters
+    ----------
+    material : Material
+        What the body is made of.
+    model : str
+        How the end is treated, see `EndedBody`; "exact" unless a comparison is wanted.
+
+    Examples
+    --------
+    >>> QuarterSpace(material=Material(210e9, 0.3)).extent
+    (0.0, inf)
+    """
+
+    def __post_init__(self) -> None:
+        """Check material and model."""
+        super().__post_init__()
+        if self.model == "single-mirror":
+            raise InvalidInputError(
+                "model", self.model, "a model of one end", 'a single mirror is exact for one end: use "exact"'
+            )
+
+    @property
+    def extent(self) -> Extent:
+        """Smallest and largest x inside the body, metres."""
+        return (0.0, np.inf)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FiniteLengthSpace(EndedBody):
+    """Elastic body ``0 <= x <= length``, ``z >= 0`` with free end faces I at ``x = 0`` and II at ``x = length``.
+
+    Parameters
+    ----------
+    length : float
+        Distance between the free ends (``L_f``), metres.
+    material : Material
+        What the body is made of.
+    model : str
+        How the ends are treated, see `EndedBody`; "exact" unless a comparison is wanted.
+
+    Raises
+    ------
+    InvalidInputError
+        If the length is not a positive number, or the model is unknown.
+
+    Examples
+    --------
+    >>> FiniteLengthSpace(length=16e-3, material=Material(210e9, 0.3)).extent
+    (0.0, 0.016)
+    """
+
+    length: float
+
+    def __post_init__(self) -> None:
+        """Check length and material."""
+        super().__post_init__()
+        object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
+
+    @property
+    def extent(self) -> Extent:
+        """Smallest and largest x inside the body, metres."""
+        return (0.0, self.length)

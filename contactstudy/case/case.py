@@ -1,0 +1,201 @@
+"""One case: a roller, a body, a load and a friction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies import hertz
+from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.models import Body
+from contactstudy.case.roller import Roller
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+
+LARGEST_TILT = 0.1
+"""Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
+
+LARGEST_HALF_WIDTH = 0.5
+"""Hertz half-width over the roller's radius beyond which a unit is wrong rather than the load high."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Case:
+    """A roller pressed on a body, rolling and sliding along y.
+
+    Exactly one of `max_pressure` and `load` is given; the other follows from the Hertz line contact of the same
+    load per length of contact.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    roller : Roller
+        The roller.
+    max_pressure : float, optional
+        Peak pressure ``p0`` of the Hertz line contact, Pa.
+    load : float, optional
+        Normal load ``W``, N.
+    friction : float
+        Coefficient ``f``: the shear traction on the body is ``q = f p`` along +y.
+    end_distance : float, optional
+        Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
+        overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
+    coupled : bool
+        Whether the friction also displaces the surface normally and so changes the pressure.
+    tilt : float
+        Misalignment, radians: by how much the roller is inclined about its mid-length against the undeformed top,
+        positive if larger x is pressed deeper. Whatever moment holds it there is applied.
+    load_position : float, optional
+        Position x on which the load acts, metres: a roller that is free to tilt takes the inclination, beyond `tilt`,
+        at which the pressure balances it. Default: the roller keeps its tilt.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, both or neither of pressure and load are given, or the roller misses the body.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> body = FiniteLengthSpace(length=10.2e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=10e-3), max_pressure=1.5e9)
+    >>> round(1e6 * case.hertz_half_width, 2), round(case.normal_load, 1), round(1e3 * case.roller_start, 3)
+    (65.0, 1531.5, 0.1)
+    """
+
+    body: Body
+    roller: Roller
+    max_pressure: float | None = None
+    load: float | None = None
+    friction: float = 0.0
+    end_distance: float | None = None
+    coupled: bool = False
+    tilt: float = 0.0
+    load_position: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the parameters and complete the load."""
+        allowed = (
+            "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no pressure to find"
+        )
+        checks.instance("body", self.body, Body, allowed)
+        checks.instance("roller", self.roller, Roller, "a Roller")
+        object.__setattr__(self, "friction", checks.finite("friction", self.friction))
+        if self.end_distance is not None:
+            object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
+        object.__setattr__(self, "tilt", small_tilt(self.tilt))
+        checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
+        if self.end_distance is None and self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
+            raise InvalidInputError(
+                "roller.length",
+                self.roller.length,
+                f"at most the body's length, {extent:g} m",
+                "give end_distance (negative) if the roller is to overhang",
+            )
+        start, stop = self.contact_range
+        if not start < stop:
+            raise InvalidInputError(
+                "end_distance",
+                self.roller_start,
+                "such that the roller lies over the body",
+                f"the body spans x = {self.body.extent}",
+            )
+        if self.load_position is not None:
+            position = checks.finite("load_position", self.load_position, "metres")
+            if not start < position < stop:
+                allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
+                raise InvalidInputError("load_position", position, allowed)
+            object.__setattr__(self, "load_position", position)
+        if (self.max_pressure is None) == (self.load is None):
+            raise InvalidInputError(
+                "max_pressure, load", (self.max_pressure, self.load), "exactly one of the two, the other None"
+            )
+        if self.max_pressure is not None:
+            object.__setattr__(self, "max_pressure", checks.positive("max_pressure", self.max_pressure, "Pa"))
+        if self.load is not None:
+            object.__setattr__(self, "load", checks.positive("load", self.load, "N"))
+        if self.hertz_half_width > LARGEST_HALF_WIDTH * self.roller.radius:
+            name = "load" if self.max_pressure is None else "max_pressure"
+            raise InvalidInputError(
+                name,
+                getattr(self, name),
+                f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
+                f"of the roller's radius, {self.roller.radius:g} m",
+                f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
+            )
+
+    @property
+    def roller_start(self) -> float:
+        """Position x of the roller's end nearer to end I, metres."""
+        if self.end_distance is not None:
+            return self.end_distance
+        low, high = self.body.extent
+        return 0.5 * (high - low - self.roller.length) if np.isfinite(high) else 0.0
+
+    @property
+    def contact_range(self) -> tuple[float, float]:
+        """First and last x where roller and body face each other, metres."""
+        low, high = self.body.extent
+        return max(low, self.roller_start), min(high, self.roller_start + self.roller.length)
+
+    @property
+    def contact_length(self) -> float:
+        """Length over which roller and body face each other, metres."""
+        start, stop = self.contact_range
+        return stop - start
+
+    @property
+    def modulus(self) -> float:
+        """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, the roller's 0 if rigid."""
+        own = self.body.material.plane_strain_modulus
+        if self.roller.material is None:
+            return own
+        return 1 / (1 / own + 1 / self.roller.material.plane_strain_modulus)
+
+    @property
+    def counterbody(self) -> Counterbody | None:
+        """The roller as an elastic body in its place; None if it is rigid."""
+        body = self.roller.body
+        return None if body is None else Counterbody(body, self.roller_start)
+
+    @property
+    def hertz_max_pressure(self) -> float:
+        """Peak pressure ``p0`` of the Hertz line contact of the same load per length, Pa."""
+        if self.max_pressure is not None:
+            return self.max_pressure
+        return hertz.line_max_pressure(self.normal_load / self.contact_length, self.roller.radius, self.modulus)
+
+    @property
+    def hertz_half_width(self) -> float:
+        """Half-width ``a`` of the Hertz line contact of the same load per length, metres."""
+        return hertz.line_half_width(self.hertz_max_pressure, self.roller.radius, self.modulus)
+
+    @property
+    def normal_load(self) -> float:
+        """Normal load ``W``, N."""
+        if self.load is not None:
+            return self.load
+        return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
+
+    def gap(self, grid: Grid) -> FloatArray:
+        """Return the gap before deformation at the cell centres of `grid`, metres; infinite beyond the roller.
+
+        A tilted roller turns about its mid-length, where its clearance stays as it is.
+        """
+        from_middle = grid.x - (self.roller_start + 0.5 * self.roller.length)
+        clearance = self.roller.clearance(from_middle, grid.y)
+        return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
+
+
+def small_tilt(value: object) -> float:
+    """Return a tilt in radians, or raise if it is not a small angle."""
+    tilt = checks.finite("tilt", value, "radians")
+    if abs(tilt) > LARGEST_TILT:
+        raise InvalidInputError(
+            "tilt", tilt, f"a small angle, at most {LARGEST_TILT} radians", "degrees need numpy.radians"
+        )
+    return tilt

@@ -1,0 +1,93 @@
+"""The cells that suit a case."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.models import FiniteLengthSpace
+from contactstudy.case.case import Case
+from contactstudy.errors import InvalidInputError
+
+MOST_CELLS = 10**8
+"""Of a chosen grid: a wrong unit asks for many more."""
+
+MOST_EXTRA = 1.25
+"""How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
+
+
+def choose_grid(
+    case: Case, *, cells_x: float = 8, cells_y: float = 16, window: float = 2.0, margin: float = 4.0
+) -> Grid:
+    """Grid that suits a case.
+
+    A finite body is tiled from end to end; where a body has no end the grid stops `margin` half-widths beyond the
+    roller. The numbers of cells are rounded up to sizes that the fast Fourier transform likes; of these, for an elastic
+    roller with ends of its own, the one that puts its ends nearest to borders between cells.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    cells_x, cells_y : float
+        Cells per Hertz half-width ``a`` along x and y, at least.
+    window : float
+        Half-width of the window in y, over ``a``.
+    margin : float
+        Distance over ``a`` from the roller to the grid's edge where the body goes on.
+
+    Returns
+    -------
+    Grid
+
+    Raises
+    ------
+    InvalidInputError
+        If a setting is not positive, or so many cells would be needed that a unit must be wrong.
+
+    Notes
+    -----
+    A rigid roller's end between two borders of cells is moved to the nearer one, by at most half a cell. Where that
+    matters, as in a fine sweep over the end distance, take more cells per half-width or a `Grid` of your own.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    >>> choose_grid(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)).shape
+    (125, 64)
+    """
+    from scipy.fft import next_fast_len
+
+    half_width = case.hertz_half_width
+    half_window = checks.positive("window", window) * half_width
+    margin_x = checks.not_negative("margin", margin) * half_width
+    low, high = case.body.extent
+    start, stop = case.roller_start, case.roller_start + case.roller.length
+    x_range = (
+        max(low, start - margin_x) if np.isinf(low) else low,
+        min(high, stop + margin_x) if np.isinf(high) else high,
+    )
+    least = [
+        max(4, int(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
+        for name, span, cells in (
+            ("cells_x", x_range[1] - x_range[0], cells_x),
+            ("cells_y", 2 * half_window, cells_y),
+        )
+    ]
+    if least[0] * least[1] > MOST_CELLS:
+        raise InvalidInputError(
+            "cells_x, cells_y",
+            (cells_x, cells_y),
+            f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
+            f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
+        )
+    counts = [next_fast_len(count, real=True) for count in least]
+    if isinstance(case.roller.body, FiniteLengthSpace):
+        candidates = [counts[0]]
+        while candidates[-1] < MOST_EXTRA * counts[0]:
+            candidates.append(next_fast_len(candidates[-1] + 1))
+        at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
+        counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))
+    return Grid(x_range, (-half_window, half_window), *counts)

@@ -1,0 +1,96 @@
+"""The roller that is pressed into the body."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles import Cylinder, Profile, local_radius
+
+
+@dataclass(frozen=True, kw_only=True)
+class Roller:
+    """A roller with its axis along x, rigid or elastic.
+
+    Parameters
+    ----------
+    radius : float
+        Radius at mid-length (``Ra``), metres.
+    length : float
+        Length ``L_c`` from end to end, metres.
+    profile : Profile
+        How the generatrix departs from the cylinder.
+    material : Material, optional
+        What the roller is made of; default: it is rigid.
+    ends : str
+        How an elastic roller's ends are treated: "free", as a body of its own length, or "none", as a half-space.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, or the profile does not fit the length.
+
+    Examples
+    --------
+    >>> roller = Roller(radius=5e-3, length=10e-3, profile=Cylinder(fillet_radius=0.2e-3))
+    >>> roller.clearance(np.array([0.0]), np.array([0.0, 1e-4])).tolist()
+    [[0.0, 1e-06]]
+    """
+
+    radius: float
+    length: float
+    profile: Profile = field(default_factory=Cylinder)
+    material: Material | None = None
+    ends: str = "free"
+
+    def __post_init__(self) -> None:
+        """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
+        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
+        object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
+        checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
+        if self.material is not None:
+            checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")
+        checks.instance("ends", self.ends, str, "a name")
+        checks.known_name("ends", self.ends, ("free", "none"))
+        tried = np.array([0.0, 0.25 * self.length])
+        local_radius(self.profile, tried, self.length, self.radius)
+        drop = self.profile.drop(tried, self.length)
+        if drop.shape != (2,) or not np.all(drop >= 0):
+            raise InvalidInputError("profile", self.profile, "a profile with a drop not below zero")
+
+    @property
+    def body(self) -> Body | None:
+        """The roller as an elastic body seen from its own end I; None if it is rigid."""
+        if self.material is None:
+            return None
+        if self.ends == "free":
+            return FiniteLengthSpace(length=self.length, material=self.material)
+        return HalfSpace(material=self.material)
+
+    def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Height of the roller over the plane that its cylinder touches.
+
+        The circle is taken as the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a
+        tapered roller.
+
+        Parameters
+        ----------
+        x, y : array
+            Distances from the roller's mid-length and from its centre line, metres.
+
+        Returns
+        -------
+        array of shape (x.size, y.size)
+            Metres; infinite beyond the roller's ends, where it cannot touch.
+        """
+        inside = np.abs(x) <= self.length / 2
+        drop = np.full(x.shape, np.inf)
+        drop[inside] = self.profile.drop(x[inside], self.length)
+        radius = local_radius(self.profile, x, self.length, self.radius)
+        return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

@@ -1,0 +1,244 @@
+"""Height maps of rough surfaces: made by numbers, or read from a measurement, on a grid.
+
+A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out towards the other
+body: it makes a gap smaller by as much.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.arrays.variables import COORDINATES
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+
+# Cells nearer to each other than this part of their size are the same.
+SAME_PLACE = 1e-3
+
+
+def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
+    """Heights on a grid with their CF attributes."""
+    coordinates = {
+        name: (name, values, {"units": COORDINATES[name].units, "long_name": COORDINATES[name].long_name})
+        for name, values in (("x", grid.x), ("y", grid.y))
+    }
+    attributes = {
+        "units": "m",
+        "long_name": "height of the rough surface, positive towards the other body",
+        "source": source,
+    }
+    return xr.DataArray(heights, coordinates, ("x", "y"), name="height", attrs=attributes)
+
+
+def self_affine(
+    grid: Grid, *, rms_height: float, hurst: float, longest: float, shortest: float, seed: int
+) -> xr.DataArray:
+    """Isotropic self-affine surface with Gaussian heights.
+
+    Filtered white noise: the power spectral density is ``q**(-2 (1 + hurst))`` between the wavenumbers
+    ``2 pi / longest`` and ``2 pi / shortest``, and nothing outside.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells; the surface is periodic over their ranges.
+    rms_height : float
+        Root mean square of the heights over the grid, metres, kept exactly; the mean is 0. Not negative.
+    hurst : float
+        Hurst exponent, 0 to 1; the fractal dimension of the surface is ``3 - hurst``. Ground steel has about 0.8.
+    longest, shortest : float
+        Wavelengths between which the surface is rough, metres: `shortest` at least two cells, `longest` at most the
+        larger side of the grid.
+    seed : int
+        The same seed, grid and values give the same surface, bit for bit with the same version of numpy.
+
+    Returns
+    -------
+    DataArray (x, y)
+        Heights, metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, or the grid holds no wave between the wavelengths.
+
+    References
+    ----------
+    Y. Z. Hu, K. Tonder, Simulation of 3-D random rough surface by 2-D digital filter and Fourier analysis,
+    International Journal of Machine Tools and Manufacture 32 (1992) 83-90. B. N. J. Persson et al., On the nature of
+    surface roughness, Journal of Physics: Condensed Matter 17 (2005) R1-R62 (power spectral density).
+
+    Examples
+    --------
+    >>> grid = Grid((0.0, 1e-3), (-0.5e-3, 0.5e-3), 64, 64)
+    >>> rough = self_affine(grid, rms_height=0.2e-6, hurst=0.8, longest=0.5e-3, shortest=50e-6, seed=1)
+    >>> rough.dims, round(1e6 * float(np.sqrt((rough**2).mean())), 12)
+    (('x', 'y'), 0.2)
+    """
+    checks.instance("grid", grid, Grid, "a Grid")
+    rms_height = checks.not_negative("rms_height", rms_height, "metres")
+    hurst = checks.finite("hurst", hurst)
+    if not 0 <= hurst <= 1:
+        raise InvalidInputError("hurst", hurst, "between 0 and 1")
+    longest, shortest = checks.positive("longest", longest, "metres"), checks.positive("shortest", shortest, "metres")
+    seed = checks.count("seed", seed, least=0)
+    finest = 2 * max(grid.dx, grid.dy)
+    if shortest < finest * (1 - 1e-12):
+        raise InvalidInputError("shortest", shortest, f"at least two cells, {finest:g} m", "or take a finer grid")
+    widest = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
+    if not shortest <= longest <= widest * (1 + 1e-12):
+        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {widest:g} m")
+    x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
+    frequency = np.hypot(x[:, None], y[None, :])
+    rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
+    if not rough.any():
+        raise InvalidInputError(
+            "longest, shortest", (longest, shortest), "wavelengths with at least one wave of the grid between them"
+        )
+    amplitude = np.zeros(frequency.shape)
+    amplitude[rough] = frequency[rough] ** -(1 + hurst)
+    noise = np.random.default_rng(seed).standard_normal(grid.shape)
+    heights = np.fft.irfft2(amplitude * np.fft.rfft2(noise), s=grid.shape)
+    heights *= rms_height / np.sqrt(np.mean(heights**2))
+    values = f"rms_height={rms_height:g}, hurst={hurst:g}, longest={longest:g}, shortest={shortest:g}, seed={seed}"
+    return _height_map(grid, heights, f"contactstudy.roughness.self_affine({values})")
+
+
+def read_height_map(path: str | Path, grid: Grid, *, remove_slope: bool = False) -> xr.DataArray:
+    """Read a measured height map and bring it onto a grid.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV with one line for each point and the columns `x`, `y`, `height`, in any order of the points; or netCDF
+        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. The coordinates are
+        those of the grid: `x` from end I of the body, `y` from under the roller's centre.
+    grid : Grid
+        Cells; their centres must lie within the measured area. Between measured points heights are interpolated
+        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold them
+        into long ones: filter the map before.
+    remove_slope : bool
+        Whether the plane that fits the measured heights best is taken off.
+
+    Returns
+    -------
+    DataArray (x, y)
+        Heights, metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file cannot be read, has other columns or units, gaps, missing, repeated or infinite values (with
+        their places), or does not cover the grid.
+    """
+    path = Path(path)
+    checks.instance("grid", grid, Grid, "a Grid")
+    checks.instance("remove_slope", remove_slope, bool, "True or False")
+    x, y, heights = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
+    check_positions("x", x)
+    check_positions("y", y)
+    check_values("height", heights, ("x", x), ("y", y))
+    _check_cover(x, y, grid)
+    if remove_slope:
+        heights = heights - _plane(x, y, heights)
+    return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
+
+
+def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
+    """Heights of a map at the cell centres of a grid, metres.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells; their centres must lie within the map.
+    heights : DataArray (x, y)
+        Height map on a uniform grid of its own, metres. Between its points heights are interpolated linearly along
+        both axes; on cells that are the grid's they stay as they are.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not such a map, holds values that are not numbers, or does not cover the grid.
+
+    Examples
+    --------
+    >>> cells = Grid((0.0, 4.0), (0.0, 2.0), 4, 2)
+    >>> slope = _height_map(cells, np.repeat(cells.x[:, None], 2, axis=1), "made up")
+    >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
+    [[1.5], [2.5]]
+    """
+    values, own = labelled_cells("roughness", heights)
+    if own.shape == grid.shape and all(
+        np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
+        for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))
+    ):
+        return values
+    _check_cover(own.x, own.y, grid, "roughness, grid")
+    return _interpolated(own.x, own.y, values, grid)
+
+
+def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, called: str = "grid") -> None:
+    """Raise unless the measured positions cover the cell centres."""
+    for name, measured, centres in (("x", x, grid.x), ("y", y, grid.y)):
+        slack = 1e-9 * (measured[-1] - measured[0])
+        if centres[0] < measured[0] - slack or centres[-1] > measured[-1] + slack:
+            raise InvalidInputError(
+                f"{called}.{name}",
+                f"{centres[0]:g} to {centres[-1]:g} m",
+                f"within the measured {measured[0]:g} to {measured[-1]:g} m",
+            )
+
+
+def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
+    """Heights at the cell centres, bilinear between the positions."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    inside = np.clip(grid.x, x[0], x[-1])[:, None], np.clip(grid.y, y[0], y[-1])[None, :]
+    return np.asarray(RegularGridInterpolator((x, y), heights)(inside))
+
+
+def _plane(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:
+    """Plane of the least squares."""
+    along_x, along_y = np.broadcast_arrays(x[:, None], y[None, :])
+    columns = np.stack([np.ones(heights.size), along_x.ravel() - x.mean(), along_y.ravel() - y.mean()], axis=1)
+    return np.asarray((columns @ np.linalg.lstsq(columns, heights.ravel(), rcond=None)[0]).reshape(heights.shape))
+
+
+Map = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def _read_csv(path: Path) -> Map:
+    """Positions along x and y and heights ``(x, y)`` from a table of points, NaN where there is no point."""
+    columns = read_columns(path, ("x", "y"), ("height",))
+    for name in ("x", "y"):
+        checks.coordinates(name, columns[name])
+    (x, at_x), (y, at_y) = (np.unique(columns[name], return_inverse=True) for name in ("x", "y"))
+    places, counts = np.unique(at_x * y.size + at_y, return_counts=True)
+    if (counts > 1).any():
+        place = int(places[counts.argmax()])
+        where = f"x = {x[place // y.size]:g} m, y = {y[place % y.size]:g} m"
+        raise InvalidInputError("height", f"{counts.max()} values at {where}", "one value at every point")
+    heights = np.full((x.size, y.size), np.nan)
+    heights[at_x, at_y] = columns["height"]
+    return x, y, heights
+
+
+def _read_netcdf(path: Path) -> Map:
+    """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
+    dataset = read_netcdf(path)
+    if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
+        raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
+    scales = {name: unit_in_metres(name, dataset[name].attrs.get("units")) for name in ("x", "y", "height")}
+    heights = dataset["height"].transpose("x", "y")
+    return (
+        scales["x"] * heights["x"].values.astype(np.float64),
+        scales["y"] * heights["y"].values.astype(np.float64),
+        scales["height"] * heights.values.astype(np.float64),
+    )

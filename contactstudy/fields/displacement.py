@@ -1,0 +1,100 @@
+"""Displacements in a body under a prescribed pressure on its top."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
+from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.surface import REFERENCE_LENGTHS
+from contactstudy.kernels.displacement import half_space_displacement
+from contactstudy.overlapping.displacement_inside import end_displacement
+from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.quadrature import Resolution
+
+COMPONENTS = ("u_x", "u_y", "u_z")
+
+
+def displacement_field(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = 0.0,
+    x: Positions | None = None,
+    y: Positions | None = None,
+    z: Positions = (0.0,),
+) -> xr.Dataset:
+    """Displacements at the tensor product of any x, y and z.
+
+    Parameters
+    ----------
+    body : Body
+        The elastic body.
+    pressure : DataArray (x, y)
+        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+    friction : float
+        Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
+    x, y : sequence of float, optional
+        Positions in metres, inside the body and in any order; default: the pressure's own.
+    z : sequence of float
+        Depths in metres, not negative.
+
+    Returns
+    -------
+    Dataset
+        `u_x`, `u_y`, `u_z` (x, y, z) in metres. A half-space and a quarter space are at rest far away. A finite-length
+        space is not, for the displacement along its load grows like a logarithm: its rigid motion, and with an
+        eccentric load its tilt, is zero on the top far away, at the distance along y stated in the attribute
+        ``reference_distance``, as in `surface_displacement`.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind, a position lies outside the body, or the grid does not fit it.
+
+    Examples
+    --------
+    >>> import numpy as np, xarray as xr
+    >>> from contactstudy import HalfSpace, Material, surface_displacement
+    >>> centres = np.linspace(-0.95, 0.95, 20)
+    >>> pressure = xr.DataArray(np.ones((20, 20)), coords={"x": centres, "y": centres}, dims=("x", "y"))
+    >>> body = HalfSpace(material=Material(1.0, 0.0))
+    >>> displacement = displacement_field(body, pressure, z=[0.0, 1.0])
+    >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
+    True
+    """
+    grid, values, positions = field_positions(body, pressure, x, y, z)
+    friction = checks.finite("friction", friction)
+    displacement = _displacement(body, values, friction, grid, *positions.axes)
+    fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
+    reference = REFERENCE_LENGTHS * body.unbounded_row
+    if np.isfinite(reference):
+        for name in COMPONENTS:
+            fields[name].attrs["reference_distance"] = reference
+            fields[name].attrs["reference"] = "rigid motion zero at |y| = reference_distance (m) on the top"
+    return describe(fields, "displacements under a prescribed pressure")
+
+
+def _displacement(
+    body: Body, pressure: FloatArray, friction: float, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Displacements (3, x, y, z) under the pressure and `friction` times as much traction."""
+    tangential = friction != 0
+    fields: FloatArray = np.zeros((1 + tangential, 3, x.size, y.size, z.size))
+    for part in body.parts:
+        reference = REFERENCE_LENGTHS * (part.extent[1] - part.extent[0])
+        fields += part.weight * half_space_displacement(
+            pressure, body.material, grid, x, y, z, extent=part.extent, reference=reference, tangential=tangential
+        )
+        if part.freed and pressure.any():
+            length, mirrored_once = part.freed
+            poisson = body.material.poisson
+            problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
+            from_ends = end_displacement(problem, x, y, z, reference=reference)
+            fields += part.weight / (2 * body.material.shear_modulus) * from_ends
+    return np.asarray(fields[0] + friction * fields[1] if tangential else fields[0])

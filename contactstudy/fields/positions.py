@@ -1,0 +1,94 @@
+"""Where a field is evaluated: the tensor product of any x, y and z inside a body."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.surface import check_span
+
+Positions = Sequence[float] | npt.ArrayLike
+
+
+class FieldPositions(NamedTuple):
+    """Checked positions, metres.
+
+    Attributes
+    ----------
+    x, y, z : array
+        Where to evaluate.
+    label_x, label_y : array
+        Coordinates of the result: the pressure's own, unrounded, where no others were asked for.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    label_x: FloatArray
+    label_y: FloatArray
+
+    @property
+    def axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """The three axes."""
+        return self.x, self.y, self.z
+
+    def dataset(self, fields: Mapping[str, FloatArray]) -> xr.Dataset:
+        """Label fields (x, y, z)."""
+        return xr.Dataset(
+            {name: (("x", "y", "z"), values) for name, values in fields.items()},
+            coords={"x": self.label_x, "y": self.label_y, "z": self.z},
+        )
+
+
+def field_positions(
+    body: Body, pressure: xr.DataArray, x: Positions | None, y: Positions | None, z: Positions
+) -> tuple[Grid, FloatArray, FieldPositions]:
+    """Grid and values of a pressure, and the positions of a field under it.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    pressure : DataArray (x, y)
+        Pressure on cell centres.
+    x, y : sequence of float or None
+        Positions, metres; None: the pressure's own.
+    z : sequence of float
+        Depths, metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind, a position lies outside the body, or the grid does not fit it.
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    values, grid = labelled_cells("pressure", pressure)
+    check_span(body, grid)
+    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", x), grid)
+    at_y = grid.y if y is None else checks.coordinates("y", y)
+    at_z = checks.coordinates("z", z)
+    if (at_z < 0).any():
+        raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
+    label_x = pressure["x"].values if x is None else at_x
+    label_y = pressure["y"].values if y is None else at_y
+    return grid, values, FieldPositions(at_x, at_y, at_z, label_x, label_y)
+
+
+def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
+    """Positions clipped by rounding errors to the body; raise for any outside."""
+    low, high = body.extent
+    rounding = 1e-9 * grid.dx
+    outside = (x < low - rounding) | (x > high + rounding)
+    if outside.any():
+        raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
+    return np.clip(x, low, high)

@@ -1,0 +1,78 @@
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.analysis.summary import pressure_summary, stress_summary, summarize
+from contactstudy.errors import InvalidInputError
+
+
+def contact(values, scale=2.0):
+    values = np.asarray(values, dtype=float)
+    cells = {"x": 0.5 + np.arange(values.shape[0]), "y": np.arange(values.shape[1]) - (values.shape[1] - 1) / 2}
+    return xr.Dataset({"pressure": (("x", "y"), values), "hertz_max_pressure": scale}, coords=cells)
+
+
+VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
+
+
+def test_peak_and_its_place():
+    result = pressure_summary(contact(VALUES))
+    place = [float(result[name]) for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")]
+    assert place == [4, 3.5, 0]
+
+
+def test_ends_are_the_first_and_last_loaded_cells():
+    result = pressure_summary(contact(VALUES))
+    assert (float(result["end_pressure_over_p0_first"]), float(result["end_pressure_over_p0_last"])) == (0.5, 2.0)
+    assert float(result["end_pressure_over_p0"]) == 1.25
+
+
+def test_extent_in_whole_cells():
+    result = pressure_summary(contact(VALUES))
+    assert (float(result["contact_length"]), float(result["contact_width"])) == (3, 3)
+
+
+def test_no_contact_at_all():
+    result = pressure_summary(contact(np.zeros((3, 2))))
+    assert np.isnan(float(result["end_pressure_over_p0"]))
+    assert float(result["contact_length"]) == 0
+
+
+@given(st.floats(0.1, 1e9))
+def test_ratios_do_not_depend_on_the_unit(scale):
+    one, other = pressure_summary(contact(VALUES)), pressure_summary(contact(np.multiply(VALUES, scale), 2 * scale))
+    assert float(other["end_pressure_over_p0"]) == pytest.approx(float(one["end_pressure_over_p0"]))
+
+
+def test_stress_points_of_their_own():
+    stress = xr.DataArray(
+        np.arange(8.0).reshape(2, 2, 2),
+        dims=("x_field", "y_field", "z"),
+        coords={"x_field": [1, 2], "y_field": [3, 4], "z": [5, 6]},
+    )
+    result = stress_summary(xr.Dataset({"von_mises": stress}))
+    assert {name: float(value) for name, value in result.items()} == {
+        "peak_von_mises": 7,
+        "peak_von_mises_x": 2,
+        "peak_von_mises_y": 4,
+        "peak_von_mises_z": 6,
+    }
+
+
+def test_a_field_without_a_number_is_no_result():
+    with pytest.raises(InvalidInputError, match="nan"):
+        stress_summary(xr.Dataset({"von_mises": ("x", [np.nan])}))
+
+
+def test_without_stresses():
+    assert not stress_summary(contact(VALUES))
+    assert "peak_von_mises" not in summarize(contact(VALUES))
+
+
+def test_summary_is_scalar_described_and_keeps_what_was_there():
+    result = summarize(contact(VALUES).assign(iterations=7))
+    assert all(variable.ndim == 0 for variable in result.variables.values())
+    assert int(result["iterations"]) == 7
+    assert result["end_pressure_over_p0"].attrs["units"] == "1"

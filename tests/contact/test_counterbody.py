@@ -1,0 +1,299 @@
+"""Two elastic bodies: limits, exchange, resultants, and how loads are carried between their grids."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy import optimize
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    Roller,
+    choose_grid,
+    profiles,
+    roller_stress,
+    solve,
+    solve_contact,
+    surface_displacement,
+)
+from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.verification import closed_forms
+from contactstudy.verification.problems import on_cells
+
+STEEL, ALUMINIUM = Material(210e9, 0.3), Material(70e9, 0.33)
+HALF_WIDTH = 130e-6
+FILLET = profiles.Cylinder(fillet_radius=2 * HALF_WIDTH)
+
+
+def shape_on(body, counter: Counterbody, cells: int, length: float, radius_x: float = 40e-3) -> xr.DataArray:
+    """Gap of an ellipsoid over the first `length` of a body, where the counterbody faces it."""
+    grid = Grid((0.0, length), (-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells, 48)
+    x = grid.x[:, None]
+    middle = counter.start + 0.5 * counter.body.length
+    gap = (x - middle) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
+    facing = (x > counter.start) & (x < counter.start + counter.body.length)
+    return xr.DataArray(np.where(facing, gap, np.inf), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+
+
+def test_two_half_spaces_are_one_of_the_combined_modulus():
+    rigid = Case(
+        body=HalfSpace(material=Material(STEEL.young / 2, 0.3)),
+        roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
+        max_pressure=1e9,
+    )
+    elastic = Case(
+        body=HalfSpace(material=STEEL),
+        roller=Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL, ends="none"),
+        max_pressure=1e9,
+    )
+    assert elastic.modulus == pytest.approx(rigid.modulus)
+    first, second = (solve(case, stresses=False).pressure.values for case in (rigid, elastic))
+    assert np.abs(first - second).max() < 1e-9 * first.max()
+
+
+def test_equal_materials_as_half_spaces_do_not_couple_with_friction():
+    roller = Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL, ends="none", profile=FILLET)
+    results = [
+        solve(
+            Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1e9, friction=0.5, coupled=coupled),
+            stresses=False,
+        ).pressure.values
+        for coupled in (False, True)
+    ]
+    assert np.abs(results[0] - results[1]).max() < 1e-6 * results[0].max()
+
+
+@pytest.mark.parametrize(
+    ("first", "second"),
+    [
+        (Material(1.0, 0.0), None),
+        (Material(1.0, 0.1), Material(3.0, 0.4)),
+        (Material(3.0, 0.4), Material(1.0, 0.1)),
+        (STEEL, ALUMINIUM),
+    ],
+)
+def test_friction_moves_the_contact_of_unlike_materials(first: Material, second: Material | None):
+    """Bodies with mirrored ends only are in plane strain; the wrong sign would put the centre on the other side."""
+    friction, radius, load = 0.5, 1.0, 2e-4 * first.plane_strain_modulus
+    exact = closed_forms.sliding_line(load, radius, friction, first, second)
+    width = exact.half_width + abs(exact.centre)
+    gap = on_cells(lambda x, y: y**2 / (2 * radius) + 0 * x, (0.0, 1.0), (-1.5 * width, 1.5 * width), (4, 256))
+
+    def bar(material: Material) -> FiniteLengthSpace:
+        return FiniteLengthSpace(length=1.0, material=material, model="mirror")
+
+    counter = None if second is None else Counterbody(bar(second))
+    found = solve_contact(bar(first), gap, load, friction, coupled=True, counterbody=counter).pressure.isel(x=1)
+    assert abs(exact.centre) > 0.03 * exact.half_width
+    expected = exact.pressure(found.y.values)
+    assert np.abs(found.values - expected).max() < 0.04 * expected.max()  # in the cell at the steep edge
+    assert np.median(np.abs(found.values - expected)[expected > 0]) < 5e-4 * expected.max()
+    centroid, expected_centroid = (np.average(found.y, weights=weights) for weights in (found.values, expected))
+    assert centroid == pytest.approx(expected_centroid, abs=1e-3 * exact.half_width)
+
+
+def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
+    """Displacement of every cell under unit pressure on every other: array (x, y, x, y)."""
+    unit = np.eye(grid.cells_x * grid.cells_y).reshape(-1, *grid.shape)
+    columns = [
+        surface_displacement(body, xr.DataArray(each, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))).values
+        for each in unit
+    ]
+    return np.array(columns).reshape(*grid.shape, *grid.shape)
+
+
+@pytest.mark.parametrize("start", [-2, 0, 1])
+def test_two_finite_bodies_against_quadratic_programming(start: int):
+    """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
+    per_unit, across, load = 3, (-1.5, 1.5), 1.5
+    body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
+    counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
+    grid, own = (Grid((0.0, each.length), across, round(per_unit * each.length), 9) for each in (body, counter))
+    both = flexibility(body, grid)
+    shift = per_unit * start
+    first, last = max(0, shift), min(grid.cells_x, shift + own.cells_x)
+    own_range = slice(first - shift, last - shift)
+    both[first:last, :, first:last] += flexibility(counter, own)[own_range, :, own_range]
+    gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
+    gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
+    found = solve_contact(body, gap, load, counterbody=Counterbody(counter, start), tolerance=1e-8)
+
+    possible = np.isfinite(gap.values).ravel()
+    matrix = both.reshape(possible.size, -1)[np.ix_(possible, possible)]
+    # The load as a stiff penalty, far above the flexibility's entries.
+    penalty, area = 1e6, grid.cell_area
+    factor = np.linalg.cholesky(matrix + penalty * area)
+    right = penalty * load - gap.values.ravel()[possible]
+    pressure, _ = optimize.nnls(factor.T, np.linalg.solve(factor, right), maxiter=10_000)
+    expected = np.zeros(possible.size)
+    expected[possible] = pressure * load / (pressure.sum() * area)
+    np.testing.assert_allclose(found.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.4])
+def test_exchanged_bodies_press_alike(friction: float):
+    first = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    second = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
+    below, above = Counterbody(second, HALF_WIDTH), Counterbody(first, -HALF_WIDTH)
+    gap = shape_on(first, below, 64, first.length)
+    exchanged = gap.isel(x=slice(8, 56)).assign_coords(x=gap.x[8:56] - HALF_WIDTH)
+    options = {"coupled": friction != 0, "tolerance": 1e-8}
+    one = solve_contact(first, gap, 100.0, friction, counterbody=below, **options)
+    other = solve_contact(second, exchanged, 100.0, -friction, counterbody=above, **options)
+    pressure = one.pressure.values[8:56]
+    assert np.abs(pressure - other.pressure.values).max() < 2e-6 * pressure.max()
+
+
+def test_flush_bodies_of_one_material_sink_alike_and_symmetrically():
+    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH, material=STEEL), max_pressure=1.5e9)
+    soft = Case(
+        body=FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(STEEL.young / 2, 0.3)),
+        roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
+        max_pressure=1.5e9,
+    )
+    pressure, rigid = (solve(each, stresses=False).pressure.values for each in (case, soft))
+    np.testing.assert_allclose(pressure, rigid, atol=1e-6 * rigid.max())
+    np.testing.assert_allclose(pressure, pressure[::-1], atol=1e-6 * rigid.max())
+
+
+@pytest.mark.parametrize("distance", [-1.5, 0.0, 1.37])
+def test_overhanging_flush_and_inside(distance: float):
+    body = FiniteLengthSpace(length=9 * HALF_WIDTH, material=STEEL)
+    roller = Roller(radius=5e-3, length=7 * HALF_WIDTH, material=STEEL, profile=FILLET)
+    case = Case(body=body, roller=roller, max_pressure=1e9, end_distance=distance * HALF_WIDTH)
+    result = solve(case, stresses=False)
+    assert bool(result.converged)
+    assert float(result.penetration_error) < 1e-5
+    assert abs(float(result.load_error)) < 1e-12
+
+
+@pytest.mark.parametrize("distance", [-1.5, 0.0, 1.0])
+def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
+    body = FiniteLengthSpace(length=9 * HALF_WIDTH, material=STEEL)
+    pressures = [
+        solve(
+            Case(
+                body=body,
+                roller=Roller(radius=5e-3, length=7 * HALF_WIDTH, material=material, profile=FILLET),
+                load=2e2,
+                end_distance=distance * HALF_WIDTH,
+            ),
+            Grid((0.0, body.length), (-3 * HALF_WIDTH, 3 * HALF_WIDTH), 72, 64),
+            stresses=False,
+        ).pressure.values
+        for material in (None, Material(1e7 * STEEL.young, 0.3))
+    ]
+    np.testing.assert_allclose(pressures[1], pressures[0], atol=1e-5 * pressures[0].max())
+
+
+def test_a_steel_roller_tilted_onto_its_sharp_end_converges():
+    # The overlap of the first guess is deep here, and cells that enter the contact all at once overshoot.
+    case = Case(
+        body=FiniteLengthSpace(length=4.2e-3, material=STEEL),
+        roller=Roller(radius=5e-3, length=4e-3, material=STEEL, profile=profiles.FullCrown(2.0)),
+        load=1225.0,
+        tilt=1e-3,
+    )
+    coarse, fine = (solve(case, choose_grid(case, cells_x=c, cells_y=12), stresses=False) for c in (12, 24))
+    for result in (coarse, fine):
+        assert bool(result.converged)
+        assert float(result.penetration_error) < 1e-6
+        assert int(result.iterations) < 60
+    line_load = [result.pressure.sum("y") * (result.y[1] - result.y[0]) for result in (coarse, fine)]
+    inside = np.linspace(1e-3, 3.5e-3, 6)
+    first, second = (line.interp(x=inside).values for line in line_load)
+    np.testing.assert_allclose(first, second, rtol=2e-3)
+
+
+def test_ends_between_the_borders_of_cells_cost_little():
+    """A roller whose ends cut cells: the error falls with their size, and is small away from the fillet's peak."""
+    body = FiniteLengthSpace(length=14 * HALF_WIDTH, material=STEEL)
+    roller = Roller(radius=5e-3, length=10 * HALF_WIDTH, material=STEEL, profile=FILLET)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9)
+
+    def middle(cells: int) -> float:
+        grid = Grid((0.0, body.length), choose_grid(case).y_range, cells, 32)
+        return float(solve(case, grid, stresses=False).pressure.sel(x=0.5 * body.length, method="nearest").max())
+
+    aligned = middle(112)  # 16 cells from the body's end to the roller's
+    errors = [abs(middle(cells) / aligned - 1) for cells in (58, 115)]
+    assert errors[1] < 0.6 * errors[0]
+    assert errors[1] < 0.005
+
+
+def test_the_other_bodies_work_below_an_elastic_roller():
+    roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=ALUMINIUM, profile=FILLET)
+    for body in (HalfSpace(material=STEEL), QuarterSpace(material=STEEL)):
+        assert bool(solve(Case(body=body, roller=roller, max_pressure=1e9), stresses=False).converged)
+
+
+def test_the_grid_meets_the_ends_of_an_elastic_roller():
+    body = FiniteLengthSpace(length=14e-3, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=10e-3, material=STEEL), max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=2, cells_y=4)
+    borders = 2e-3 / grid.dx
+    assert abs(borders - round(borders)) < 0.02
+
+
+def test_stresses_of_the_roller_carry_the_opposite_traction():
+    body = FiniteLengthSpace(length=6 * HALF_WIDTH, material=STEEL)
+    roller = Roller(radius=5e-3, length=6 * HALF_WIDTH, material=STEEL)
+    case = Case(body=body, roller=roller, max_pressure=1e9, friction=0.3)
+    points = {"x": [0.0, 2 * HALF_WIDTH], "y": [0.4 * HALF_WIDTH], "z": [0.5 * HALF_WIDTH]}
+    result = solve(case, **points)
+    inside = roller_stress(case, result.pressure, **points)
+    mirrored = roller_stress(case, result.pressure, **(points | {"y": [-0.4 * HALF_WIDTH]}))
+    assert np.abs(inside.tau_yz.values - result.tau_yz.values).max() > 1e7
+    np.testing.assert_allclose(mirrored.von_mises.values, result.von_mises.values, rtol=1e-5)
+
+
+def test_a_rigid_roller_has_no_stresses(short_body):
+    case = Case(body=short_body, roller=Roller(radius=100.0, length=8.0), load=0.1)
+    pressure = solve(case, stresses=False).pressure
+    with pytest.raises(InvalidInputError, match="rigid"):
+        roller_stress(case, pressure)
+
+
+@given(st.floats(-0.5, 1.0), st.floats(0.6, 2.0), st.integers(4, 40))
+def test_loads_are_carried_over_without_loss(start: float, length: float, cells: int):
+    counter = Counterbody(FiniteLengthSpace(length=length, material=STEEL), start)
+    grid = Grid((0.0, 1.7), (-1.0, 1.0), cells, 2)
+    facing = (grid.x > start) & (grid.x < start + length)
+    load = np.random.default_rng(cells).random(grid.shape) * facing[:, None]
+    carried = counter.load_on(grid, load)
+    assert carried.sum() * counter.own_grid(grid).cell_area == pytest.approx(load.sum() * grid.cell_area, rel=1e-12)
+
+
+def test_aligned_cells_are_carried_over_as_they_are():
+    counter = Counterbody(FiniteLengthSpace(length=1.0, material=STEEL), 0.5)
+    overlap = counter.overlap(Grid((0.0, 2.0), (-1.0, 1.0), 16, 2))
+    np.testing.assert_allclose(overlap, np.eye(16)[4:12] / 8, atol=1e-12)
+
+
+@pytest.mark.parametrize(
+    "arguments", [{"material": "steel"}, {"material": STEEL, "ends": "loose"}, {"material": STEEL, "ends": 1}]
+)
+def test_bad_rollers(arguments):
+    with pytest.raises(InvalidInputError):
+        Roller(radius=5e-3, length=1e-3, **arguments)
+
+
+def test_a_counterbody_needs_a_place():
+    with pytest.raises(InvalidInputError, match="counterbody"):
+        Counterbody(QuarterSpace(material=STEEL))
+
+
+def test_the_counterbody_argument_is_checked(short_body):
+    gap = shape_on(short_body, Counterbody(short_body), 16, 8.0)
+    with pytest.raises(InvalidInputError, match="counterbody"):
+        solve_contact(short_body, gap, 1.0, counterbody=STEEL)

@@ -1,0 +1,227 @@
+"""What may be prescribed of a contact: load, its position, the tilt, the approach; and rough surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    WindowError,
+    choose_grid,
+    profiles,
+    solve,
+    solve_contact,
+)
+from contactstudy.case.roughness import self_affine
+
+STEEL = Material(210e9, 0.3)
+HALF_WIDTH = 65e-6
+LENGTH = 20 * HALF_WIDTH
+BODY = FiniteLengthSpace(length=LENGTH, material=STEEL)
+CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
+
+
+def case_with(**arguments) -> Case:
+    roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
+    return Case(**({"body": BODY, "roller": roller, "max_pressure": 1e9} | arguments))
+
+
+@pytest.mark.parametrize("offset", [-2.5, 0.0, 1.0, 3.5])
+def test_the_resultant_acts_where_it_was_prescribed(offset: float):
+    position = 0.5 * LENGTH + offset * HALF_WIDTH
+    result = solve(case_with(load_position=position), stresses=False)
+    assert bool(result.converged)
+    line = result.pressure.sum("y")
+    assert abs(float((line * line.x).sum() / line.sum()) - position) < 1e-6 * LENGTH
+    assert float(result.load_position) == pytest.approx(position, abs=1e-6 * LENGTH)
+    assert np.sign(float(result.tilt)) == np.sign(offset) or offset == 0
+    assert float(result.penetration_error) < 1e-5
+
+
+def test_the_tilt_that_follows_from_the_position_gives_the_position():
+    free = solve(case_with(load_position=0.5 * LENGTH + HALF_WIDTH), stresses=False)
+    held = solve(case_with(tilt=float(free.tilt)), stresses=False)
+    np.testing.assert_allclose(held.pressure, free.pressure, atol=2e-5 * float(free.pressure.max()))
+    assert float(held.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
+
+
+def test_opposite_tilts_mirror_the_pressure():
+    first, second = (solve(case_with(tilt=tilt), stresses=False).pressure.values for tilt in (2e-4, -2e-4))
+    np.testing.assert_allclose(first, second[::-1], atol=1e-5 * first.max())
+    assert first[first.shape[0] // 2 :].sum() > first[: first.shape[0] // 2].sum()
+
+
+def test_a_load_on_mid_length_does_not_tilt():
+    free, held = (solve(case_with(load_position=at), stresses=False) for at in (0.5 * LENGTH, None))
+    assert abs(float(free.tilt)) < 1e-9
+    np.testing.assert_allclose(free.pressure, held.pressure, atol=1e-5 * float(held.pressure.max()))
+
+
+@pytest.mark.parametrize("body", [BODY, HalfSpace(material=STEEL)], ids=["finite", "half-space"])
+def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
+    case = case_with(body=body, end_distance=2 * HALF_WIDTH)
+    grid = choose_grid(case)
+    gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    by_load = solve_contact(body, gap, case.normal_load)
+    by_approach = solve_contact(body, gap, approach=float(by_load.approach))
+    assert bool(by_approach.converged)
+    assert float(by_approach["load"]) == pytest.approx(case.normal_load, rel=1e-5)
+    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-4 * float(by_load.pressure.max()))
+    assert float(by_approach.approach) == float(by_load.approach)
+
+
+def test_hertz_point_contact_by_its_approach():
+    centres = np.linspace(-1.5, 1.5, 97)
+    gap = xr.DataArray(0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y"))
+    contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # contact radius 1, load 4/3
+    assert float(contact["load"]) == pytest.approx(4 / 3, rel=1e-3)
+    assert float(contact.pressure.max()) == pytest.approx(2 / np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("closure", [0.2, 0.5, 0.8, 1.2])
+def test_wavy_surface_against_westergaards_solution(closure: float):
+    """Part of a wave that touches, and the pressure on it, under a given mean pressure (Johnson, section 13.2).
+
+    The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
+    """
+    modulus, wavelength = STEEL.plane_strain_modulus, 0.25 * HALF_WIDTH
+    body = FiniteLengthSpace(length=wavelength, material=STEEL, model="mirror")
+    case = Case(body=body, roller=Roller(radius=5e-3, length=wavelength), max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=256, cells_y=32, window=1.5)
+    amplitude = 1.5e9 / closure * wavelength / (np.pi * modulus)
+    phase = np.pi * (grid.x / wavelength - 0.5)
+    heights = amplitude * np.cos(2 * phase)[:, None] + 0 * grid.y
+    rough = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    result = solve(case, grid, roughness=rough, stresses=False)
+    assert bool(result.converged)
+    wave = result.pressure.sel(y=0.0, method="nearest")
+    mean = float(wave.mean())
+    ratio = mean * wavelength / (np.pi * modulus * amplitude)
+    if closure > 1:
+        assert bool((wave > 0).all())
+        expected = mean + (mean / ratio) * np.cos(2 * phase)
+    else:
+        edge = phase[wave.values > 0].max() + 0.5 * np.pi / grid.cells_x
+        assert np.sin(edge) ** 2 == pytest.approx(ratio, abs=0.025)
+        inside = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
+        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(inside)
+    assert np.abs(wave - expected).max() < 0.05 * mean / min(ratio, 1.0)
+    assert np.abs(wave - expected).mean() < 0.01 * mean
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_self_affine_surfaces_converge(seed: int):
+    case = case_with()
+    grid = choose_grid(case, window=4.0, cells_y=8)
+    rough = self_affine(
+        grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=seed
+    )
+    result = solve(case, grid, roughness=rough, stresses=False)
+    smooth = solve(case, grid, stresses=False)
+    assert bool(result.converged)
+    assert int(result.iterations) < 150
+    assert abs(float(result.load_error)) < 1e-12
+    assert float(result.penetration_error) < 1e-5
+    assert float(result.pressure.max()) > 1.5 * float(smooth.pressure.max())
+    assert int((result.pressure > 0).sum()) < int((smooth.pressure > 0).sum())
+
+
+def test_roughness_on_other_cells_is_interpolated():
+    case = case_with()
+    grid = choose_grid(case)
+    wider = Grid((-0.1 * LENGTH, 1.1 * LENGTH), (-5 * HALF_WIDTH, 5 * HALF_WIDTH), 150, 90)
+
+    def sloping(on: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+        heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
+        return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
+
+    own, other = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    np.testing.assert_allclose(other.initial_gap, own.initial_gap, atol=1e-18)
+    tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
+    assert float(own.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
+
+
+def test_a_flat_height_map_changes_nothing_but_the_approach():
+    case = case_with()
+    grid = choose_grid(case)
+    flat = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    smooth, rough = (solve(case, grid, roughness=heights, stresses=False) for heights in (None, flat))
+    np.testing.assert_allclose(rough.pressure, smooth.pressure, atol=1e-6 * float(smooth.pressure.max()))
+    assert float(rough.approach) == pytest.approx(float(smooth.approach) - 1e-6, rel=1e-6)
+
+
+def test_error_estimate_stands_with_the_result():
+    result = solve(case_with(), stresses=False, error_estimate=True)
+    assert float(result.peak_pressure) == pytest.approx(float(result.pressure.max()), rel=1e-2)
+    assert 0 < float(result.peak_pressure_error) < 0.02 * float(result.peak_pressure)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({"tilt": 0.2}, "tilt"),
+        ({"tilt": np.nan}, "tilt"),
+        ({"load_position": -1e-3}, "load_position"),
+        ({"load_position": 0.5 * HALF_WIDTH}, "load_position"),
+        ({"load_position": np.inf}, "load_position"),
+    ],
+)
+def test_bad_cases(arguments, parameter: str):
+    with pytest.raises(InvalidInputError, match=parameter):
+        case_with(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({}, "load, approach"),
+        ({"load": 1.0, "approach": 1e-6}, "load, approach"),
+        ({"approach": -1e-6}, "approach"),
+        ({"approach": np.nan}, "approach"),
+        ({"approach": 1e-6, "load_position": 0.5 * LENGTH}, "load_position"),
+        ({"load": 1.0, "load_position": 2 * LENGTH}, "load_position"),
+    ],
+)
+def test_bad_prescriptions(arguments, parameter: str):
+    case = case_with()
+    grid = choose_grid(case, cells_x=2, cells_y=4)
+    gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match=parameter):
+        solve_contact(BODY, gap, **arguments)
+
+
+def test_roughness_must_cover_the_cells():
+    case = case_with()
+    grid = choose_grid(case, cells_x=2, cells_y=4)
+    rough = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match="roughness"):
+        solve(case, grid, roughness=rough)
+
+
+@pytest.mark.parametrize("window", [2.0, 16.0])
+def test_a_roller_tilted_on_its_end_is_refused(window: float):
+    case = case_with(tilt=0.1)
+    with pytest.raises((InvalidInputError, WindowError), match=r"tilt = 0\.1"):
+        solve(case, choose_grid(case, cells_y=8, window=window), stresses=False)
+
+
+def test_a_load_at_the_very_end_is_refused():
+    case = case_with(load_position=17.95 * HALF_WIDTH)
+    with pytest.raises(InvalidInputError, match=r"load_position = .* the contact reaches further"):
+        solve(case, choose_grid(case, cells_y=8, window=24), stresses=False)
+
+
+def test_approach_and_tilt_say_what_they_are_relative_to():
+    result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
+    for name in ("approach", "tilt"):
+        assert f"|y| = {10 * LENGTH:g} m" in result[name].attrs["reference"]
+    assert result.tilt.attrs["centre"] == "load_position"
+    assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"

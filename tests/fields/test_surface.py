@@ -1,0 +1,113 @@
+"""Displacement of the top: closed forms, reciprocity, limits, and what an EHL code relies on."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    surface_displacement,
+)
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
+from contactstudy.overlapping.quadrature import Resolution
+
+
+def test_hertz_pressure_sinks_the_inside_as_a_paraboloid(on_cells, half_space: HalfSpace) -> None:
+    peak = 2 / np.pi
+    pressure = on_cells(lambda x, y: peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.5, 1.5), (-1.5, 1.5), (96, 96))
+    sunk = surface_displacement(half_space, pressure)
+    radius2 = pressure.x**2 + pressure.y**2
+    assert float(np.abs(sunk - (1 - radius2 / 2)).where(radius2 < 0.8).max()) < 2e-3
+
+
+@pytest.mark.parametrize("tangential", [False, True])
+def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, tangential: bool) -> None:
+    operator = SurfaceOperator(
+        short_body, Grid((0.0, 8.0), (-2.0, 2.0), 24, 16), tangential=True, resolution=Resolution()
+    )
+    first, second = np.random.default_rng(1).random((2, 24, 16))
+    if tangential:
+        there = operator(0 * first, first)
+        mirrored = operator(0 * first, first[:, ::-1])
+        assert np.abs(there + mirrored[:, ::-1]).max() < 1e-12
+    else:
+        assert (first * operator(second)).sum() == pytest.approx((second * operator(first)).sum(), rel=1e-12)
+
+
+def test_long_body_loaded_in_the_middle_sinks_like_a_half_space(on_cells, unit_material: Material) -> None:
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 30) ** 2 - y**2, 0.0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
+    finite = surface_displacement(FiniteLengthSpace(length=60.0, material=unit_material), pressure, 0.2)
+    half = surface_displacement(HalfSpace(material=unit_material), pressure, 0.2)
+    difference = (finite - half).sel(x=slice(28, 32))
+    assert float(difference.max() - difference.min()) < 2e-3 * float(half.max())
+
+
+def test_incompressible_edge_is_half_as_stiff_and_more(unit_material: Material) -> None:
+    """A point load on the edge of a quarter space sinks the edge 3.362954 times as far as on a half-space."""
+    length, cells = 20.0, 200
+    x = length * (np.arange(cells) + 0.5) / cells
+    y = 0.1 * (np.arange(101) - 50)
+    load = np.zeros((cells, 101))
+    load[0, 50] = 1.0
+    pressure = xr.DataArray(load, coords={"x": x, "y": y}, dims=("x", "y"))
+    material = Material(0.75, 0.5)
+    edge = surface_displacement(FiniteLengthSpace(length=length, material=material), pressure)[0]
+    half = surface_displacement(HalfSpace(material=material), pressure)[0]
+    # Differences along the edge: the second end only adds what hardly varies.
+    near, far = 65, 90
+    ratio = float(edge[near] - edge[far]) / float(half[near] - half[far])
+    assert ratio == pytest.approx(3.362954, rel=2e-2)
+
+
+def test_friction_lowers_the_surface_ahead(short_body: FiniteLengthSpace, strip_pressure) -> None:
+    pressure = strip_pressure(8.0, (32, 32))
+    change = surface_displacement(short_body, pressure, 0.3) - surface_displacement(short_body, pressure)
+    assert float(change.sel(x=4.0, y=1.0, method="nearest")) > 0
+    assert np.abs(change + change.values[:, ::-1]).max() < 1e-12
+
+
+def test_attributes_state_the_reference(short_body: FiniteLengthSpace, strip_pressure) -> None:
+    sunk = surface_displacement(short_body, strip_pressure(8.0, (16, 16)))
+    assert sunk.attrs["reference_distance"] == pytest.approx(80.0)
+    assert sunk.attrs["units"] == "m"
+    assert sunk.name == "displacement_z"
+
+
+def test_bad_input_is_named(short_body: FiniteLengthSpace, strip_pressure) -> None:
+    with pytest.raises(InvalidInputError, match="friction = nan"):
+        surface_displacement(short_body, strip_pressure(8.0, (16, 16)), np.nan)
+    with pytest.raises(InvalidInputError, match="end at the free end"):
+        surface_displacement(short_body, strip_pressure(6.0, (16, 16)))
+
+
+@pytest.mark.parametrize("cells", [(64, 48), (50, 48)], ids=["even halves", "odd halves"])
+def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, unit_material, cells):
+    random = np.random.default_rng(3)
+    for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
+        operator = surface_operator(body, Grid((0.0, 8.0), (-3.0, 3.0), *cells), tangential=False)
+        built = surface_operator(body, Grid((0.0, 8.0), (-3.0, 3.0), cells[0] // 2, cells[1] // 2), tangential=False)
+        pressure = random.random((cells[0] // 2, cells[1] // 2))
+        expected = built(pressure)
+        assert np.abs(operator.coarse(pressure) - expected).max() < 5e-3 * np.ptp(expected)
+
+
+@pytest.mark.parametrize("model", ["exact", "mirror"])
+def test_displacement_is_zero_at_its_reference_whatever_the_window(unit_material: Material, model: str) -> None:
+    body = FiniteLengthSpace(length=1.0, material=unit_material, model=model)
+    sunk = []
+    for window, cells in ((10.5, 210), (2.5, 50)):
+        grid = Grid((0.0, 1.0), (-window, window), 8, cells)
+        load = np.zeros(grid.shape)
+        load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
+        pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+        sunk.append(surface_displacement(body, pressure))
+    far = sunk[0].interp(y=sunk[0].attrs["reference_distance"])
+    assert float(np.abs(far).max()) < 1e-3 * float(sunk[0].max())
+    np.testing.assert_allclose(sunk[0].sel(y=slice(-2.5, 2.5)), sunk[1], atol=1e-5 * float(sunk[0].max()))
