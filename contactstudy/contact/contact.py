@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -122,21 +122,12 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         displacement = own(loads)
         approached = displacement if shape.counterbody is None else _operator(shape)(loads)
     _check_window(shape.body, pressure)
-    if not iterate.converged:
-        warnings.warn(
-            f"the contact iteration stopped after {iterate.applications} operator applications without reaching "
-            f"tolerance = {settings.tolerance:g}; raise max_iterations (now {settings.max_iterations}) or coarsen "
-            "the grid",
-            ConvergenceWarning,
-            stacklevel=3,
-        )
     prescribed = shape.prescribed
     height = clearance + approached
     tilt = 0.0
-    lever = prescribed.resultants(grid).lever
-    if lever is not None:
-        tilt = iterate.motion[1]
-        height = height - tilt * lever
+    if prescribed.load_position is not None:
+        tilt = iterate.motion[1] / prescribed.largest_arm(grid)
+        height = height - tilt * (grid.x[:, None] - prescribed.load_position)
     touching, total = pressure > 0, pressure.sum()
     sunk = prescribed.lowered
     if prescribed.approach is None:
@@ -148,8 +139,12 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         approached,
         carried=float(total * grid.cell_area),
         load=prescribed.load,
+        off_position=_off_position(prescribed, grid, pressure),
         tolerance=settings.tolerance,
     )
+    converged = iterate.converged and certificate.holds(settings.tolerance)
+    if not converged:
+        _warn(iterate, certificate, settings)
     return Contact(
         shape,
         pressure,
@@ -158,9 +153,31 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         sunk,
         tilt,
         iterate.applications,
-        iterate.converged,
+        converged,
         own.reference,
         certificate,
+    )
+
+
+def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> float:
+    """Distance of the resultant from its prescribed position, over the length of the contact."""
+    if prescribed.load_position is None:
+        return 0.0
+    line = pressure.sum(axis=1)
+    touching = np.flatnonzero(line)
+    length = grid.dx * (touching[-1] - touching[0] + 1)
+    return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
+
+
+def _warn(iterate: ContactIterate, certificate: Certificate, settings: Settings) -> None:
+    """Say that a contact did not converge, and by how much."""
+    violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(certificate).items() if value)
+    warnings.warn(
+        f"the contact iteration stopped after {iterate.applications} operator applications without reaching "
+        f"tolerance = {settings.tolerance:g} ({violations}); raise max_iterations (now {settings.max_iterations}) or "
+        "coarsen the grid",
+        ConvergenceWarning,
+        stacklevel=4,
     )
 
 
