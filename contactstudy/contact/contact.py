@@ -76,6 +76,8 @@ class Contact:
     ----------
     shape : Shape
         What was pressed on what.
+    settings : Settings
+        When the iteration stopped.
     pressure, gap, displacement : array (x, y)
         Pressure, Pa; gap after deformation and displacement of the body's top, metres.
     approach, tilt : float
@@ -91,6 +93,7 @@ class Contact:
     """
 
     shape: Shape
+    settings: Settings
     pressure: FloatArray
     gap: FloatArray
     displacement: FloatArray
@@ -111,9 +114,28 @@ class Contact:
         """Position x of the pressure's resultant, metres."""
         return float((self.pressure * self.shape.grid.x[:, None]).sum() / self.pressure.sum())
 
+    def warn_unless_converged(self, stacklevel: int) -> None:
+        """Say by how much the contact misses its conditions, if it did not converge."""
+        if self.converged:
+            return
+        violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(self.certificate).items() if value)
+        tolerance, most = self.settings
+        warnings.warn(
+            f"the contact iteration stopped after {self.iterations} operator applications without reaching "
+            f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {most}) or coarsen the grid",
+            ConvergenceWarning,
+            stacklevel=stacklevel + 1,
+        )
+
 
 def contact_of(shape: Shape, settings: Settings) -> Contact:
-    """Solve a contact whose parts are checked; raises and warns as `solve_contact`."""
+    """Solve a contact whose parts are checked.
+
+    Raises
+    ------
+    WindowError
+        If the contact reaches an edge of the grid where the body goes on.
+    """
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate = _iterate(_ContactRequest(shape, settings))
@@ -142,18 +164,16 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         off_position=_off_position(prescribed, grid, pressure),
         tolerance=settings.tolerance,
     )
-    converged = iterate.converged and certificate.holds(settings.tolerance)
-    if not converged:
-        _warn(iterate, certificate, settings)
     return Contact(
         shape,
+        settings,
         pressure,
         np.where(np.isfinite(opening), opening, np.inf),
         displacement,
         sunk,
         tilt,
         iterate.applications,
-        converged,
+        iterate.converged and certificate.holds(settings.tolerance),
         own.reference,
         certificate,
     )
@@ -167,18 +187,6 @@ def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> f
     touching = np.flatnonzero(line)
     length = grid.dx * (touching[-1] - touching[0] + 1)
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
-
-
-def _warn(iterate: ContactIterate, certificate: Certificate, settings: Settings) -> None:
-    """Say that a contact did not converge, and by how much."""
-    violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(certificate).items() if value)
-    warnings.warn(
-        f"the contact iteration stopped after {iterate.applications} operator applications without reaching "
-        f"tolerance = {settings.tolerance:g} ({violations}); raise max_iterations (now {settings.max_iterations}) or "
-        "coarsen the grid",
-        ConvergenceWarning,
-        stacklevel=4,
-    )
 
 
 class _ContactRequest(NamedTuple):
