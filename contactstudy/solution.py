@@ -267,7 +267,7 @@ def roller_stress(
     checks.instance("case", case, Case, "a Case")
     if case.counterbody is None:
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
-    values, grid = labelled_cells("pressure", pressure)
+    values, grid = labelled_cells("pressure", pressure, extent=case.body.extent)
     body, own = case.counterbody.body, case.counterbody.own_grid(grid)
     loads = sliding(case.counterbody.load_on(grid, values), -case.friction)
     return stress_dataset(body, loads, own, field_positions(body, own, x, y, z))

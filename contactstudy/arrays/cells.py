@@ -1,4 +1,4 @@
-"""From labelled arrays on cell centres to plain arrays and a grid, with every check."""
+"""From labelled arrays on cell centres to plain arrays and a grid, and back, with every check."""
 
 from __future__ import annotations
 
@@ -6,13 +6,22 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid, uniform_range
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 
-def labelled_cells(name: str, array: xr.DataArray, *, infinite: bool = False) -> tuple[FloatArray, Grid]:
+def labelled_cells(
+    name: str,
+    array: xr.DataArray,
+    *,
+    extent: tuple[float, float] = (-np.inf, np.inf),
+    infinite: bool = False,
+) -> tuple[FloatArray, Grid]:
     """Values ``(x, y)`` and grid of a DataArray on cell centres.
+
+    Cells are uniform along y. Along x their edges are, in this order: what the coordinates `x_width` or `x_bounds` say;
+    those of uniform cells; or what follows from the body's end and the centres.
 
     Parameters
     ----------
@@ -20,13 +29,15 @@ def labelled_cells(name: str, array: xr.DataArray, *, infinite: bool = False) ->
         Name of the argument, for error messages.
     array : DataArray
         Two-dimensional, with dimensions and coordinates `x` and `y` in either order.
+    extent : tuple of float
+        Ends of the body, metres; infinite for none.
     infinite : bool
         Whether positive infinity is allowed among the values.
 
     Raises
     ------
     InvalidInputError
-        If it is not such an array, the coordinates are not uniform, or a value is not a number.
+        If it is not such an array, its cells do not tile the range, or a value is not a number.
     """
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     if set(array.dims) != {"x", "y"}:
@@ -34,7 +45,8 @@ def labelled_cells(name: str, array: xr.DataArray, *, infinite: bool = False) ->
     for axis in ("x", "y"):
         if axis not in array.coords:
             raise InvalidInputError(f"{name}.coords", list(array.coords), f"with {axis} (cell centres, metres)")
-    grid = Grid.from_centres(array["x"].values, array["y"].values)
+    y_range, cells_y = uniform_range("y", array["y"].values)
+    grid = _grid(array, extent, y_range, cells_y)
     try:
         values = np.ascontiguousarray(array.transpose("x", "y").values, dtype=np.float64)
     except (TypeError, ValueError):
@@ -51,3 +63,68 @@ def labelled_cells(name: str, array: xr.DataArray, *, infinite: bool = False) ->
             f"{bad.sum()} values are not",
         )
     return values, grid
+
+
+def cell_coordinates(grid: Grid) -> dict[str, tuple[tuple[str, ...], FloatArray]]:
+    """Coordinates beside `x` that say where cells of different widths begin and end; none for uniform cells.
+
+    `x_bounds` are the cells' edges as the CF conventions want them; `x_width` stays with every variable along x.
+    """
+    if grid.uniform:
+        return {}
+    edges = grid.x_edges
+    return {"x_bounds": (("x", "bounds"), np.stack([edges[:-1], edges[1:]], axis=1)), "x_width": (("x",), grid.widths)}
+
+
+def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float, float], cells_y: int) -> Grid:
+    """Grid of an array whose cells along y are known."""
+    if "x_width" in array.coords:
+        widths = checks.coordinates("x_width", array["x_width"].values)
+        centres = checks.coordinates("x", array["x"].values)
+        return _tiled(centres - 0.5 * widths, centres + 0.5 * widths, "x_width", y_range, cells_y)
+    if "x_bounds" in array.coords:
+        bounds = np.asarray(array["x_bounds"].transpose("x", ...).values, dtype=np.float64)
+        return _tiled(bounds[:, 0], bounds[:, 1], "x_bounds", y_range, cells_y)
+    try:
+        x_range, cells_x = uniform_range("x", array["x"].values)
+    except InvalidInputError as error:
+        centres = checks.coordinates("x", array["x"].values)
+        if centres.size < 2 or not np.isfinite(extent).any():
+            raise InvalidInputError(
+                error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
+            ) from None
+        return Grid.from_edges(_edges_from_end(centres, extent), y_range, cells_y)
+    return Grid(x_range, y_range, cells_x, cells_y)
+
+
+def _tiled(low: FloatArray, high: FloatArray, name: str, y_range: tuple[float, float], cells_y: int) -> Grid:
+    """Grid of cells from `low` to `high`, which have to meet."""
+    apart = np.abs(high[:-1] - low[1:])
+    wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
+    if wrong.size:
+        at = int(wrong[0])
+        raise InvalidInputError(
+            name, f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
+        )
+    middle = 0.5 * (high[:-1] + low[1:])
+    return Grid.from_edges(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
+
+
+def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:
+    """Edges of the cells around `centres` that begin, or end, at a body's end."""
+    low, high = extent
+    backwards = not np.isfinite(low)
+    ahead = -centres[::-1] if backwards else centres
+    edges = [-high if backwards else low]
+    for centre in ahead:
+        edges.append(2 * centre - edges[-1])
+        if not edges[-2] < centre:
+            at = -centre if backwards else centre
+            raise InvalidInputError(
+                "x",
+                f"a cell centre at {at:g} m",
+                "the middle of a cell that follows the others from the body's end",
+                "cells of different widths are told by a coordinate x_width (x)",
+            )
+    found = np.array(edges)
+    return -found[::-1] if backwards else found

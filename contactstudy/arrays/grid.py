@@ -1,8 +1,8 @@
-"""The uniform grid of cells on which pressure and gap live."""
+"""The grid of cells on which pressure and gap live: any edges along x, uniform along y."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -13,10 +13,16 @@ from contactstudy.errors import InvalidInputError
 SPACING_TOLERANCE = 1e-4
 """Deviation of a spacing, over a cell, of cells that count as uniform: coordinates in single precision do. Accuracy."""
 
+STEEPEST_GRADING = 4.0
+"""Largest ratio of the widths of neighbouring cells: beyond it an estimated error means nothing. Accuracy."""
+
+LEAST_WIDTH = 1e-12
+"""Least width of a cell over the grid's length: narrower ones are lost in rounding. Accuracy."""
+
 
 @dataclass(frozen=True)
 class Grid:
-    """Rectangular cells that tile ``x_min..x_max`` by ``y_min..y_max``.
+    """Rectangular cells that tile ``x_min..x_max`` by ``y_min..y_max``; `from_edges` makes cells of different widths.
 
     Parameters
     ----------
@@ -41,11 +47,16 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
+    _inner: tuple[float, ...] = field(default=(), repr=False, kw_only=True)
+    """Edges between cells of different widths; empty for uniform cells."""
 
     def __post_init__(self) -> None:
         """Check ranges and counts."""
         for name in ("x_range", "y_range"):
-            low, high = getattr(self, name)
+            try:
+                low, high = getattr(self, name)
+            except (TypeError, ValueError):
+                raise InvalidInputError(name, getattr(self, name), "an increasing pair (metres)") from None
             low, high = checks.finite(name, low, "metres"), checks.finite(name, high, "metres")
             if not low < high:
                 raise InvalidInputError(name, (low, high), "an increasing pair (metres)")
@@ -54,27 +65,64 @@ class Grid:
             checks.store(self, **{name: checks.count(name, getattr(self, name))})
 
     @classmethod
+    def from_edges(cls, x_edges: object, y_range: tuple[float, float], cells_y: int) -> Grid:
+        """Grid of cells between any increasing edges along x, uniform along y.
+
+        Parameters
+        ----------
+        x_edges : sequence of float
+            Edges of the cells, increasing, metres. Neighbouring widths may differ by a factor of 4 at most.
+        y_range : tuple of float
+            First and last cell edge along y, metres.
+        cells_y : int
+            Number of cells along y.
+
+        Raises
+        ------
+        InvalidInputError
+            If the edges do not increase or grow too steeply; the message says where.
+
+        Examples
+        --------
+        >>> grid = Grid.from_edges([0.0, 1.0, 2.0, 4.0], (-1.0, 1.0), 2)
+        >>> grid.widths.tolist(), grid.uniform
+        ([1.0, 1.0, 2.0], False)
+        """
+        edges = checks.coordinates("x_edges", x_edges)
+        if edges.size < 2:
+            raise InvalidInputError("x_edges", edges, "at least two edges (metres)")
+        widths = np.diff(edges)
+        wrong = np.flatnonzero(widths <= LEAST_WIDTH * (edges[-1] - edges[0]))
+        if wrong.size:
+            at = int(wrong[0])
+            raise InvalidInputError("x_edges", f"{edges[at]:g}, {edges[at + 1]:g} m", "increasing")
+        ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
+        steep = np.flatnonzero(ratio > STEEPEST_GRADING)
+        if steep.size:
+            at = int(steep[0]) + 1
+            raise InvalidInputError(
+                "x_edges",
+                f"cells of {widths[at - 1]:g} and {widths[at]:g} m beside x = {edges[at]:g} m",
+                f"such that neighbouring cells differ by a factor of {STEEPEST_GRADING:g} at most",
+            )
+        span = (float(edges[0]), float(edges[-1]))
+        uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
+        return cls(span, y_range, widths.size, cells_y, _inner=() if uniform else tuple(edges[1:-1].tolist()))
+
+    @classmethod
     def from_centres(cls, x: object, y: object) -> Grid:
         """Grid whose cell centres are `x` and `y` (metres; uniform, increasing, at least two of each)."""
-        ranges = []
-        for name, values in (("x", x), ("y", y)):
-            centres = checks.coordinates(name, values)
-            if centres.size < 2:
-                raise InvalidInputError(name, centres, "at least two cell centres")
-            step = (centres[-1] - centres[0]) / (centres.size - 1)
-            if step <= 0:
-                raise InvalidInputError(name, centres, "increasing cell centres")
-            error = np.abs(np.diff(centres) - step) / step
-            if error.max() > SPACING_TOLERANCE:
-                at = int(error.argmax())
-                raise InvalidInputError(name, f"{centres[at]:g}, {centres[at + 1]:g}", "uniformly spaced cell centres")
-            ranges.append((float(centres[0] - step / 2), float(centres[-1] + step / 2), centres.size))
-        (x0, x1, nx), (y0, y1, ny) = ranges
-        return cls((x0, x1), (y0, y1), nx, ny)
+        (x_range, cells_x), (y_range, cells_y) = (uniform_range(name, each) for name, each in (("x", x), ("y", y)))
+        return cls(x_range, y_range, cells_x, cells_y)
+
+    @property
+    def uniform(self) -> bool:
+        """Whether all cells have the same width."""
+        return not self._inner
 
     @property
     def dx(self) -> float:
-        """Cell size along x, metres."""
+        """Mean cell size along x, metres."""
         return (self.x_range[1] - self.x_range[0]) / self.cells_x
 
     @property
@@ -84,7 +132,7 @@ class Grid:
 
     @property
     def cell_area(self) -> float:
-        """Area of one cell, square metres."""
+        """Mean area of a cell, square metres."""
         return self.dx * self.dy
 
     @property
@@ -93,9 +141,29 @@ class Grid:
         return (self.cells_x, self.cells_y)
 
     @property
+    def x_edges(self) -> FloatArray:
+        """Edges of the cells along x, metres."""
+        if self.uniform:
+            return np.linspace(*self.x_range, self.cells_x + 1)
+        return np.array([self.x_range[0], *self._inner, self.x_range[1]])
+
+    @property
+    def widths(self) -> FloatArray:
+        """Widths of the cells along x, metres."""
+        return np.full(self.cells_x, self.dx) if self.uniform else np.diff(self.x_edges)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Widths over their mean: array (x, 1) by which sums over cells become integrals, times `cell_area`."""
+        return (self.widths / self.dx)[:, None]
+
+    @property
     def x(self) -> FloatArray:
         """Cell centres along x, metres."""
-        return np.asarray(self.x_range[0] + self.dx * (np.arange(self.cells_x) + 0.5))
+        if self.uniform:
+            return np.asarray(self.x_range[0] + self.dx * (np.arange(self.cells_x) + 0.5))
+        edges = self.x_edges
+        return np.asarray(0.5 * (edges[1:] + edges[:-1]))
 
     @property
     def y(self) -> FloatArray:
@@ -105,4 +173,22 @@ class Grid:
 
     def coarsened(self) -> Grid:
         """Return the grid of cells of twice the size; a little more where a number of cells is odd."""
-        return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)
+        if self.uniform:
+            return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)
+        edges = self.x_edges
+        return Grid.from_edges(np.append(edges[:-1:2], edges[-1]), self.y_range, self.cells_y // 2)
+
+
+def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:
+    """First and last edge, metres, and number of uniform cells with centres at `values`; raise where they are not."""
+    centres = checks.coordinates(name, values)
+    if centres.size < 2:
+        raise InvalidInputError(name, centres, "at least two cell centres")
+    step = (centres[-1] - centres[0]) / (centres.size - 1)
+    if step <= 0:
+        raise InvalidInputError(name, centres, "increasing cell centres")
+    error = np.abs(np.diff(centres) - step) / step
+    if error.max() > SPACING_TOLERANCE:
+        at = int(error.argmax())
+        raise InvalidInputError(name, f"{centres[at]:g}, {centres[at + 1]:g}", "uniformly spaced cell centres")
+    return (float(centres[0] - step / 2), float(centres[-1] + step / 2)), centres.size

@@ -107,12 +107,15 @@ class Contact:
     @property
     def carried(self) -> float:
         """Resultant of the pressure, N."""
-        return float(self.pressure.sum() * self.shape.grid.cell_area)
+        grid = self.shape.grid
+        return float((grid.weights * self.pressure).sum() * grid.cell_area)
 
     @property
     def load_position(self) -> float:
         """Position x of the pressure's resultant, metres."""
-        return float((self.pressure * self.shape.grid.x[:, None]).sum() / self.pressure.sum())
+        grid = self.shape.grid
+        forces = grid.weights * self.pressure
+        return float((forces * grid.x[:, None]).sum() / forces.sum())
 
     def warn_unless_converged(self, stacklevel: int) -> None:
         """Say by how much the contact misses its conditions, if it did not converge."""
@@ -150,10 +153,11 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
     if prescribed.load_position is not None:
         tilt = iterate.motion[1] / prescribed.largest_arm(grid)
         height = height - tilt * (grid.x[:, None] - prescribed.load_position)
-    touching, total = pressure > 0, pressure.sum()
+    touching, forces = pressure > 0, grid.weights * pressure
+    total = forces.sum()
     sunk = prescribed.lowered
     if prescribed.approach is None:
-        sunk = float((pressure * np.where(touching, height, 0.0)).sum() / total)
+        sunk = float((forces * np.where(touching, height, 0.0)).sum() / total)
     opening = height - sunk
     certificate = certify(
         pressure,
@@ -183,9 +187,10 @@ def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> f
     """Distance of the resultant from its prescribed position, over the length of the contact."""
     if prescribed.load_position is None:
         return 0.0
-    line = pressure.sum(axis=1)
+    line = (grid.weights * pressure).sum(axis=1)
     touching = np.flatnonzero(line)
-    length = grid.dx * (touching[-1] - touching[0] + 1)
+    edges = grid.x_edges
+    length = edges[touching[-1] + 1] - edges[touching[0]]
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 

@@ -87,19 +87,26 @@ class ContactProblem:
             level = level + amount * each
         return level
 
+    @property
+    def joins_in_twos(self) -> bool:
+        """Whether the cells can be joined in twos, along x and along y."""
+        return self.grid.cells_x % 2 == 0 and self.grid.cells_y % 2 == 0
+
     def coarser(self) -> ContactProblem:
-        """Return the same contact on cells of twice the size."""
+        """Return the same contact on cells joined in twos."""
         grid = self.grid.coarsened()
         cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
         possible = np.isfinite(cells)
-        count = possible.sum(axis=(1, 3))
-        mean = np.where(possible, cells, 0.0).sum(axis=(1, 3)) / np.maximum(count, 1)
-        total, lever = self.resultants.total, self.resultants.lever
-        coarse = Resultants(
-            None if total is None else total / 4, None if lever is None else 0.5 * (lever[::2] + lever[1::2])
-        )
+        shares = possible * self.grid.weights.reshape(-1, 2, 1, 1)
+        total = shares.sum(axis=(1, 3))
+        mean = (np.where(possible, cells, 0.0) * shares).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
+        lever = self.resultants.lever
+        if lever is not None:
+            weights = self.grid.weights.reshape(-1, 2)
+            lever = ((weights * lever.reshape(-1, 2)).sum(axis=1) / weights.sum(axis=1))[:, None]
+        resultants = Resultants(None if self.resultants.total is None else self.resultants.total / 4, lever)
         return replace(
-            self, grid=grid, gap=np.where(count > 0, mean, np.inf), resultants=coarse, tolerance=COARSE_TOLERANCE
+            self, grid=grid, gap=np.where(total > 0, mean, np.inf), resultants=resultants, tolerance=COARSE_TOLERANCE
         )
 
 
@@ -107,10 +114,11 @@ def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArr
     """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
-    if gap.size >= NESTED_CELLS and problem.grid.cells_x % 2 == 0 and problem.grid.cells_y % 2 == 0:
+    if gap.size >= NESTED_CELLS and problem.joins_in_twos:
         coarse = problem.coarser()
         squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
-        guess = np.sqrt(np.maximum(np.where(possible, _refined(_refined(squared).T).T, 0.0), 0.0))
+        finer = between_columns(_refined(squared.T).T, coarse.grid.x, problem.grid.x)
+        guess = np.sqrt(np.maximum(np.where(possible, finer, 0.0), 0.0))
     else:
         heights = gap[possible]
         sinks = problem.resultants.total is not None
@@ -145,17 +153,30 @@ def _refined(values: FloatArray) -> FloatArray:
     return halves.reshape(-1, values.shape[1])
 
 
+def between_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
+    """Values (x, y) at other positions along x, linear between the centres and constant beyond them."""
+    if centres.size == 1:
+        return np.repeat(values, x.size, axis=0)
+    right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
+    part = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)[:, None]
+    return np.asarray((1 - part) * values[right - 1] + part * values[right])
+
+
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
     """Contact without the displacement from friction."""
-    return solve_complementarity(
-        lambda pressure: operator({Load.NORMAL: pressure}),
-        operator.precondition,
+    # The unknowns are forces on the cells, pressure times weight: conjugate to displacements in the plain product.
+    weights = problem.grid.weights
+    guess = _first_guess(operator, problem) if start is None else start
+    found = solve_complementarity(
+        lambda forces: operator({Load.NORMAL: forces / weights}),
+        lambda gap: weights * operator.precondition(gap),
         problem.gap,
         problem.resultants,
-        _first_guess(operator, problem) if start is None else start,
+        weights * guess,
         tolerance=problem.tolerance,
         max_iterations=problem.max_iterations,
     )
+    return replace(found, pressure=found.pressure / weights)
 
 
 def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
@@ -183,5 +204,6 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
         applications += iterate.applications
         if not iterate.converged:
             break
-        change = float(np.abs(iterate.pressure - previous).sum() / iterate.pressure.sum())
+        weights = problem.grid.weights
+        change = float((weights * np.abs(iterate.pressure - previous)).sum() / (weights * iterate.pressure).sum())
     return ContactIterate(iterate.pressure, iterate.motion, applications, False, iterate.history)

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
@@ -104,7 +104,7 @@ def solve_contact(
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:
         checks.instance("counterbody", counterbody, Counterbody, "a Counterbody")
-    clearance, grid = labelled_cells("gap", gap, infinite=True)
+    clearance, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(clearance).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
@@ -143,7 +143,8 @@ def contact_dataset(contact: Contact, friction: float, *, x: FloatArray, y: Floa
         **asdict(contact.certificate),
     }
     result = xr.Dataset(
-        {name: (("x", "y"), values) for name, values in fields.items()} | scalars, coords={"x": x, "y": y}
+        {name: (("x", "y"), values) for name, values in fields.items()} | scalars,
+        coords={"x": x, "y": y} | cell_coordinates(shape.grid),
     )
     result["displacement_z"].attrs |= displacement_reference(contact.reference)
     for name in ("approach", "tilt"):

@@ -16,8 +16,9 @@ from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_s
 from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, cell_kernel, mirrored_kernel
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import normal_displacement_corner, tangential_displacement_corner
+from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.surface import EndCorrection, build_end_correction
+from contactstudy.overlapping.surface import EndCorrection
 from contactstudy.threads import one_blas_thread
 
 REFERENCE_LENGTHS = 10.0
@@ -57,22 +58,15 @@ class PartOperator:
         ends = None
         if part.freed:
             with one_blas_thread():
-                ends = build_end_correction(
-                    part.freed.length,
-                    material,
-                    grid,
-                    loads,
-                    reference=_reference(part.extent),
-                    resolution=resolution,
-                    mirrored_once=part.freed.mirrored_once,
-                )
+                request = EndRequest.of(part.freed, material, grid, tuple(loads), reference_of(part.extent), resolution)
+                ends = EndCorrection.on(grid, end_kernel(request))
         spectra = {load: _spectrum(load, material, part.extent, grid) for load in loads}
         return cls(part.extent, grid, spectra, ends)
 
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return _reference(self.extent)
+        return reference_of(self.extent)
 
     def coarsened(self, material: Material) -> PartOperator:
         """Return the operator on cells of twice the size, under pressure alone."""
@@ -128,8 +122,16 @@ class _Padding:
         self.cells_x = grid.cells_x if self.periodic else 2 * grid.cells_x
 
 
-def _reference(extent: Extent) -> float:
+def reference_of(extent: Extent) -> float:
+    """Distance along y at which the displacement of a part is zero, metres; infinite unless it has two ends."""
     return REFERENCE_LENGTHS * (extent[1] - extent[0])
+
+
+def factor_of(load: Load, material: Material) -> float:
+    """Factor on the closed-form kernels of the normal displacement, 1/Pa."""
+    if load is Load.NORMAL:
+        return (1 - material.poisson) / (2 * np.pi * material.shear_modulus)
+    return (1 - 2 * material.poisson) / (4 * np.pi * material.shear_modulus)
 
 
 def _spectrum(load: Load, material: Material, extent: Extent, grid: Grid) -> FloatArray:
@@ -137,11 +139,10 @@ def _spectrum(load: Load, material: Material, extent: Extent, grid: Grid) -> Flo
     padding = _Padding(extent, grid)
     x: FloatArray = grid.dx * np.arange(padding.cells_x + 1.0 if padding.mirrored else grid.cells_x + 1.0)
     y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
+    factor = factor_of(load, material)
     if load is Load.NORMAL:
-        factor = (1 - material.poisson) / (2 * np.pi * material.shear_modulus)
         along_y = even_spectrum(_kernel(normal_displacement_corner, extent, grid, x, y))
     else:
-        factor = (1 - 2 * material.poisson) / (4 * np.pi * material.shear_modulus)
         along_y = odd_spectrum(_kernel(tangential_displacement_corner, extent, grid, x, y))
     spectrum = fft.dct(along_y, type=1, axis=0)
     if padding.mirrored:
@@ -157,5 +158,5 @@ def _kernel(corner: CornerFunction, extent: Extent, grid: Grid, x: FloatArray, y
     kernel = mirrored_kernel(corner, x, y, grid.dx, grid.dy, length)
     if corner is normal_displacement_corner:
         # The images make a line load along x; its logarithm is set to zero at the reference.
-        kernel -= grid.cell_area / length * np.log(2 * FAR_LIMIT * length / _reference(extent))
+        kernel -= grid.cell_area / length * np.log(2 * FAR_LIMIT * length / reference_of(extent))
     return kernel

@@ -86,7 +86,7 @@ def field_positions(
 def labelled_load(body: Body, pressure: xr.DataArray) -> tuple[Grid, FloatArray, Labels]:
     """Grid, values and labels of a pressure on a body, checked."""
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    values, grid = labelled_cells("pressure", pressure)
+    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
     return grid, values, (pressure["x"].values, pressure["y"].values)
 
 

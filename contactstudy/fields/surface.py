@@ -16,6 +16,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.cache import kept
 from contactstudy.checks import FloatArray
+from contactstudy.fields.columns import ColumnsOperator
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.part import PartOperator
 from contactstudy.kernels.load import Load
@@ -51,11 +52,11 @@ class SurfaceOperator:
     ----------
     body : Body
         The body.
-    parts : sequence of (float, PartOperator)
+    parts : sequence of (float, operator)
         Operators whose weighted sum is the body's.
     """
 
-    def __init__(self, body: Body, parts: Sequence[tuple[float, PartOperator]]) -> None:
+    def __init__(self, body: Body, parts: Sequence[tuple[float, PartOperator | ColumnsOperator]]) -> None:
         self.body, self._parts = body, parts
 
     @classmethod
@@ -69,7 +70,8 @@ class SurfaceOperator:
         """
         body, grid, loads, resolution = request
         body.check_span(grid)
-        parts = [(part.weight, PartOperator.of(body.material, part, grid, loads, resolution)) for part in body.parts]
+        kind = PartOperator if grid.uniform else ColumnsOperator
+        parts = [(part.weight, kind.of(body.material, part, grid, loads, resolution)) for part in body.parts]
         return cls(body, parts)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
@@ -147,7 +149,7 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     2.24
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    values, grid = labelled_cells("pressure", pressure)
+    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
     loads = sliding(values, checks.finite("friction", friction))
     operator = surface_operator(OperatorRequest(body, grid, tuple(loads)))
     with one_blas_thread():

@@ -26,7 +26,7 @@ def answered(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
     assert loads is not None
     for batch in loads.batches():
         for place, parity in enumerate(parts):
-            own = batch.columns[..., batch.parities == parity] * np.exp(-0.3 * batch.nodes)[:, None]
+            own = batch.along_x[..., batch.parities == parity] * np.exp(-0.3 * batch.nodes)[:, None]
             flat = own.reshape(GRID.cells_x, -1)
             for load, waves in enumerate(batch.syntheses(parity)):
                 for kind, synthesis in enumerate(waves):
