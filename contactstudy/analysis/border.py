@@ -7,14 +7,9 @@ the power 2/3 outside are straight lines through the edge: quadratics are fitted
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
-from contactstudy.checks import FloatArray, IntArray
-
-Array = npt.NDArray[Any]
+from contactstudy.checks import Array, FloatArray, IntArray
 
 # The cells on either side of an edge carry the error of a cell that the edge cuts; the fits begin behind them.
 SKIPPED = 2

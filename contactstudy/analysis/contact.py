@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import dimension_along, positions, require
-from contactstudy.analysis.axial import axial_pressure, labelled, unloaded_gap
+from contactstudy.analysis.axes import dimension_along, positions
+from contactstudy.analysis.axial import axial_pressure, unloaded_gap
 from contactstudy.analysis.peaks import peak
-
-Array = npt.NDArray[Any]
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named
+from contactstudy.checks import Array
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:
@@ -62,8 +60,8 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     )
     return xr.Dataset(
         {
-            "edge_pressure_first": labelled(first, "first", "Pa", "pressure in the first loaded cells along x"),
-            "edge_pressure_last": labelled(last, "last", "Pa", "pressure in the last loaded cells along x"),
+            "edge_pressure_first": named("edge_pressure_first", first),
+            "edge_pressure_last": named("edge_pressure_last", last),
         }
     )
 
@@ -164,15 +162,17 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     )
     if about is not None:
         middle = checks.finite("about", about, "metres")
-    values: dict[str, tuple[xr.DataArray, str, str]] = {
-        "contact_area": (area, "m2", "area of the loaded cells"),
-        "contact_length": (length, "m", "contact length, in whole cells"),
-        "contact_width": (width, "m", "contact width, in whole cells"),
-        "resultant": (resultant, "N", "resultant of the pressure"),
-        "load_position": (position, "m", "x where the resultant acts"),
-        "moment": (resultant * (position - middle), "N m", "moment of the pressure, positive for a load at larger x"),
+    values = {
+        "contact_area": area,
+        "contact_length": length,
+        "contact_width": width,
+        "resultant": resultant,
+        "load_position": position,
+        "moment": resultant * (position - middle),
     }
     if "initial_gap" in dataset:
-        values["contact_length_loss"] = (loss, "m", "length where roller and body face each other without load")
-    scalars = {name: labelled(value, name, units, meaning) for name, (value, units, meaning) in values.items()}
+        values["contact_length_loss"] = loss
+    scalars = {name: named(name, value) for name, value in values.items()}
+    for name in ("contact_area", "contact_length"):
+        scalars[name].attrs["comment"] = "in whole cells"
     return xr.Dataset({**peak(dataset, "pressure"), **edge_pressure(dataset), **scalars}).compute()

@@ -109,13 +109,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     result = xr.Dataset()
     for name, value in measured[0].items():
         error = np.inf if name in unbounded else _estimated_error(measured[1][name], value, ratio, displaced)
-        units = "m" if name == "half_width_middle" else "Pa"
-        result[name] = ((), value, {"units": units})
-        result[f"{name}_error"] = (
-            (),
-            error,
-            {"units": units, "long_name": f"estimated discretisation error of {name}"},
-        )
+        result[name], result[f"{name}_error"] = value, error
         if np.isinf(error):
             result[f"{name}_error"].attrs["comment"] = "no limit in sight: the end is sharp or the grid too coarse"
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in cells]

@@ -6,13 +6,16 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, dimension_along, positions, require
+from contactstudy.analysis.axes import axis_dimensions, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named, variable_of
 from contactstudy.errors import InvalidInputError
 
-PLACES = {"first": "at the first end", "last": "at the last end", "middle": "in the middle", "peak": "at its largest"}
+PLACES = ("first", "last", "middle", "peak")
+"""Where a value is compared with that of a reference: near both ends, at mid-length, and wherever it is largest."""
 
 
 def _along_axis(dataset: xr.Dataset, variable: str) -> xr.DataArray:
@@ -97,18 +100,16 @@ def edge_factors(
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)
     values = {
-        "end_over_middle_first": (first / middle, "at the first end, over that in the middle"),
-        "end_over_middle_last": (last / middle, "at the last end, over that in the middle"),
+        "end_over_middle_first": first / middle,
+        "end_over_middle_last": last / middle,
     }
     if reference is not None:
         require(reference, "pressure")
         others = _values(reference, variable, near)
         for name, own, other in zip(PLACES, (first, last, middle, largest), others, strict=True):
-            values[f"over_reference_{name}"] = (own / other, f"{PLACES[name]}, over that of the reference")
-    result = xr.Dataset({name: value.reset_coords(drop=True) for name, (value, _) in values.items()})
-    for name, (_, meaning) in values.items():
-        result[name].attrs = {"units": "1", "long_name": f"{variable.replace('_', ' ')} {meaning}"}
-    return result
+            values[f"over_reference_{name}"] = own / other
+    base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
+    return xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in values.items()})
 
 
 def _values(

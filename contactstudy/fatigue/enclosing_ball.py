@@ -10,12 +10,10 @@ Computer Science, LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust s
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[Any]
+from contactstudy.checks import Array
 
 ROUNDING = 1e-10
 """A point may lie outside a ball by this fraction of its radius."""

@@ -12,6 +12,7 @@ from scipy import fft
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import named
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import BoundedCache
@@ -260,14 +261,9 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     operator = surface_operator(body, grid, tangential=friction != 0)
     with one_blas_thread():
         displacement = operator(values, friction * values if friction else None)
-    attributes: dict[str, str | float] = {"units": "m", "long_name": "normal displacement of the top, into the body"}
+    attributes: dict[str, str | float] = {}
     if np.isfinite(operator.reference):
         attributes["reference_distance"] = operator.reference
         attributes["reference"] = "zero at |y| = reference_distance (m) on the top"
-    return xr.DataArray(
-        displacement,
-        coords={"x": pressure["x"], "y": pressure["y"]},
-        dims=("x", "y"),
-        name="displacement_z",
-        attrs=attributes,
-    )
+    sunk = xr.DataArray(displacement, coords={"x": pressure["x"], "y": pressure["y"]}, dims=("x", "y"))
+    return named("displacement_z", sunk).assign_attrs(attributes)

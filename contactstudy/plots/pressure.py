@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.plots.style import COLORS, new_axes, units
 
 if TYPE_CHECKING:

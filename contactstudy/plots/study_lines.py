@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.study_map import one_value, readable

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import COLORS, new_axes
 
