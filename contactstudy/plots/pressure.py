@@ -46,7 +46,7 @@ def plot_axial_pressure(
     >>> pressure = xr.DataArray([[1.0], [2.0]], dims=("x", "y"), coords={"x": [0.5, 1.5], "y": [0.0]})
     >>> one = xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
     >>> plot_axial_pressure(one).get_ylabel()
-    'pressure, $p/p_0$'
+    'contact pressure, $p/p_0$'
     """
     require(dataset, "pressure")
     one = single_case(dataset)

@@ -10,17 +10,11 @@ import xarray as xr
 
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import COLORS, new_axes
+from contactstudy.plots.style import COLORS, SYMBOLS, new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SYMBOLS = {
-    "e_over_a": "distance of the roller's end from the free end, $e/a$",
-    "friction": "friction, $f$",
-    "gamma": r"length over radius, $\gamma$",
-    "max_pressure": "Hertz pressure, $p_0$",
-}
 SCALES = {
     "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
     "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),

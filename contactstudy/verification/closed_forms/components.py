@@ -1,4 +1,8 @@
-"""Stresses as a dictionary of components, and their equivalent stress."""
+"""Stresses as a dictionary of components, and their equivalent stress.
+
+Names and formula also stand in :mod:`contactstudy.arrays`; they are written here a second time on purpose, as all
+closed forms, so that a mistake there shows.
+"""
 
 from __future__ import annotations
 
