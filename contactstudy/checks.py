@@ -17,6 +17,13 @@ Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
+BoolArray = npt.NDArray[np.bool_]
+
+
+def store(checked: object, **values: object) -> None:
+    """Store checked values in the fields of a frozen dataclass, from its ``__post_init__``."""
+    for name, value in values.items():
+        object.__setattr__(checked, name, value)
 
 
 def finite(name: str, value: object, unit: str = "") -> float:

@@ -12,13 +12,18 @@ from contactstudy.analysis.discretisation import discretisation_error
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
+from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
 from contactstudy.case.roughness import heights_on
-from contactstudy.contact.solve import solve_contact
+from contactstudy.checks import FloatArray
+from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.fields.positions import Positions
-from contactstudy.fields.stress import end_traction_residual, stress_field
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.stress import end_traction_residual, stress_dataset
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
@@ -34,7 +39,10 @@ WINDOWS = (2.0, 3.0, 5.0, 8.0)
 contact is wider than the line contact of the same load."""
 
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
+"""Depths at which `end_traction_residual` looks at the ends, over the Hertz half-width."""
+
 RESIDUAL_POSITIONS = (0.0, 0.5, 0.9, 1.1)
+"""Positions along y, likewise."""
 
 
 def solve(
@@ -98,50 +106,44 @@ def solve(
     """
     checks.instance("case", case, Case, "a Case")
     if grid is None:
-        grid, gap, result = _with_room(case, roughness, tolerance)
+        contact = _with_room(case, roughness, tolerance)
+        grid = contact.shape.grid
     else:
         checks.instance("grid", grid, Grid, "a Grid")
-        gap = _initial_gap(case, grid, roughness)
-        result = _contact(case, gap, tolerance)
+        contact = _contact(case, grid, roughness, tolerance)
+    result = _labelled(case, contact)
     if error_estimate:
         if min(grid.shape) < LEAST_CELLS:
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
         if roughness is not None:
             raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
-        coarse = _contact(case, _initial_gap(case, grid.coarsened(), None), tolerance)
+        coarse = _labelled(case, _contact(case, grid.coarsened(), None, tolerance))
         result = result.assign(discretisation_error(result, coarse).data_vars)
     half_width = case.hertz_half_width
-    result["initial_gap"] = gap
+    result["initial_gap"] = (("x", "y"), contact.shape.gap.values)
     result["hertz_half_width"] = half_width
     result["hertz_max_pressure"] = case.hertz_max_pressure
-    pressure = result["pressure"].values
+    loads = sliding(contact.pressure, case.friction)
     result["end_traction_residual"] = end_traction_residual(
-        case.body,
-        pressure,
-        case.friction,
-        grid,
-        half_width * np.array(RESIDUAL_POSITIONS),
-        half_width * np.array(RESIDUAL_DEPTHS),
+        case.body, loads, grid, half_width * np.array(RESIDUAL_POSITIONS), half_width * np.array(RESIDUAL_DEPTHS)
     )
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z
-        field = stress_field(case.body, result["pressure"], case.friction, x, y, depths)
+        field = stress_dataset(case.body, loads, grid, field_positions(case.body, grid, x, y, depths))
         if x is not None or y is not None:
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
     return describe(result, "roller on an elastic body: contact and stresses")
 
 
-def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
-    """Grid, initial gap and contact of a case on the first of some wider and wider windows that holds it.
+def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> Contact:
+    """Contact of a case on the first of some wider and wider windows that holds it.
 
     Rough surfaces are known where they were measured or made: their window is the first.
     """
 
-    def within(window: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
-        grid = choose_grid(case, window=window, margin=2 * window)
-        gap = _initial_gap(case, grid, roughness)
-        return grid, gap, _contact(case, gap, tolerance)
+    def within(window: float) -> Contact:
+        return _contact(case, choose_grid(case, window=window, margin=2 * window), roughness, tolerance)
 
     *narrower, widest = WINDOWS if roughness is None else WINDOWS[:1]
     for window in narrower:
@@ -150,7 +152,7 @@ def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> 
     return within(widest)
 
 
-def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.DataArray:
+def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> FloatArray:
     """Gap of a case before deformation, less the heights of its rough surfaces."""
     clearance = case.gap(grid)
     if not np.isfinite(clearance).any():
@@ -160,30 +162,35 @@ def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.D
             f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
             "move the roller by end_distance, or take more cells along x",
         )
-    if roughness is not None:
-        clearance = clearance - heights_on(grid, roughness)
-    return xr.DataArray(clearance, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    return clearance if roughness is None else clearance - heights_on(grid, roughness)
 
 
-def _contact(case: Case, gap: xr.DataArray, tolerance: float) -> xr.Dataset:
-    """Contact of a case with a given gap."""
+def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: float) -> Contact:
+    """Contact of a case on given cells."""
+    gap = _initial_gap(case, grid, roughness)
+    shape = Shape(
+        case.body,
+        grid,
+        ArrayKey(gap),
+        Prescribed(case.normal_load, case.load_position).checked(gap, grid),
+        case.counterbody,
+        case.friction if case.coupled else 0.0,
+    )
     try:
-        result = solve_contact(
-            case.body,
-            gap,
-            case.normal_load,
-            case.friction,
-            case.coupled,
-            load_position=case.load_position,
-            counterbody=case.counterbody,
-            tolerance=tolerance,
-        )
+        contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))
     except WindowError as error:
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
         raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
-    _check_on_its_length(case, gap, result)
+    _check_on_its_length(case, contact)
+    return contact
+
+
+def _labelled(case: Case, contact: Contact) -> xr.Dataset:
+    """Label the contact of a case; its tilt includes the case's own."""
+    grid = contact.shape.grid
+    result = contact_dataset(contact, case.friction, x=grid.x, y=grid.y)
     result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
     result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
     return result
@@ -196,12 +203,12 @@ def _inclination(case: Case) -> str:
     return f"tilt = {case.tilt:g} rad"
 
 
-def _check_on_its_length(case: Case, gap: xr.DataArray, result: xr.Dataset) -> None:
+def _check_on_its_length(case: Case, contact: Contact) -> None:
     """Raise if a tilted roller has left its length and stands on its end."""
     if not case.tilt and case.load_position is None:
         return
-    facing = np.flatnonzero(np.isfinite(gap.values).any(axis=1))
-    touching = np.flatnonzero(result["pressure"].values.any(axis=1))
+    facing = np.flatnonzero(np.isfinite(contact.shape.gap.values).any(axis=1))
+    touching = np.flatnonzero(contact.pressure.any(axis=1))
     at_end = touching[0] == facing[0] or touching[-1] == facing[-1]
     length = touching.size * case.contact_length / facing.size
     if at_end and length < LEAST_CONTACT * case.hertz_half_width < case.contact_length:
@@ -260,6 +267,6 @@ def roller_stress(
     if case.counterbody is None:
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
     values, grid = labelled_cells("pressure", pressure)
-    own = case.counterbody.own_grid(grid)
-    carried = xr.DataArray(case.counterbody.load_on(grid, values), coords={"x": own.x, "y": own.y}, dims=("x", "y"))
-    return stress_field(case.counterbody.body, carried, -case.friction, x, y, z)
+    body, own = case.counterbody.body, case.counterbody.own_grid(grid)
+    loads = sliding(case.counterbody.load_on(grid, values), -case.friction)
+    return stress_dataset(body, loads, own, field_positions(body, own, x, y, z))

@@ -14,7 +14,7 @@ from typing import TypeVar
 import numpy as np
 
 from contactstudy import FiniteLengthSpace, HalfSpace, Study, solve, solve_contact, stress_field
-from contactstudy.fields.surface import surface_operator
+from contactstudy.fields.surface import OperatorRequest, surface_operator
 from contactstudy.study.setup import build_setup
 from contactstudy.verification import run
 from contactstudy.verification.load_cases import LINE_LOAD
@@ -111,7 +111,7 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
         f"grid of one case, L/a = {case.body.extent[1] / case.hertz_half_width:.0f}",
         f"{grid.shape[0]} x {grid.shape[1]} cells",
     )
-    seconds, _ = timed(lambda: surface_operator(case.body, grid, tangential=False))
+    seconds, _ = timed(lambda: surface_operator(OperatorRequest(case.body, grid)))
     yield "building the operator", f"{seconds:.1f} s"
     seconds, result = timed(lambda: solve(case, grid, stresses=False))
     yield "contact, and the traction left on the ends", f"{seconds:.1f} s"

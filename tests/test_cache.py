@@ -1,30 +1,118 @@
-"""What is kept, and what is dropped first."""
+"""What is kept, what is dropped first, and what threads share."""
 
 from __future__ import annotations
 
-from contactstudy.cache import BoundedCache
+from collections.abc import Callable, Iterator
+from threading import Barrier, Thread
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, cache
+from contactstudy.cache import ArrayKey, kept
 
 
-def test_the_least_recently_used_is_dropped_first():
-    made = []
+@pytest.fixture(autouse=True)
+def fresh() -> Iterator[None]:
+    cache.clear()
+    yield
+    cache.limit(cache.LIMIT)
+    cache.clear()
 
+
+def recorded(kind: str) -> tuple[Callable[[str], str], list[str]]:
+    """Return a maker that keeps strings as large as they are long, and the list of what it has made."""
+    made: list[str] = []
+
+    @kept(kind, len)
     def make(name: str) -> str:
         made.append(name)
         return name
 
-    cache = BoundedCache(10, len)
+    return make, made
+
+
+def test_the_least_recently_used_is_dropped_first() -> None:
+    cache.limit(10)
+    make, made = recorded("letters")
     for name in ("aaaa", "bbbb", "aaaa", "cccc"):
-        assert cache.get(name, lambda name=name: make(name)) == name
+        assert make(name) == name
     assert made == ["aaaa", "bbbb", "cccc"]
-    cache.get("aaaa", lambda: make("aaaa"))
+    make("aaaa")
     assert made == ["aaaa", "bbbb", "cccc"]
-    cache.get("bbbb", lambda: make("bbbb"))
+    make("bbbb")
     assert made[-1] == "bbbb"
 
 
-def test_the_newest_is_kept_however_large():
-    cache = BoundedCache(3, len)
-    first = cache.get(1, lambda: "larger than all")
-    assert cache.get(1, lambda: "never made") is first
-    cache.get(2, lambda: "also larger")
-    assert cache.get(1, lambda: "made again") == "made again"
+def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
+    cache.limit(5)
+    make, made = recorded("letters")
+    make("aaaa")
+    make("larger than all")
+    make("larger than all")
+    make("aaaa")
+    assert made == ["aaaa", "larger than all", "larger than all"]
+
+
+def test_kinds_do_not_meet() -> None:
+    first, _ = recorded("first")
+    second, made = recorded("second")
+    first("same")
+    second("same")
+    assert made == ["same"]
+    kinds = cache.info().kinds
+    assert (kinds["first"].values, kinds["second"].values) == (1, 1)
+
+
+def test_info_counts_what_is_made_and_reused() -> None:
+    make, _ = recorded("counted")
+    for name in ("aa", "aa", "bbb"):
+        make(name)
+    found = cache.info().kinds["counted"]
+    assert (found.values, found.nbytes, found.made, found.reused) == (2, 5, 2, 1)
+    assert "counted: 2 in" in str(cache.info())
+
+
+def test_a_smaller_limit_drops_at_once_and_keeps_the_most_recent() -> None:
+    make, made = recorded("letters")
+    for name in ("aaaa", "bbbb", "cccc"):
+        make(name)
+    cache.limit(8)
+    assert cache.info().nbytes == 8
+    make("cccc")
+    make("bbbb")
+    assert made == ["aaaa", "bbbb", "cccc"]
+    cache.limit(0)
+    assert cache.info().nbytes == 0
+
+
+@pytest.mark.parametrize("bound", [-1, 1.5, "1 GB"])
+def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
+    with pytest.raises(InvalidInputError, match="nbytes"):
+        cache.limit(bound)  # type: ignore[arg-type]
+
+
+def test_threads_share_one_value() -> None:
+    barrier, found = Barrier(4), []
+
+    @kept("shared", lambda array: array.nbytes)
+    def make(size: int) -> np.ndarray:
+        barrier.wait()  # all four have missed
+        return np.zeros(size)
+
+    threads = [Thread(target=lambda: found.append(make(8))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(value is found[0] for value in found)
+    assert cache.info().nbytes == 64
+
+
+def test_arrays_are_compared_by_values_shape_and_type() -> None:
+    key = ArrayKey(np.zeros((2, 3)))
+    assert key == ArrayKey(np.zeros((3, 2)).T)
+    assert key != ArrayKey(np.zeros((3, 2)))
+    assert key != ArrayKey(np.zeros((2, 3), np.float32))
+    with pytest.raises(ValueError, match="read-only"):
+        key.values[0] = 1.0

@@ -10,8 +10,8 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-# Coordinates read back from files in single precision are still the same uniform grid.
 SPACING_TOLERANCE = 1e-4
+"""Deviation of a spacing, over a cell, of cells that count as uniform: coordinates in single precision do. Accuracy."""
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Grid:
             low, high = checks.finite(name, low, "metres"), checks.finite(name, high, "metres")
             if not low < high:
                 raise InvalidInputError(name, (low, high), "an increasing pair (metres)")
-            object.__setattr__(self, name, (low, high))
+            checks.store(self, **{name: (low, high)})
         for name in ("cells_x", "cells_y"):
-            object.__setattr__(self, name, checks.count(name, getattr(self, name)))
+            checks.store(self, **{name: checks.count(name, getattr(self, name))})
 
     @classmethod
     def from_centres(cls, x: object, y: object) -> Grid:

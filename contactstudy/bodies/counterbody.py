@@ -11,8 +11,8 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-# An end of the counterbody nearer than this part of a cell to a border between cells lies on it.
 ALIGNED = 1e-6
+"""Part of a cell within which an end of the counterbody lies on a border between cells. Accuracy."""
 
 
 @dataclass(frozen=True)

@@ -36,11 +36,11 @@ class Material:
 
     def __post_init__(self) -> None:
         """Check the constants."""
-        object.__setattr__(self, "young", checks.positive("young", self.young, "Pa"))
+        checks.store(self, young=checks.positive("young", self.young, "Pa"))
         poisson = checks.finite("poisson", self.poisson)
         if not -1 < poisson <= 0.5:
             raise InvalidInputError("poisson", self.poisson, "in (-1, 0.5]")
-        object.__setattr__(self, "poisson", poisson)
+        checks.store(self, poisson=poisson)
 
     @property
     def shear_modulus(self) -> float:
@@ -51,3 +51,16 @@ class Material:
     def plane_strain_modulus(self) -> float:
         """Plane-strain modulus ``E* = E / (1 - nu**2)``, Pa: the contact modulus against a rigid roller."""
         return self.young / (1 - self.poisson**2)
+
+
+def contact_modulus(first: Material, second: Material | None = None) -> float:
+    """Contact modulus ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2`` of two bodies, Pa; the second rigid if None.
+
+    Examples
+    --------
+    >>> steel = Material(young=210e9, poisson=0.3)
+    >>> contact_modulus(steel, steel) / contact_modulus(steel)
+    0.5
+    """
+    own = first.plane_strain_modulus
+    return own if second is None else 1 / (1 / own + 1 / second.plane_strain_modulus)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.errors import InvalidInputError
 
@@ -51,6 +52,9 @@ class Part(NamedTuple):
     freed: FreedEnds | None = None
 
 
+END_TOLERANCE = 1e-3
+"""Distance, over a cell, between the grid's edge and the body's end that rounding may leave. Accuracy."""
+
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
@@ -79,6 +83,16 @@ class Body:
     def parts(self) -> tuple[Part, ...]:
         """Solutions whose weighted sum is this body's."""
         return (Part(1.0, self.extent),)
+
+    def check_span(self, grid: Grid) -> None:
+        """Raise unless a grid covers the body's x from its end, or from end to end."""
+        low, high = self.extent
+        start, stop = grid.x_range
+        tolerance = END_TOLERANCE * grid.dx
+        if np.isfinite(low) and abs(start - low) > tolerance:
+            raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
+        if np.isfinite(high) and abs(stop - high) > tolerance:
+            raise InvalidInputError("x", f"cells up to {stop:g} m", f"cells that end at the free end, {high:g} m")
 
     @property
     def unbounded_row(self) -> float:
@@ -213,7 +227,7 @@ class FiniteLengthSpace(EndedBody):
     def __post_init__(self) -> None:
         """Check length and material."""
         super().__post_init__()
-        object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
+        checks.store(self, length=checks.positive("length", self.length, "metres"))
 
     @property
     def extent(self) -> Extent:

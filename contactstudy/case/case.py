@@ -10,6 +10,7 @@ from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -78,18 +79,22 @@ class Case:
     load_position: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the parameters and complete the load."""
+        """Check the parameters."""
         allowed = (
             "elastic, a HalfSpace, a QuarterSpace or a FiniteLengthSpace: two rigid bodies have no pressure to find"
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
-        object.__setattr__(self, "friction", checks.finite("friction", self.friction))
-        if self.end_distance is not None:
-            object.__setattr__(self, "end_distance", checks.finite("end_distance", self.end_distance, "metres"))
-        object.__setattr__(self, "tilt", small_tilt(self.tilt))
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        if self.end_distance is None and self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
+        checks.store(self, friction=checks.finite("friction", self.friction), tilt=small_tilt(self.tilt))
+        self._check_place()
+        self._check_load()
+
+    def _check_place(self) -> None:
+        """Raise unless the roller lies over the body, and the load on both."""
+        if self.end_distance is not None:
+            checks.store(self, end_distance=checks.finite("end_distance", self.end_distance, "metres"))
+        elif self.roller.length > (extent := self.body.extent[1] - self.body.extent[0]):
             raise InvalidInputError(
                 "roller.length",
                 self.roller.length,
@@ -109,20 +114,21 @@ class Case:
             if not start < position < stop:
                 allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
                 raise InvalidInputError("load_position", position, allowed)
-            object.__setattr__(self, "load_position", position)
+            checks.store(self, load_position=position)
+
+    def _check_load(self) -> None:
+        """Raise unless one of pressure and load is given, and of a size that a contact can have."""
         if (self.max_pressure is None) == (self.load is None):
             raise InvalidInputError(
                 "max_pressure, load", (self.max_pressure, self.load), "exactly one of the two, the other None"
             )
-        if self.max_pressure is not None:
-            object.__setattr__(self, "max_pressure", checks.positive("max_pressure", self.max_pressure, "Pa"))
-        if self.load is not None:
-            object.__setattr__(self, "load", checks.positive("load", self.load, "N"))
+        name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
+        value = checks.positive(name, getattr(self, name), unit)
+        checks.store(self, **{name: value})
         if self.hertz_half_width > LARGEST_HALF_WIDTH * self.roller.radius:
-            name = "load" if self.max_pressure is None else "max_pressure"
             raise InvalidInputError(
                 name,
-                getattr(self, name),
+                value,
                 f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
                 f"of the roller's radius, {self.roller.radius:g} m",
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
@@ -151,10 +157,7 @@ class Case:
     @property
     def modulus(self) -> float:
         """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, the roller's 0 if rigid."""
-        own = self.body.material.plane_strain_modulus
-        if self.roller.material is None:
-            return own
-        return 1 / (1 / own + 1 / self.roller.material.plane_strain_modulus)
+        return contact_modulus(self.body.material, self.roller.material)
 
     @property
     def counterbody(self) -> Counterbody | None:

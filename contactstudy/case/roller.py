@@ -51,8 +51,8 @@ class Roller:
 
     def __post_init__(self) -> None:
         """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
-        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
-        object.__setattr__(self, "length", checks.positive("length", self.length, "metres"))
+        checks.store(self, radius=checks.positive("radius", self.radius, "metres"))
+        checks.store(self, length=checks.positive("length", self.length, "metres"))
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
         if self.material is not None:
             checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")

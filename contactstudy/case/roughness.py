@@ -19,8 +19,8 @@ from contactstudy.arrays.variables import labels, named
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-# Cells nearer to each other than this part of their size are the same.
 SAME_PLACE = 1e-3
+"""Part of a cell by which two cells may differ and be the same. Accuracy."""
 
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:

@@ -15,9 +15,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray
 
 Operator = Callable[[FloatArray], FloatArray]
+
+OVERLAP = 0.1
+"""Part of the tolerated violation from which on an overlapping cell enters the contact. Speed."""
+
+LEAST_ENTRY = 1e-12
+"""Least pressure, over the largest, of a cell that enters the contact: it has to be in it. Speed."""
+
+LEAST_RESTORED = 0.1
+"""Least factor, over the mean one, when a pressure is tilted to restore its moment: it must not change sign. Speed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +65,7 @@ class Resultants:
         if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
             return np.asarray(pressure * (self.total / sums[0]))
         constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
-        return np.asarray(pressure * np.maximum(constant + slope * self.lever, 0.1 * constant))
+        return np.asarray(pressure * np.maximum(constant + slope * self.lever, LEAST_RESTORED * constant))
 
 
 @dataclass(frozen=True)
@@ -73,12 +82,15 @@ class ContactIterate:
         Applications of the operator.
     converged : bool
         Whether the tolerance was reached.
+    history : tuple of float
+        Largest violation of the gap conditions over the displacement's variation, per iteration.
     """
 
     pressure: FloatArray
     motion: tuple[float, ...]
     applications: int
     converged: bool
+    history: tuple[float, ...] = ()
 
 
 def solve_complementarity(
@@ -113,86 +125,136 @@ def solve_complementarity(
     -------
     ContactIterate
     """
-    possible = np.isfinite(gap)
-    pressure = resultants.restored(start)
-    applications = 1
-    sunk = operator(pressure)
-    if resultants.total is None:
-        # The best multiple of the guess: the one that the prescribed approach does as much work on as the displacement.
-        work = -float((pressure * np.where(possible, gap, 0.0)).sum())
-        if work <= 0:  # a guess that lies where the shape does not reach
-            pressure = np.where(gap < 0, 1.0, 0.0)
-            sunk, work = operator(pressure), -float(gap[gap < 0].sum())
-            applications += 1
-        factor = work / float((pressure * sunk).sum())
-        pressure, sunk = factor * pressure, factor * sunk
-    motions = resultants.motions
-    direction = np.zeros_like(pressure)
-    previous = np.zeros_like(pressure)
-    slope = 0.0
-    contact = pressure > 0
-    weights: list[FloatArray] = []
-    gram = np.zeros((len(motions), len(motions)))
-    motion: FloatArray = np.zeros(len(motions))
-    converged, fresh = False, True
+    state = _State(operator, preconditioner, gap, resultants, start)
+    converged = False
+    history: list[float] = []
     for _ in range(max_iterations):
-        if fresh:
-            weights = [np.where(contact, preconditioner(np.where(contact, each, 0.0)), 0.0) for each in motions]
-            gram = np.array([[float((weight * each).sum()) for each in motions] for weight in weights])
-        height = np.where(possible, gap + sunk, np.inf)
-        inside = np.where(contact, height, 0.0)
-        # Weighted so, the descent has no resultants: the prescribed ones stay as they are.
+        opening = state.opening()
+        residual = np.where(state.contact, opening, 0.0)
+        violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
+        scale = np.ptp(state.sunk)
+        history.append(float(violation / scale))
+        step, along, curvature = state.search(residual)
+        moved = state.pressure - step * state.direction
+        change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
+        closed = ~state.contact & (opening < -OVERLAP * tolerance * scale)
+        if (moved < 0).any() or closed.any():
+            state.change_area(moved, closed, opening)
+        else:
+            state.pressure, state.sunk, state.fresh = moved, state.sunk - step * along, False
+            if violation <= tolerance * scale and change <= tolerance:
+                converged = True
+                break
+        if curvature <= 0:
+            break
+    pressure = resultants.restored(state.pressure)
+    motion = tuple(float(amount) for amount in state.motion)
+    return ContactIterate(pressure, motion, state.applications, converged, tuple(history))
+
+
+class _State:
+    """Where the iteration stands.
+
+    Attributes
+    ----------
+    pressure, sunk : array (x, y)
+        Pressure and the displacement that it makes.
+    contact : bool array (x, y)
+        Cells that touch.
+    fresh : bool
+        Whether the contact has just changed, so that the search begins anew.
+    motion : array
+        Rigid motions that the pressure on the present contact is conjugate to.
+    direction : array (x, y)
+        Direction of the search.
+    applications : int
+        Applications of the operator so far.
+    """
+
+    def __init__(
+        self, operator: Operator, preconditioner: Operator, gap: FloatArray, resultants: Resultants, start: FloatArray
+    ) -> None:
+        self._operator, self._preconditioner = operator, preconditioner
+        self._gap, self._possible = gap, np.isfinite(gap)
+        self._resultants, self._motions = resultants, resultants.motions
+        self.applications = 0
+        self.pressure = resultants.restored(start)
+        self.sunk = self._apply(self.pressure)
+        if resultants.total is None:
+            self._scale_guess()
+        self.contact = self.pressure > 0
+        self.fresh = True
+        self.motion: FloatArray = np.zeros(len(self._motions))
+        self.direction: FloatArray = np.zeros_like(self.pressure)
+        self._residual: FloatArray = np.zeros_like(self.pressure)
+        self._slope = 0.0
+        self._weights: list[FloatArray] = []
+        self._gram: FloatArray = np.zeros((len(self._motions), len(self._motions)))
+
+    def _apply(self, pressure: FloatArray) -> FloatArray:
+        self.applications += 1
+        return self._operator(pressure)
+
+    def _scale_guess(self) -> None:
+        """Take the multiple of the guess on which the prescribed approach does as much work as the displacement."""
+        gap = self._gap
+        work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
+        if work <= 0:  # a guess that lies where the shape does not reach
+            self.pressure = np.where(gap < 0, 1.0, 0.0)
+            self.sunk, work = self._apply(self.pressure), -float(gap[gap < 0].sum())
+        factor = work / float((self.pressure * self.sunk).sum())
+        self.pressure, self.sunk = factor * self.pressure, factor * self.sunk
+
+    def opening(self) -> FloatArray:
+        """Gap after the rigid motion that leaves the descent without resultants: the prescribed ones stay."""
+        motions = self._motions
+        if self.fresh:
+            self._weights = [
+                np.where(self.contact, self._preconditioner(np.where(self.contact, each, 0.0)), 0.0) for each in motions
+            ]
+            self._gram = np.array([[float((weight * each).sum()) for each in motions] for weight in self._weights])
+        height = np.where(self._possible, self._gap + self.sunk, np.inf)
+        inside = np.where(self.contact, height, 0.0)
         if motions:
-            works = [float((weight * inside).sum()) for weight in weights]
+            works = [float((weight * inside).sum()) for weight in self._weights]
             # Least squares, for a contact of one column of cells cannot tilt.
-            motion = np.asarray(np.array(works) / gram[0] if len(motions) == 1 else np.linalg.lstsq(gram, works)[0])
-        level = sum((amount * each for amount, each in zip(motion, motions, strict=True)), np.zeros((1, 1)))
-        opening = height - level
-        residual = np.where(contact, opening, 0.0)
-        violation = np.where(contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
-        scale = np.ptp(sunk)
-        descent = np.where(contact, preconditioner(residual), 0.0)
-        new_slope = float((residual * descent).sum())
-        if fresh or slope == 0.0:
+            self.motion = np.asarray(
+                np.array(works) / self._gram[0] if len(motions) == 1 else np.linalg.lstsq(self._gram, works)[0]
+            )
+        level = sum((amount * each for amount, each in zip(self.motion, motions, strict=True)), np.zeros((1, 1)))
+        return np.asarray(height - level)
+
+    def search(self, residual: FloatArray) -> tuple[float, FloatArray, float]:
+        """Turn the direction; return the step along it, what it displaces and its curvature."""
+        descent = np.where(self.contact, self._preconditioner(residual), 0.0)
+        if self.fresh or self._slope == 0.0:
             direction = descent
         else:
             # Polak and Ribiere's form forgives that the preconditioner is not exactly symmetric on the contact.
-            direction = descent + float(((residual - previous) * descent).sum()) / slope * direction
-        slope, previous = new_slope, residual
-        direction = np.where(contact, direction, 0.0)
-        along = operator(direction)
-        applications += 1
-        curvature = float((direction * along).sum())
-        step = float((residual * direction).sum()) / curvature if curvature > 0 else 0.0
-        moved = pressure - step * direction
-        closed = ~contact & (opening < -0.1 * tolerance * scale)
-        clipped = moved < 0
-        change = abs(step) * float(np.abs(direction).sum() / pressure.sum())
-        fresh = bool(clipped.any() or closed.any())
-        if fresh:
-            moved[clipped] = 0.0
-            if closed.any():
-                # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
-                scaled = preconditioner(np.where(closed, opening, 0.0))
-                moved[closed] = np.maximum(-scaled[closed], 1e-12 * moved.max())
-            moved = resultants.restored(moved)
-            settled = operator(moved)
-            applications += 1
-            # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
-            part = _part_that_descends(moved - pressure, settled - sunk, opening) if closed.any() else 1.0
-            pressure = moved if part == 1.0 else pressure + part * (moved - pressure)
-            sunk = settled if part == 1.0 else sunk + part * (settled - sunk)
-            contact = pressure > 0
-        else:
-            pressure = moved
-            sunk = sunk - step * along
-        if not fresh and violation <= tolerance * scale and change <= tolerance:
-            converged = True
-            break
-        if curvature <= 0:
-            break
-    pressure = resultants.restored(pressure)
-    return ContactIterate(pressure, tuple(float(amount) for amount in motion), applications, converged)
+            turn = float(((residual - self._residual) * descent).sum()) / self._slope
+            direction = descent + turn * self.direction
+        self._slope, self._residual = float((residual * descent).sum()), residual
+        self.direction = np.where(self.contact, direction, 0.0)
+        along = self._apply(self.direction)
+        curvature = float((self.direction * along).sum())
+        step = float((residual * self.direction).sum()) / curvature if curvature > 0 else 0.0
+        return step, along, curvature
+
+    def change_area(self, moved: FloatArray, closed: BoolArray, opening: FloatArray) -> None:
+        """Take cells out of the contact whose pressure has become negative, and cells that overlap into it."""
+        moved[moved < 0] = 0.0
+        if closed.any():
+            # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
+            scaled = self._preconditioner(np.where(closed, opening, 0.0))
+            moved[closed] = np.maximum(-scaled[closed], LEAST_ENTRY * moved.max())
+        moved = self._resultants.restored(moved)
+        settled = self._apply(moved)
+        # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
+        part = _part_that_descends(moved - self.pressure, settled - self.sunk, opening) if closed.any() else 1.0
+        self.pressure = moved if part == 1.0 else self.pressure + part * (moved - self.pressure)
+        self.sunk = settled if part == 1.0 else self.sunk + part * (settled - self.sunk)
+        self.contact = self.pressure > 0
+        self.fresh = True
 
 
 def _part_that_descends(change: FloatArray, sinking: FloatArray, opening: FloatArray) -> float:

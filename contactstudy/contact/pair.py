@@ -1,8 +1,8 @@
-"""Two elastic bodies pressed on each other: their displacements add up, each on a grid of its own along x."""
+"""Two elastic bodies pressed on each other: their displacements add up, each on cells along x that suit it."""
 
 from __future__ import annotations
 
-from copy import copy
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -12,48 +12,77 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.surface import SurfaceOperator, surface_operator
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.kernels.load import Load
+
+
+@dataclass(frozen=True, eq=False)
+class Shares:
+    """How much of each cell of one body each cell of the other takes; `to` carries loads over, `back` displacements."""
+
+    to: FloatArray
+    back: FloatArray
+
+    @classmethod
+    def of(cls, counterbody: Counterbody, grid: Grid) -> Shares | None:
+        """Shares of the counterbody's cells in those of `grid`; None if they are the same cells."""
+        overlap = counterbody.overlap(grid)
+        if overlap.shape[0] == overlap.shape[1] and np.allclose(overlap, grid.dx * np.eye(len(overlap))):
+            return None
+        return cls(overlap / counterbody.own_grid(grid).dx, overlap.T / grid.dx)
+
+    def joined(self) -> Shares:
+        """Shares of cells of twice the size in each other."""
+        return Shares(_joined(self.to), _joined(self.back))
+
+
+def _joined(shares: FloatArray) -> FloatArray:
+    rows, columns = shares.shape
+    return np.asarray(0.5 * shares.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)))
 
 
 class PairOperator:
     """Displacement of two bodies towards each other, as one operator on the first one's grid.
 
     With the loads carried over to the second body's cells and its displacements back by the same overlaps, the sum is
-    symmetric as each part is. The friction acts on the second body the other way round.
+    symmetric as each part is. A traction acts on the second body the other way round.
 
     Parameters
     ----------
-    body : Body
-        The first body.
-    counterbody : Counterbody
-        The second.
-    grid : Grid
-        Cells on the first body.
-    tangential : bool
-        Whether the displacement from traction is needed.
+    body, counterbody : SurfaceOperator
+        Operators of the two bodies.
+    shares : Shares or None
+        How their cells lie on each other; None if they are the same.
     """
 
-    def __init__(self, body: Body, counterbody: Counterbody, grid: Grid, *, tangential: bool) -> None:
-        self.body = surface_operator(body, grid, tangential=tangential)
-        own = counterbody.own_grid(grid)
-        self.counterbody = surface_operator(counterbody.body, own, tangential=tangential)
-        overlap = counterbody.overlap(grid)
-        identity = overlap.shape[0] == overlap.shape[1] and np.allclose(overlap, grid.dx * np.eye(len(overlap)))
-        self._to_own = None if identity else overlap / own.dx
-        self._from_own = None if identity else overlap.T / grid.dx
-        first, second = (each.material.plane_strain_modulus for each in (body, counterbody.body))
+    def __init__(self, body: SurfaceOperator, counterbody: SurfaceOperator, shares: Shares | None) -> None:
+        self.body, self.counterbody, self._shares = body, counterbody, shares
+        first, second = (operator.body.material.plane_strain_modulus for operator in (body, counterbody))
         self._softer = 1 + first / second
 
-    def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
-        """Displacement (m) of the cell centres under `pressure` and, if given, `traction` on the first body (Pa)."""
-        own = self.counterbody(self._carried(pressure), None if traction is None else -self._carried(traction))
-        return self.body(pressure, traction) + self._returned(own)
+    @classmethod
+    def of(cls, body: Body, counterbody: Counterbody, grid: Grid, loads: tuple[Load, ...]) -> PairOperator:
+        """Operator of two bodies for `loads` of the given directions, on the cells of the first."""
+        own = counterbody.own_grid(grid)
+        return cls(
+            surface_operator(OperatorRequest(body, grid, loads)),
+            surface_operator(OperatorRequest(counterbody.body, own, loads)),
+            Shares.of(counterbody, grid),
+        )
+
+    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
+        """Displacement (m) of the cell centres under `loads` on the first body (Pa)."""
+        reaction = {
+            load: self._carried(cells) if load is Load.NORMAL else -self._carried(cells)
+            for load, cells in loads.items()
+        }
+        return self.body(loads) + self._returned(self.counterbody(reaction))
 
     def _carried(self, load: FloatArray) -> FloatArray:
-        return load if self._to_own is None else np.asarray(self._to_own @ load)
+        return load if self._shares is None else np.asarray(self._shares.to @ load)
 
     def _returned(self, displacement: FloatArray) -> FloatArray:
-        return displacement if self._from_own is None else np.asarray(self._from_own @ displacement)
+        return displacement if self._shares is None else np.asarray(self._shares.back @ displacement)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that closes the gap."""
@@ -67,17 +96,8 @@ class PairOperator:
         """
         if self.counterbody.grid.cells_x % 2:
             return ScaledOperator(self.body.coarse, self._softer)
-        coarse = copy(self)
-        coarse.body, coarse.counterbody = self.body.coarse, self.counterbody.coarse
-        if self._to_own is not None and self._from_own is not None:
-            coarse._to_own, coarse._from_own = _joined(self._to_own), _joined(self._from_own)
-        return coarse
-
-
-def _joined(shares: FloatArray) -> FloatArray:
-    """Shares of cells of twice the size in each other."""
-    rows, columns = shares.shape
-    return np.asarray(0.5 * shares.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)))
+        shares = self._shares.joined() if self._shares is not None else None
+        return PairOperator(self.body.coarse, self.counterbody.coarse, shares)
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +107,9 @@ class ScaledOperator:
     operator: SurfaceOperator
     factor: float
 
-    def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
-        """Displacement (m) of the cell centres."""
-        return self.factor * self.operator(pressure, traction)
+    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
+        """Displacement (m) of the cell centres under `loads` (Pa)."""
+        return self.factor * self.operator(loads)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that sinks the cells by `gap`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Protocol
 
@@ -11,21 +12,35 @@ from scipy import ndimage
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.contact.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
+from contactstudy.kernels.load import Load
 
 COUPLED_ROUNDS = 60
-# The first rounds of a coupled contact are solved roughly, later ones to this part of what the last one changed.
+"""Rounds of a coupled contact after which it counts as not converged. Speed."""
+
 ROUND_ACCURACY = 0.03
+"""Part of a round's change to which the next one is solved. Speed."""
+
 ROUGH_TOLERANCE = 1e-2
-# From this many cells on, the contact is first solved on coarser ones, to a tolerance that serves as a guess.
+"""Tolerance of the first coupled round. Speed."""
+
 NESTED_CELLS = 4096
+"""Cells from which on the contact is first solved on coarser ones. Speed."""
+
 COARSE_TOLERANCE = 1e-3
+"""Tolerance of a solution that serves as a guess. Speed."""
+
+GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3
+"""Part of the cells below the level of a first guess, and a depth over the gap's range added to it. Speed."""
+
+OPENING_POWER = 2 / 3
+"""Power of the opening that is linear in the distance from a contact's edge (Johnson, section 5.1). Speed."""
 
 
 class ContactOperator(Protocol):
     """What the contact needs of one body or of two."""
 
-    def __call__(self, pressure: FloatArray, traction: FloatArray | None = None) -> FloatArray:
-        """Displacement (m) of the cell centres."""
+    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
+        """Displacement (m) of the cell centres under `loads` (Pa)."""
         ...
 
     def precondition(self, gap: FloatArray) -> FloatArray:
@@ -97,9 +112,9 @@ def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArr
         squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
         guess = np.sqrt(np.maximum(np.where(possible, _refined(_refined(squared).T).T, 0.0), 0.0))
     else:
-        level = (
-            0.0 if problem.resultants.total is None else np.quantile(gap[possible], 0.4) + 1e-3 * np.ptp(gap[possible])
-        )
+        heights = gap[possible]
+        sinks = problem.resultants.total is not None
+        level = np.quantile(heights, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(heights) if sinks else 0.0
         guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
     return np.asarray(guess if guess.any() else possible.astype(np.float64))
 
@@ -113,10 +128,9 @@ def _continued_square(operator: ContactOperator, problem: ContactProblem, found:
     """
     squared = found.pressure**2
     contact = squared > 0
-    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator(found.pressure)
-    opening = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(found.motion), 0.0)) ** (
-        2 / 3
-    )
+    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: found.pressure})
+    opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(found.motion), 0.0))
+    opening = opened**OPENING_POWER
     inner = contact & ndimage.binary_dilation(~contact)
     outer = (opening > 0) & ndimage.binary_dilation(contact)
     if not inner.any() or not outer.any():
@@ -134,7 +148,7 @@ def _refined(values: FloatArray) -> FloatArray:
 def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
     """Contact without the displacement from friction."""
     return solve_complementarity(
-        operator,
+        lambda pressure: operator({Load.NORMAL: pressure}),
         operator.precondition,
         problem.gap,
         problem.resultants,
@@ -152,22 +166,22 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
     """
     tolerance = max(problem.tolerance, ROUGH_TOLERANCE)
     iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
-    scale = float(np.ptp(operator(iterate.pressure)))
+    scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
     applications = iterate.applications + 1
     bent: FloatArray = np.zeros_like(iterate.pressure)
     change = ROUGH_TOLERANCE
     for _ in range(COUPLED_ROUNDS):
         previous, bent_before = iterate.pressure, bent
-        bent = operator(np.zeros_like(previous), problem.friction * previous)
+        bent = operator({Load.ALONG_Y: problem.friction * previous})
         applications += 1
         # What the friction of this pressure bends the surface otherwise than that of the last one.
         unsettled = float(np.ptp((bent - bent_before)[previous > 0])) / scale
         if max(tolerance, change) <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
-            return ContactIterate(previous, iterate.motion, applications, True)
+            return ContactIterate(previous, iterate.motion, applications, True, iterate.history)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
         iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)
         applications += iterate.applications
         if not iterate.converged:
             break
         change = float(np.abs(iterate.pressure - previous).sum() / iterate.pressure.sum())
-    return ContactIterate(iterate.pressure, iterate.motion, applications, False)
+    return ContactIterate(iterate.pressure, iterate.motion, applications, False, iterate.history)

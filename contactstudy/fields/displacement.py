@@ -8,12 +8,14 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
-from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.fields.surface import REFERENCE_LENGTHS
+from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.part import REFERENCE_LENGTHS
+from contactstudy.fields.positions import Positions, field_positions, labelled_load
 from contactstudy.kernels.displacement import half_space_displacement
-from contactstudy.overlapping.displacement_inside import end_displacement
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.displacement import end_displacement
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -68,9 +70,10 @@ def displacement_field(
     >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
     True
     """
-    grid, values, positions = field_positions(body, pressure, x, y, z)
-    friction = checks.finite("friction", friction)
-    displacement = _displacement(body, values, friction, grid, *positions.axes)
+    grid, values, own = labelled_load(body, pressure)
+    positions = field_positions(body, grid, x, y, z, own)
+    loads = sliding(values, checks.finite("friction", friction))
+    displacement = displacement_under(body, loads, grid, *positions.axes)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     reference = REFERENCE_LENGTHS * body.unbounded_row
     if np.isfinite(reference):
@@ -80,21 +83,39 @@ def displacement_field(
     return describe(fields, "displacements under a prescribed pressure")
 
 
-def _displacement(
-    body: Body, pressure: FloatArray, friction: float, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray
-) -> FloatArray:
-    """Displacements (3, x, y, z) under the pressure and `friction` times as much traction."""
-    tangential = friction != 0
-    fields: FloatArray = np.zeros((1 + tangential, 3, x.size, y.size, z.size))
-    for part in body.parts:
-        reference = REFERENCE_LENGTHS * (part.extent[1] - part.extent[0])
-        fields += part.weight * half_space_displacement(
-            pressure, body.material, grid, x, y, z, extent=part.extent, reference=reference, tangential=tangential
-        )
-        if part.freed and pressure.any():
-            length, mirrored_once = part.freed
-            poisson = body.material.poisson
-            problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
-            from_ends = end_displacement(problem, x, y, z, reference=reference)
-            fields += part.weight / (2 * body.material.shear_modulus) * from_ends
-    return np.asarray(fields[0] + friction * fields[1] if tangential else fields[0])
+def displacement_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+    """Displacements (3, x, y, z), metres."""
+
+    def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, FloatArray]:
+        fields: dict[Load, FloatArray] = {load: np.zeros((3, x.size, y.size, z.size)) for load in directions}
+        for part in body.parts:
+            for load, field in _part_displacement(body, part, directions, cells, grid, x, y, z).items():
+                fields[load] += part.weight * field
+        return fields
+
+    return superposed(loads, unit_fields)
+
+
+def _part_displacement(
+    body: Body,
+    part: Part,
+    loads: tuple[Load, ...],
+    cells: FloatArray,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+) -> dict[Load, FloatArray]:
+    """Displacements (3, x, y, z) of one part of a body, before its weight."""
+    material, extent = body.material, part.extent
+    reference = REFERENCE_LENGTHS * (extent[1] - extent[0])
+    fields = {
+        load: half_space_displacement(load, cells, material, grid, x, y, z, extent=extent, reference=reference)
+        for load in loads
+    }
+    if part.freed and cells.any():
+        length, mirrored_once = part.freed
+        problem = EndProblem(length, material.poisson, cells, loads, grid, Resolution(), mirrored_once)
+        for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
+            fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
+    return fields

@@ -6,13 +6,13 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.positions import Positions
-from contactstudy.fields.surface import REFERENCE_LENGTHS, check_span
-from contactstudy.overlapping.loads import equivalent_loads_of
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.part import REFERENCE_LENGTHS
+from contactstudy.fields.positions import Positions, labelled_load
+from contactstudy.overlapping.equivalent import equivalent_loads_of
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -59,19 +59,20 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     freed = next((part.freed for part in body.parts if part.freed), None)
     if freed is None:
         raise InvalidInputError("body", body, "a body with a free end: a half-space needs no equivalent loads")
-    values, grid = labelled_cells("pressure", pressure)
-    check_span(body, grid)
-    friction = checks.finite("friction", friction)
+    grid, values, (label_x, label_y) = labelled_load(body, pressure)
+    body.check_span(grid)
+    loads = sliding(values, checks.finite("friction", friction))
     depths = checks.coordinates("z", z)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
     length, mirrored_once = freed
-    problem = EndProblem(length, body.material.poisson, values, grid, friction != 0, Resolution(), mirrored_once)
     relative = np.isfinite(length) and not mirrored_once
     reference = REFERENCE_LENGTHS * length if relative else None
-    loads = equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
-    factors = np.array([1.0, friction] if friction else [1.0])
-    added, first, second = (np.tensordot(factors, load, axes=1) for load in loads)
+    problem = EndProblem(length, body.material.poisson, values, tuple(loads), grid, Resolution(), mirrored_once)
+    unit = equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
+    added, first, second = (
+        np.asarray(sum(top.factor * unit[load][i] for load, top in loads.items())) for i in range(3)
+    )
     attributes: dict[str, str | float] = {}
     if reference is not None:
         attributes = {
@@ -84,4 +85,4 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     }
     if np.isfinite(length):
         fields["P_v2"] = (("y", "z"), second, attributes)
-    return describe(xr.Dataset(fields, coords={"x": pressure["x"].values, "y": pressure["y"].values, "z": depths}))
+    return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))

@@ -15,9 +15,9 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.surface import check_span
 
 Positions = Sequence[float] | npt.ArrayLike
+Labels = tuple[FloatArray, FloatArray]
 
 
 class FieldPositions(NamedTuple):
@@ -28,7 +28,7 @@ class FieldPositions(NamedTuple):
     x, y, z : array
         Where to evaluate.
     label_x, label_y : array
-        Coordinates of the result: the pressure's own, unrounded, where no others were asked for.
+        Coordinates of the result: the pressure's own, unrounded, where no others were given.
     """
 
     x: FloatArray
@@ -51,37 +51,43 @@ class FieldPositions(NamedTuple):
 
 
 def field_positions(
-    body: Body, pressure: xr.DataArray, x: Positions | None, y: Positions | None, z: Positions
-) -> tuple[Grid, FloatArray, FieldPositions]:
-    """Grid and values of a pressure, and the positions of a field under it.
+    body: Body, grid: Grid, x: Positions | None, y: Positions | None, z: Positions, own: Labels | None = None
+) -> FieldPositions:
+    """Positions of a field in a body.
 
     Parameters
     ----------
     body : Body
         The body.
-    pressure : DataArray (x, y)
-        Pressure on cell centres.
+    grid : Grid
+        Cells of the load.
     x, y : sequence of float or None
-        Positions, metres; None: the pressure's own.
+        Positions, metres; None: the cell centres.
     z : sequence of float
         Depths, metres.
+    own : pair of array, optional
+        Labels of the cell centres, where they differ from the grid's by rounding.
 
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind, a position lies outside the body, or the grid does not fit it.
+        If a position lies outside the body, or the grid does not fit it.
     """
-    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    values, grid = labelled_cells("pressure", pressure)
-    check_span(body, grid)
+    body.check_span(grid)
     at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", x), grid)
     at_y = grid.y if y is None else checks.coordinates("y", y)
     at_z = checks.coordinates("z", z)
     if (at_z < 0).any():
         raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
-    label_x = pressure["x"].values if x is None else at_x
-    label_y = pressure["y"].values if y is None else at_y
-    return grid, values, FieldPositions(at_x, at_y, at_z, label_x, label_y)
+    own_x, own_y = own or (grid.x, grid.y)
+    return FieldPositions(at_x, at_y, at_z, own_x if x is None else at_x, own_y if y is None else at_y)
+
+
+def labelled_load(body: Body, pressure: xr.DataArray) -> tuple[Grid, FloatArray, Labels]:
+    """Grid, values and labels of a pressure on a body, checked."""
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    values, grid = labelled_cells("pressure", pressure)
+    return grid, values, (pressure["x"].values, pressure["y"].values)
 
 
 def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:

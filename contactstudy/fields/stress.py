@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 
@@ -10,9 +12,11 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.invariants import von_mises
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
-from contactstudy.cache import BoundedCache, digest
+from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
-from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.positions import FieldPositions, Positions, field_positions, labelled_load
+from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -65,81 +69,82 @@ def stress_field(
     >>> float(stress.sigma_xx[0, 0, 0]), round(float(stress.sigma_zz[1, 0, 0]), 3)
     (0.0, -0.954)
     """
-    grid, values, positions = field_positions(body, pressure, x, y, z)
-    friction = checks.finite("friction", friction)
-    stresses = raw_stress(body, values, friction, grid, *positions.axes)
+    grid, values, own = labelled_load(body, pressure)
+    positions = field_positions(body, grid, x, y, z, own)
+    return stress_dataset(body, sliding(values, checks.finite("friction", friction)), grid, positions)
+
+
+def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
+    """Stresses under `loads` on the cells of `grid`, labelled, with what is known on the free ends imposed."""
+    stresses = stress_under(body, loads, grid, *positions.axes)
     _impose_free_ends(body, stresses, positions.x)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
 
-_FIELDS: BoundedCache[FloatArray] = BoundedCache(2**28, lambda fields: fields.nbytes)
-
-
-def raw_stress(
-    body: Body, pressure: FloatArray, friction: float, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray
-) -> FloatArray:
+def stress_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
     """Stresses (6, x, y, z) as computed: nothing is imposed on the free ends.
 
-    Stresses are linear in the friction, so the fields under the pressure and under an equal traction are kept: a
-    sweep over the friction computes them once.
+    The fields under each load's distribution are kept, so that a sweep over the friction computes them once.
     """
-    key = (body, grid, friction != 0, digest(pressure, x, y, z))
-    fields = _FIELDS.get(key, lambda: _unit_fields(body, pressure, grid, x, y, z, tangential=friction != 0))
-    return np.asarray(fields[0] + friction * fields[1] if friction else fields[0].copy(order="K"))
-
-
-def _unit_fields(
-    body: Body, pressure: FloatArray, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray, *, tangential: bool
-) -> FloatArray:
-    """Stresses (load, 6, x, y, z) under the pressure and, if wanted, under an equal traction along +y."""
-    points = (x, y, z)
-    fields, *others = (
-        _part_fields(part, body.material.poisson, pressure, grid, points, tangential=tangential) for part in body.parts
+    points = ArrayKey(x), ArrayKey(y), ArrayKey(z)
+    return superposed(
+        loads, lambda directions, cells: _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), *points))
     )
-    for other in others:
-        fields += other
+
+
+class _StressRequest(NamedTuple):
+    """What decides the stresses under one distribution in some directions."""
+
+    body: Body
+    grid: Grid
+    loads: tuple[Load, ...]
+    cells: ArrayKey
+    x: ArrayKey
+    y: ArrayKey
+    z: ArrayKey
+
+
+@kept("stress fields", lambda fields: sum(field.nbytes for field in fields.values()))
+def _unit_stress(request: _StressRequest) -> dict[Load, FloatArray]:
+    """Stresses (6, x, y, z) under a distribution in each direction."""
+    fields: dict[Load, FloatArray] = {}
+    for part in request.body.parts:
+        for load, field in _part_stress(part, request).items():
+            fields[load] = fields[load] + field if load in fields else field
     return fields
 
 
-def _part_fields(
-    part: Part,
-    poisson: float,
-    pressure: FloatArray,
-    grid: Grid,
-    points: tuple[FloatArray, FloatArray, FloatArray],
-    *,
-    tangential: bool,
-) -> FloatArray:
+def _part_stress(part: Part, request: _StressRequest) -> dict[Load, FloatArray]:
     """Stresses of one part of a body, times its weight."""
-    fields = half_space_stress(pressure, poisson, grid, *points, extent=part.extent, tangential=tangential)
-    if part.freed and pressure.any():
+    body, grid, loads, cells, *axes = request
+    x, y, z = (axis.values for axis in axes)
+    poisson = body.material.poisson
+    fields = {load: half_space_stress(load, cells.values, poisson, grid, x, y, z, extent=part.extent) for load in loads}
+    if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        problem = EndProblem(length, poisson, pressure, grid, tangential, Resolution(), mirrored_once)
-        from_ends = end_stress(problem, *points)
-        # The two auxiliary bodies leave no traction on the top, by construction.
-        for component in (2, 4, 5):
-            from_ends[:, component][..., points[2] == 0] = 0.0
-        fields += from_ends
+        problem = EndProblem(length, poisson, cells.values, loads, grid, Resolution(), mirrored_once)
+        for load, from_ends in end_stress(problem, x, y, z).items():
+            # The two auxiliary bodies leave no traction on the top, by construction.
+            for component in (2, 4, 5):
+                from_ends[component][..., z == 0] = 0.0
+            fields[load] += from_ends
     if part.weight != 1:
-        fields *= part.weight
+        for field in fields.values():
+            field *= part.weight
     return fields
 
 
-def end_traction_residual(
-    body: Body, pressure: FloatArray, friction: float, grid: Grid, y: FloatArray, z: FloatArray
-) -> float:
+def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:
     """Largest traction that the solution leaves on the free ends, over the peak pressure.
 
     Parameters
     ----------
     body : Body
         The elastic body.
-    pressure : array (x, y)
-        Pressure on the cells of `grid`, Pa.
-    friction : float
-        Coefficient of the traction along +y.
+    loads : mapping of Load to TopLoad
+        Loads on the cells of `grid`, a pressure among them.
     grid : Grid
         Cells.
     y, z : array
@@ -151,9 +156,10 @@ def end_traction_residual(
         0 for a body without ends.
     """
     ends = np.array([end for end in body.extent if np.isfinite(end)])
+    pressure = loads[Load.NORMAL].values
     if not ends.size or not pressure.any():
         return 0.0
-    traction = raw_stress(body, pressure, friction, grid, ends, y, z)[[0, 3, 4]]
+    traction = stress_under(body, loads, grid, ends, y, z)[[0, 3, 4]]
     return float(np.sqrt((traction**2).sum(axis=0)).max() / pressure.max())
 
 

@@ -12,17 +12,15 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import fft
 
-from contactstudy.cache import BoundedCache
+from contactstudy.cache import kept
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.convolution import even_spectrum, odd_spectrum
 from contactstudy.kernels.influence import Influence
 
-_SPECTRA: BoundedCache[FloatArray] = BoundedCache(2**27, lambda spectrum: spectrum.nbytes)
 
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class CentredConvolution:
-    """Convolution of a load with the kernels of an influence.
+    """Convolution of a load with the kernels of an influence at one depth.
 
     Attributes
     ----------
@@ -36,6 +34,8 @@ class CentredConvolution:
         Whether the load is mirrored in end I.
     shape : tuple of int
         Largest offsets of the kernel, in cells: half the periods of the transforms.
+    depth : float
+        Depth of the points.
     """
 
     influence: Influence
@@ -44,26 +44,17 @@ class CentredConvolution:
     length: float
     mirrored: bool
     shape: tuple[int, int]
+    depth: float
 
-    def fill(
-        self, layer: FloatArray, transformed: ComplexArray, depth: float, rows: IntArray, columns: IntArray
-    ) -> None:
-        """Fill a `layer` (component, row, column) of the field at one depth, from the `transform` of the load."""
-        key = (self.influence.key, self.dx, self.dy, self.length, self.shape, depth)
-        spectrum = _SPECTRA.get(key, lambda: self._spectrum(depth))
-        odd_x = self.influence.sign_along_x < 0
+    def fill(self, layer: FloatArray, transformed: ComplexArray, rows: IntArray, columns: IntArray) -> None:
+        """Fill a `layer` (component, row, column) of the field from the transform of the load."""
+        spectrum = _kernel_spectrum(self)
+        odd_x = np.array(self.influence.sign_along_x) < 0
         for odd, members in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
             if members.size:
                 along_y = self._back_along_x(spectrum[members], transformed, rows, odd=odd)
-                along_y[self.influence.sign_along_y[members] < 0] *= 1j
+                along_y[np.array(self.influence.sign_along_y)[members] < 0] *= 1j
                 layer[members] = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., columns]
-
-    def transform(self, load: FloatArray) -> ComplexArray:
-        """Spectrum of a load (cell, cell): array (wavenumber along x, wavenumber along y)."""
-        along_y = fft.rfft(load, 2 * self.shape[1], axis=1)
-        if not self.mirrored:
-            return np.asarray(fft.fft(along_y, 2 * self.shape[0], axis=0))
-        return np.asarray(fft.dct(along_y, type=2, n=self.shape[0], axis=0))
 
     def _back_along_x(
         self, spectrum: FloatArray, transformed: ComplexArray, rows: IntArray, *, odd: bool
@@ -84,18 +75,29 @@ class CentredConvolution:
             return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
         return np.asarray(fft.idct(spectrum[:, :half] * transformed, type=2, axis=1, overwrite_x=True)[:, rows])
 
-    def _spectrum(self, depth: float) -> FloatArray:
-        """Spectrum of the kernels at one depth, without a factor i per odd direction: (component, x, y)."""
-        x: FloatArray = self.dx * np.arange(self.shape[0] + 1.0)
-        y: FloatArray = self.dy * np.arange(self.shape[1] + 1.0)
-        spectrum = self.influence.kernel(x, y, self.dx, self.dy, self.length, depth)
-        for axis, signs in ((1, self.influence.sign_along_x), (2, self.influence.sign_along_y)):
-            moved = spectrum.swapaxes(axis, 2)
-            even = signs > 0
-            transformed = np.empty_like(moved)
-            transformed[even], transformed[~even] = even_spectrum(moved[even]), odd_spectrum(moved[~even])
-            spectrum = transformed.swapaxes(axis, 2)
-        return np.ascontiguousarray(spectrum)
+
+@kept("half-space kernels", lambda spectrum: spectrum.nbytes)
+def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
+    """Spectrum of the kernels, without a factor i per odd direction: (component, x, y)."""
+    x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)
+    y: FloatArray = request.dy * np.arange(request.shape[1] + 1.0)
+    influence = request.influence
+    spectrum = influence.kernel(x, y, request.dx, request.dy, request.length, request.depth)
+    for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
+        moved = spectrum.swapaxes(axis, 2)
+        even = np.array(signs) > 0
+        transformed = np.empty_like(moved)
+        transformed[even], transformed[~even] = even_spectrum(moved[even]), odd_spectrum(moved[~even])
+        spectrum = transformed.swapaxes(axis, 2)
+    return np.ascontiguousarray(spectrum)
+
+
+def _load_spectrum(load: FloatArray, shape: tuple[int, int], *, mirrored: bool) -> ComplexArray:
+    """Spectrum of a load (cell, cell): array (wavenumber along x, wavenumber along y)."""
+    along_y = fft.rfft(load, 2 * shape[1], axis=1)
+    if not mirrored:
+        return np.asarray(fft.fft(along_y, 2 * shape[0], axis=0))
+    return np.asarray(fft.dct(along_y, type=2, n=shape[0], axis=0))
 
 
 def centred_field(
@@ -141,9 +143,9 @@ def centred_field(
     else:
         half = cells_x
     shape = (half, fft.next_fast_len(reach_y, real=True))
-    convolution = CentredConvolution(influence, *cell, length, mirrored, shape)
-    transformed = convolution.transform(load)
-    field = np.empty((influence.sign_along_x.size, rows.size, z.size, columns.size))
+    transformed = _load_spectrum(load, shape, mirrored=mirrored)
+    field = np.empty((influence.components, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):
-        convolution.fill(field[:, :, number], transformed, depth, rows, columns)
+        convolution = CentredConvolution(influence, *cell, length, mirrored, shape, depth)
+        convolution.fill(field[:, :, number], transformed, rows, columns)
     return field.swapaxes(2, 3)

@@ -7,6 +7,8 @@ about its ends is diagonal in the cosine transform, without any padding.
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 import pyfftw
 from scipy import fft
@@ -26,8 +28,37 @@ def odd_spectrum(kernel: FloatArray) -> FloatArray:
     return spectrum
 
 
+class _Buffers:
+    """Aligned memory and the transforms planned on it, for one thread."""
+
+    def __init__(self, cells_x: int, cells_y: int, padded_x: int, *, mirrored: bool) -> None:
+        self.real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
+        self.lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
+        # A plan that was measured differs from run to run, and its last bits with it.
+        options = {"threads": 1, "flags": ("FFTW_ESTIMATE",)}
+        # Only rows that hold cells are transformed along y; the padding rows stay zero.
+        rows = slice(0, cells_x)
+        self.to_lateral = pyfftw.FFTW(self.real[rows], self.lateral[rows], axes=(1,), **options)
+        self.from_lateral = pyfftw.FFTW(
+            self.lateral[rows], self.real[rows], axes=(1,), direction="FFTW_BACKWARD", **options
+        )
+        if mirrored:
+            view = self.lateral.view(np.float64)
+            self.along = pyfftw.FFTW(view, view, axes=(0,), direction="FFTW_REDFT10", **options)
+            self.back = pyfftw.FFTW(view, view, axes=(0,), direction="FFTW_REDFT01", **options)
+        else:
+            self.along = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), **options)
+            self.back = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
+        self.real[:] = 0.0
+
+    @property
+    def nbytes(self) -> int:
+        """Memory, bytes."""
+        return int(self.real.nbytes + self.lateral.nbytes)
+
+
 class GridTransform:
-    """Forward and backward transforms of cell values, with aligned buffers that every call reuses.
+    """Forward and backward transforms of cell values, with aligned buffers that every call of a thread reuses.
 
     Parameters
     ----------
@@ -37,55 +68,47 @@ class GridTransform:
         Cells along x with padding; `mirrored` decides what the padding stands for.
     mirrored : bool
         Whether the load continues evenly about ``x = 0`` and about the padded end (cosine transform along x).
-    threads : int
-        Threads of the transform.
     """
 
-    def __init__(self, cells_x: int, cells_y: int, padded_x: int, *, mirrored: bool, threads: int = 1) -> None:
-        self.cells_x, self.cells_y, self.mirrored = cells_x, cells_y, mirrored
-        self._real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
-        self._lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
-        # A plan that was measured differs from run to run, and its last bits with it.
-        options = {"threads": threads, "flags": ("FFTW_ESTIMATE",)}
-        # Only rows that hold cells are transformed along y; the padding rows stay zero.
-        rows = slice(0, cells_x)
-        self._to_lateral = pyfftw.FFTW(self._real[rows], self._lateral[rows], axes=(1,), **options)
-        self._from_lateral = pyfftw.FFTW(
-            self._lateral[rows], self._real[rows], axes=(1,), direction="FFTW_BACKWARD", **options
-        )
-        if mirrored:
-            view = self._lateral.view(np.float64)
-            self._along = pyfftw.FFTW(view, view, axes=(0,), direction="FFTW_REDFT10", **options)
-            self._back = pyfftw.FFTW(view, view, axes=(0,), direction="FFTW_REDFT01", **options)
-            self._scale = 1.0 / (2 * padded_x * 2 * cells_y)
-        else:
-            self._along = pyfftw.FFTW(self._lateral, self._lateral, axes=(0,), **options)
-            self._back = pyfftw.FFTW(self._lateral, self._lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
-            self._scale = 1.0 / (padded_x * 2 * cells_y)
-        self._real[:] = 0.0
+    def __init__(self, cells_x: int, cells_y: int, padded_x: int, *, mirrored: bool) -> None:
+        self.cells_x, self.cells_y, self.padded_x, self.mirrored = cells_x, cells_y, padded_x, mirrored
+        self._scale = 1.0 / ((2 if mirrored else 1) * padded_x * 2 * cells_y)
+        self._thread = threading.local()
+
+    @property
+    def _buffers(self) -> _Buffers:
+        """Buffers of this thread: operators are shared by all."""
+        found: _Buffers | None = getattr(self._thread, "buffers", None)
+        if found is None:
+            found = _Buffers(self.cells_x, self.cells_y, self.padded_x, mirrored=self.mirrored)
+            self._thread.buffers = found
+        return found
 
     def lateral(self, values: FloatArray) -> ComplexArray:
         """Transform along y of cell `values`: a view (cell, wavenumber) of the buffer."""
-        self._real[: self.cells_x, : self.cells_y] = values
-        self._real[: self.cells_x, self.cells_y :] = 0.0
-        self._lateral[self.cells_x :] = 0.0
-        self._to_lateral.execute()
-        return np.asarray(self._lateral[: self.cells_x])
+        buffers = self._buffers
+        buffers.real[: self.cells_x, : self.cells_y] = values
+        buffers.real[: self.cells_x, self.cells_y :] = 0.0
+        buffers.lateral[self.cells_x :] = 0.0
+        buffers.to_lateral.execute()
+        return np.asarray(buffers.lateral[: self.cells_x])
 
     def along(self) -> ComplexArray:
         """Transform the buffer of `lateral` along x as well, in place: the buffer, to be multiplied in place."""
-        self._along.execute()
-        return np.asarray(self._lateral)
+        buffers = self._buffers
+        buffers.along.execute()
+        return np.asarray(buffers.lateral)
 
     @property
     def nbytes(self) -> int:
-        """Memory of the buffers, bytes."""
-        return int(self._real.nbytes + self._lateral.nbytes)
+        """Memory of one thread's buffers, bytes."""
+        return self._buffers.nbytes
 
     def back(self, spectrum_correction: ComplexArray | None = None) -> FloatArray:
         """Cell values of the buffer that `along` returned; a transform along y alone may be added on the way."""
-        self._back.execute()
+        buffers = self._buffers
+        buffers.back.execute()
         if spectrum_correction is not None:
-            self._lateral[: self.cells_x] += spectrum_correction / (self._scale * 2 * self.cells_y)
-        self._from_lateral.execute()
-        return np.asarray(self._real[: self.cells_x, : self.cells_y] * self._scale)
+            buffers.lateral[: self.cells_x] += spectrum_correction / (self._scale * 2 * self.cells_y)
+        buffers.from_lateral.execute()
+        return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)

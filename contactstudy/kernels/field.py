@@ -17,12 +17,17 @@ from contactstudy.kernels.centred import centred_field
 from contactstudy.kernels.images import cell_kernel
 from contactstudy.kernels.influence import Influence
 
-# Offsets from the cell centre that differ by less than this part of a cell are one.
 OFFSET_TOLERANCE = 1e-6
-# More ways than this for points to lie along x are interpolated instead of convolved one by one.
+"""Part of a cell by which offsets from the cell centre may differ and count as one. Accuracy."""
+
 ALIGNED_GROUPS = 2
+"""Different offsets along x up to which each has a convolution; more are interpolated. Speed."""
+
 INTERPOLATION_POINTS = 8
+"""Cell centres from which a position along x is interpolated. Accuracy."""
+
 NEAR_CELLS = 14
+"""Cells on either side of a position whose influence is put right after interpolation. Accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,14 +94,17 @@ def half_space_field(
     periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
     # In memory the depth comes before y, as in all fields.
-    result = np.zeros((influence.sign_along_x.size, x.size, z.size, y.size)).swapaxes(2, 3)
+    result = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     if not loaded.size:
         return result
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
-    if len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0 and (in_first or not in_second):
+    on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
+    image = influence.load.sign_x
+    # A load that its image reverses, or that is mirrored in its second end alone, takes the general way.
+    if on_centres and (in_first or not in_second) and (image > 0 or not in_first):
         return centred_field(
             load,
             influence,
@@ -109,10 +117,10 @@ def half_space_field(
         )
     start = grid.x[0]
     if in_first:  # cells of the mirrored load lie before those of the load
-        load = np.concatenate([load[::-1], load])
+        load = np.concatenate([image * load[::-1], load])
         start -= grid.cells_x * grid.dx
     elif in_second:
-        load = np.concatenate([load, load[::-1]])
+        load = np.concatenate([load, image * load[::-1]])
     cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
     rows = aligned_points(x, float(start), grid.dx)
     for column in columns:
@@ -226,5 +234,5 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     if abs(steps[0] + before) > OFFSET_TOLERANCE or min(before, after) < 1:
         return evaluate(x)
     ahead = evaluate(cells.dx * np.arange(max(before, after) + 1.0))
-    behind = ahead[:, before:0:-1] * cells.influence.sign_along_x[:, None, None]
+    behind = ahead[:, before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]
     return np.concatenate([behind, ahead[:, : after + 1]], axis=1)

@@ -18,10 +18,16 @@ from contactstudy.checks import FloatArray
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
 NEAR_IMAGES = 5
-FAR_LIMIT = 1e6  # of the spread load, over the length; beyond it nothing counts
+"""Images on either side that are evaluated one by one; those beyond are spread evenly. Accuracy."""
+
+FAR_LIMIT = 1e6
+"""Where the spread load ends, over the length. Accuracy; references of displacements count from it."""
+
 CHEBYSHEV_X, CHEBYSHEV_Y = 16, 28
-# The images vary over distances of the order of the length: a wider span along y takes more points per length.
+"""Least numbers of points from which the images' influence is interpolated. Accuracy."""
+
 POINTS_PER_LENGTH = 14
+"""Of these points along y, per length of the body: the images vary over distances of its order. Accuracy."""
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:

@@ -14,9 +14,10 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
 
-# Its square is still a number; offsets are lengths in metres and never this small unless they vanish.
-_TINY = 1e-150
+TINY = 1e-150
+"""Least denominator. Its square is still a number, and offsets in metres are never so small unless they vanish."""
 
 
 def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: float) -> FloatArray:
@@ -54,8 +55,8 @@ def normal_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> Flo
     v_z = -np.arctan2(xy, z * r)
     chi_xx = np.arctan2(xy * (xx + yy), (r + z) * (r * xx + z * yy))
     chi_yy = -v_z - chi_xx
-    along_x = 1.0 / np.maximum(r * (xx + z * z), _TINY)
-    along_y = 1.0 / np.maximum(r * (yy + z * z), _TINY)
+    along_x = 1.0 / np.maximum(r * (xx + z * z), TINY)
+    along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     v_xx, v_yy = -xy * along_x, -xy * along_y
     free = 1 - 2 * poisson
     corner = np.stack(
@@ -63,7 +64,7 @@ def normal_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> Flo
             2 * poisson * v_z - free * chi_xx - z * v_xx,
             2 * poisson * v_z - free * chi_yy - z * v_yy,
             v_z + z * (v_xx + v_yy),
-            -free * np.log(np.maximum(r + z, _TINY)) - z / np.maximum(r, _TINY),
+            -free * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
             z * z * y * along_x,
             z * z * x * along_y,
         ]
@@ -83,9 +84,9 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) ->
     """
     xx, yy = x * x, y * y
     r = np.sqrt(xx + yy + z * z)
-    safe_r, r_z = np.maximum(r, _TINY), np.maximum(r + z, _TINY)
+    safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
     v_y = _inverse_sinh_ratio(x, y, z)
-    along_y = 1.0 / np.maximum(r * (yy + z * z), _TINY)
+    along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     corner = np.stack(
         [
             2 * poisson * (v_y - x / r_z) - z * x / (safe_r * r_z),
@@ -97,6 +98,23 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) ->
         ]
     )
     return np.asarray(corner / (2 * np.pi))
+
+
+def axial_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+    """Corner functions of the six stresses under unit shear traction along +x: those along +y with x and y exchanged.
+
+    Examples
+    --------
+    >>> edge = np.array([-1.0, 1.0])
+    >>> corner = axial_corner(edge[:, None], edge[None, :], 0.0, 0.3)
+    >>> round(float(np.diff(np.diff(corner, axis=1), axis=2)[4, 0, 0]), 6)
+    -1.0
+    """
+    return tangential_corner(y, x, z, poisson)[[1, 0, 2, 3, 5, 4]]
+
+
+STRESS_CORNERS = {Load.NORMAL: normal_corner, Load.ALONG_X: axial_corner, Load.ALONG_Y: tangential_corner}
+"""Corner functions of the six stresses, by the direction of the load."""
 
 
 def normal_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -122,5 +140,5 @@ def tangential_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
     >>> bool(np.diff(np.diff(ahead, axis=0), axis=1)[0, 0] > 0)
     True
     """
-    log_r = 0.5 * np.log(np.maximum(x * x + y * y, _TINY))
+    log_r = 0.5 * np.log(np.maximum(x * x + y * y, TINY))
     return np.asarray(x * log_r + y * np.arctan2(x, np.abs(y)) * np.sign(y))

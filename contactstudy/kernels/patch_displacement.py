@@ -13,8 +13,8 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import FloatArray
-
-_TINY = 1e-150
+from contactstudy.kernels.load import Load
+from contactstudy.kernels.patch import TINY
 
 
 class _Potentials:
@@ -24,9 +24,9 @@ class _Potentials:
         r = np.sqrt(x * x + y * y + z * z)
         xy = x * y
         self.r, self.z = r, z
-        self.log = np.log(np.maximum(r + z, _TINY))
-        self.asinh_x = np.arcsinh(x / np.maximum(np.hypot(y, z), _TINY ** (1 / 5)))
-        self.asinh_y = np.arcsinh(y / np.maximum(np.hypot(x, z), _TINY ** (1 / 5)))
+        self.log = np.log(np.maximum(r + z, TINY))
+        self.asinh_x = np.arcsinh(x / np.maximum(np.hypot(y, z), TINY ** (1 / 5)))
+        self.asinh_y = np.arcsinh(y / np.maximum(np.hypot(x, z), TINY ** (1 / 5)))
         self.v_z = -np.arctan2(xy, z * r)
         self.chi_xx = np.arctan2(xy * (r - z), x * x * r + y * y * z)
         self.chi_yy = np.arctan2(xy * (r - z), y * y * r + x * x * z)
@@ -88,3 +88,24 @@ def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: float, poiss
             (1 - 2 * poisson) * at.chi_y - z * at.asinh_x,
         ]
     )
+
+
+def axial_displacement_inside(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+    """Corner functions under unit shear traction along +x: those along +y with x and y exchanged.
+
+    Examples
+    --------
+    >>> edge = np.array([-0.5, 0.5])
+    >>> corner = axial_displacement_inside(edge[:, None], edge[None, :], 0.0, 0.0)
+    >>> (np.diff(np.diff(corner, axis=1), axis=2)[:, 0, 0] / 2).round(6).tolist()
+    [3.525494, 0.0, 0.0]
+    """
+    return tangential_displacement_inside(y, x, z, poisson)[[1, 0, 2]]
+
+
+DISPLACEMENT_CORNERS = {
+    Load.NORMAL: normal_displacement_inside,
+    Load.ALONG_X: axial_displacement_inside,
+    Load.ALONG_Y: tangential_displacement_inside,
+}
+"""Corner functions of the three displacements, by the direction of the load."""

@@ -14,10 +14,13 @@ limit of one end only: the ray starts at ``k = 0`` and the second exponential is
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from contactstudy.cache import ArrayKey
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 from contactstudy.overlapping.slab import slab_factors
@@ -25,7 +28,7 @@ from contactstudy.overlapping.slab import slab_factors
 
 @dataclass(frozen=True, eq=False)
 class AxialModes:
-    """Axial wavenumbers of one parity.
+    """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them.
 
     Attributes
     ----------
@@ -47,6 +50,19 @@ class AxialModes:
     ray: ComplexArray
     weights: ComplexArray
     reach: float = np.inf
+
+    @cached_property
+    def _identity(self) -> tuple[Hashable, ...]:
+        arrays = (self.discrete, self.ray.view(np.float64), self.weights.view(np.float64))
+        return type(self), self.length, self.parity, self.reach, *(ArrayKey(array) for array in arrays)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether all wavenumbers and weights are the same."""
+        return isinstance(other, AxialModes) and self._identity == other._identity
+
+    def __hash__(self) -> int:
+        """Hash of the wavenumbers and weights."""
+        return hash(self._identity)
 
     @property
     def wavenumbers(self) -> ComplexArray:
@@ -122,10 +138,11 @@ class AxialModes:
         return np.asarray(integral)
 
 
-# exp(-18) = 1.5e-8: beyond this many decay lengths from the corner a wavenumber along y adds nothing.
 DECAY_LENGTHS = 18.0
-# exp(-30) = 1e-13: beyond this many decay lengths the two ends of a body know nothing of each other.
+"""Decay lengths from the corner beyond which a wavenumber along y adds nothing: exp(-18) = 1.5e-8. Accuracy."""
+
 SEPARATE_ENDS = 30.0
+"""Decay lengths beyond which the two ends do not affect each other: exp(-30) = 1e-13. Accuracy."""
 
 
 def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:

@@ -1,231 +1,85 @@
-"""What the free ends add to the normal displacement of the top: a symmetric operator, compressed.
-
-V leaves no normal displacement on the top, so the body sinks as H does under ``P_h = p + R``. Of this the part under
-``p`` is the mirrored half-space; the part under ``R`` is, for each wavenumber along y and each parity,
-
-    u(x) = C p,   C(x, x') = c at(x)^T (1 / scale - N)^-1 at(x'),   at(x; k_z) = (4/pi) sum M cosine(x) / k
-
-(equations.py). C is sampled at positions graded towards the ends and transformed along y to the wavenumbers of the
-zero-padded grid, once per body and grid. Far along y a finite-length body is a plate in plane stress, so C grows like
-``1 / k_y``: the displacement is stated relative to the top far away, at ``|y| = reference``.
-"""
+"""Displacements inside the body that the free ends add to the mirrored half-space: harmonics of H and of V."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
-from contactstudy.bodies.material import Material
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping.axial import AxialModes
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import POLES_ALONE, LateralPanel, lateral_panels
-from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
-from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
-
-# Wavenumbers along y per panel beyond those for a field: an operator is built once and then serves every load.
-MORE_NODES = 3
+from contactstudy.overlapping.field import Harmonics, end_field, real_product
+from contactstudy.overlapping.problem import EndProblem
 
 
-@dataclass(frozen=True, eq=False)
-class EndCorrection:
-    """The ends' part of the displacement, acting on transforms along y of the zero-padded grid.
-
-    Attributes
-    ----------
-    moments : list of array (position, cell)
-        Per parity, from cells to graded positions. Two parities know the cells up to the middle only: those beyond
-        are folded onto them.
-    normal : list of array (wavenumber, position, position)
-        Per parity, displacement from pressure at the graded positions.
-    tangential : list of array, or empty
-        Likewise from traction along y, without its factor i.
-    cell : float
-        Cell size along x.
-    """
-
-    moments: list[FloatArray]
-    normal: list[FloatArray]
-    tangential: list[FloatArray]
-    cell: float
-
-    def apply(self, transform: ComplexArray, tangential: bool = False) -> ComplexArray:
-        """Correction from the transform (cell, wavenumber) of pressure or traction."""
-        kernels, phase = (self.tangential, 1j) if tangential else (self.normal, 1.0)
-        cells = transform.shape[0]
-        # The operator is real: real products on pairs of real and imaginary part are four times faster.
-        pairs = np.ascontiguousarray(transform).view(np.float64)
-        sunk = [
-            moments.T @ self._between(kernel, moments @ part)
-            for moments, kernel, part in zip(self.moments, kernels, self._folded(pairs), strict=True)
-        ]
-        return np.asarray(self._unfolded(sunk, cells).view(np.complex128) * (phase / self.cell))
-
-    @staticmethod
-    def _between(kernel: FloatArray, sources: FloatArray) -> FloatArray:
-        """Apply a kernel (wavenumber, position, position) to pairs (position, wavenumber and part)."""
-        positions = sources.shape[0]
-        sunk = np.matmul(kernel, sources.reshape(positions, -1, 2).transpose(1, 0, 2))
-        return np.asarray(sunk.transpose(1, 0, 2).reshape(positions, -1))
-
-    def _folded(self, values: FloatArray) -> list[FloatArray]:
-        """Sum and difference of the cells on either side of the middle; with one end, the cells themselves."""
-        if len(self.moments) == 1:
-            return [values]
-        cells = values.shape[0]
-        half = (cells + 1) // 2
-        near, far = values[:half], values[::-1][:half]
-        even, odd = near + far, near - far
-        if cells % 2:  # the middle cell has met itself
-            even[-1] *= 0.5
-        return [even, odd]
-
-    @staticmethod
-    def _unfolded(parts: list[FloatArray], cells: int) -> FloatArray:
-        """Undo `_folded`, up to its factor."""
-        if len(parts) == 1:
-            return parts[0]
-        even, odd = parts
-        values = np.empty((cells, even.shape[1]))
-        np.add(even, odd, out=values[: even.shape[0]])
-        np.subtract(even[: cells // 2], odd[: cells // 2], out=values[::-1][: cells // 2])
-        return values
-
-    def coarsened(self) -> EndCorrection:
-        """Return the correction on cells of twice the size: good enough for a first guess, and made in no time.
-
-        The lower half of the wavenumbers is the coarse grid's, but for the small part that its cells alias.
-        """
-        moments = []
-        for parity, fine in zip((1, -1) if len(self.moments) == 2 else (0,), self.moments, strict=True):
-            if parity and fine.shape[1] % 2:  # the middle cell of the coarse grid lies on both sides
-                fine = np.hstack([fine, parity * fine[:, -1:]])
-            moments.append(fine[:, ::2] + fine[:, 1::2])
-        normal, tangential = (
-            [kernel[: (len(kernel) - 1) // 2 + 1] for kernel in kernels] for kernels in (self.normal, self.tangential)
-        )
-        return EndCorrection(moments, normal, tangential, 2 * self.cell)
-
-    @property
-    def nbytes(self) -> int:
-        """Memory held, bytes."""
-        return sum(array.nbytes for array in (*self.moments, *self.normal, *self.tangential))
-
-
-def _sampled(
-    modes: AxialModes,
-    wavenumber: float,
-    positions: FloatArray,
-    material: Material,
-    shortest: float,
-    resolution: Resolution,
-    tangential: bool,
-) -> list[FloatArray]:
-    """Correction between the graded positions at one wavenumber: from pressure and, if asked, from traction."""
-    sources = modes.load_weights[:, None] * modes.cosine(positions)
-    factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
-    system = EquationSet.build(modes, wavenumber, material.poisson, shortest, resolution)
-    from_pressure = system.from_pressure(sources)
-    columns = [from_pressure, system.from_traction(sources)] if tangential else [from_pressure]
-    if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
-        k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)
-        sunk = modes.cosine(positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
-        return [np.real(sunk.T @ system.on_top(system.solve(column))) for column in columns]
-    return [factor * from_pressure.T @ system.solve(column) for column in columns]
-
-
-def build_end_correction(
-    length: float,
-    material: Material,
-    grid: Grid,
-    *,
-    reference: float,
-    tangential: bool,
-    resolution: Resolution,
-    mirrored_once: bool = False,
-) -> EndCorrection:
-    """Correction for a body with ends at 0 and `length` (infinite: one end) on a grid that begins at ``x = 0``.
+def end_displacement(
+    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float
+) -> dict[Load, FloatArray]:
+    """Displacements, times ``2 G``, that the free ends add to the half-space with all mirrored loads.
 
     Parameters
     ----------
-    length : float
-        Distance between the ends, metres.
-    material : Material
-        Elastic constants.
-    grid : Grid
-        Cells; ``x_range[0]`` is 0.
+    problem : EndProblem
+        Body and load.
+    x, y, z : array
+        Points, as a tensor product, inside the body, metres.
     reference : float
-        Distance along y at which the displacement of a finite-length body is zero, metres.
-    tangential : bool
-        Whether to build the part that comes from traction along y, too.
-    resolution : Resolution
-        Quadrature settings.
-    mirrored_once : bool
-        Whether loads have one pair of images only (single_mirror.py). They leave the far body at rest, so there is no
-        `reference`.
+        Between two ends: where along y the rigid motion of the far body is zero, metres.
+
+    Returns
+    -------
+    dict of Load to array (3, x, y, z)
+        Under the load in each of the problem's directions: along x, y, z in Pa m.
     """
-    relative = np.isfinite(length) and not mirrored_once
-    span = grid.x_range[1]
-    window = 2 * grid.dy * grid.cells_y
-    shortest = 0.5 * grid.dx
-    first = POLES_ALONE / min(length, 4 * max(span, window))
-    # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
-    lateral_last = 2 * max(2.0 * np.pi / grid.dy, 6.0 / grid.dx)
-    finer = replace(resolution, lateral_nodes=resolution.lateral_nodes + MORE_NODES)
-    panels = lateral_panels(first, 0.5 * window, lateral_last, finer, reference if relative else None)
-    half = 0.5 * length if np.isfinite(length) else span
-    edges, positions = graded_positions(half, 0.5 * grid.dx, POSITIONS_PER_PANEL)
-    cell_edges = np.linspace(0.0, span, grid.cells_x + 1)
-    one_side = cell_moments(edges, positions, cell_edges)
-    parities = (1, -1) if np.isfinite(length) else (0,)
-    lateral = np.concatenate([panel.nodes for panel in panels])
-    samples = np.empty((len(parities), 1 + tangential, lateral.size, positions.size, positions.size))
-    i = 0
-    for panel in panels:
-        smallest = float(panel.nodes[0])
-        modes = modes_between_ends(length, smallest, shortest, resolution, mirrored_once=mirrored_once)
-        for wavenumber in panel.nodes:
-            for parity, mode in zip(parities, modes, strict=False):
-                sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, tangential)
-                if mode.parity == parity:
-                    samples[abs(parity - 1) // 2 if parity else 0, :, i] = sampled
-                else:  # ends that know nothing of each other: both parities see half of either quarter space
-                    samples[:, :, i] = 0.5 * np.array(sampled)
-            i += 1
-    to_grid = _lateral_transforms(panels, grid)
-    near = (grid.cells_x + 1) // 2
-    moments = [
-        np.ascontiguousarray((one_side + parity * one_side[:, ::-1])[:, :near]) if parity else one_side
-        for parity in parities
-    ]
-    spread = [
-        [np.tensordot(transform, samples[p, kind], axes=1) for p in range(len(parities))]
-        for kind, transform in enumerate(to_grid[: 1 + tangential])
-    ]
-    return EndCorrection(moments, spread[0], spread[1] if tangential else [], grid.dx)
+    return end_field(problem, DISPLACEMENT, x, y, z, reference=reference if np.isfinite(reference) else None)
 
 
-def _lateral_transforms(panels: list[LateralPanel], grid: Grid) -> tuple[FloatArray, FloatArray]:
-    """Matrices from samples over the wavenumber along y to the zero-padded grid's transform.
+def _below_equivalent_load(
+    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+) -> FloatArray:
+    """``2 G u`` of H under the equivalent load: array (3, x, z, column). Half-space harmonics, pressure column."""
+    nu, lateral = system.poisson, system.lateral
+    axial = system.modes.wavenumbers
+    k = np.sqrt(axial**2 + lateral**2)
+    decay = np.exp(-np.outer(k, z))
+    free = 1 - 2 * nu
+    result = np.empty((3, cosine.shape[1], z.size, equivalent.shape[1]))
+    terms = (  # component, function of x, constant, factor of k z
+        (0, sine, -free * axial / k**2, axial / k**2),
+        (1, cosine, free * lateral / k**2, -lateral / k**2),
+        (2, cosine, 2 * (1 - nu) / k, 1 / k),
+    )
+    for component, function, constant, slope in terms:
+        along_z = decay * (constant[:, None] + slope[:, None] * np.outer(k, z))
+        result[component] = real_product(function.T, along_z[..., None] * equivalent[:, None, :])
+    return result
 
-    Returns the one for even kernels and the one for odd kernels: arrays (grid wavenumber, sample).
+
+def _beside_face_load(
+    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+) -> FloatArray:
+    """``2 G u`` of V under the face loads on its two ends: array (3, x, z, column).
+
+    As the stresses, with the potential ``psi = -exp(-X) / kappa`` of either end and ``2 G u = -grad(Phi) + 4 (1 - nu)
+    psi e_x``.
     """
-    offsets: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
-    columns: tuple[list[FloatArray], list[FloatArray]] = ([], [])
-    for panel in panels:
-        averaged = grid.dy * np.sinc(panel.fine * grid.dy / (2 * np.pi))
-        for waves, gathered in zip(panel.waves(offsets), columns, strict=True):
-            cells = waves.T * averaged
-            gathered.append(cells if panel.interpolation is None else cells @ panel.interpolation)
-    cosine, sine = (np.concatenate(gathered, axis=1) for gathered in columns)
-    size = grid.cells_y
-    turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
-    twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
-    ends = np.full(size + 1, 2.0)
-    ends[0] = ends[-1] = 1.0
-    # An odd kernel -sin(k y) has the transform 2i sum sin sin; with its factor i taken outside, +2 sum sin sin.
-    ends_odd = np.where(ends == 1.0, 0.0, 2.0)
-    return (turns * ends) @ cosine, (twists * ends_odd) @ sine
+    nu, lateral, modes = system.poisson, system.lateral, system.modes
+    kappa = np.sqrt(depth**2 + lateral**2)
+    amplitude, tau = modes.beside_face(kappa)
+    waves = np.exp(1j * np.outer(depth, z))
+    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    along: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
+    ends = [(x, 1, 1)]
+    if modes.parity:
+        ends.append((modes.length - x, modes.parity, -modes.parity))
+    for distance, even, odd in ends:
+        scaled = np.outer(distance, kappa)
+        decay = np.exp(-scaled)
+        potential = (1 - 2 * nu - tau - scaled) * decay
+        along[0] -= odd * (tau + scaled + 2 * (1 - nu)) * decay / kappa
+        along[1] -= even * lateral / kappa**2 * potential
+        along[2] += even * depth / kappa**2 * potential
+    return np.concatenate([real_product(along[:2], right), real_product(-1j * along[2:], right)])
+
+
+DISPLACEMENT = Harmonics(_below_equivalent_load, _beside_face_load, even_in_y=[0, 2], odd_in_y=[1], odd_along_x=[0])
+"""Components along x, y, z."""

@@ -17,6 +17,7 @@ set of Hetenyi's and Keer's alternating scheme, solved at once.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -24,6 +25,7 @@ import numpy as np
 from scipy import linalg
 
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.quadrature import (
     Resolution,
@@ -50,7 +52,7 @@ def normal_on_end(
     return np.asarray(coupling_core(axial, depth, lateral, poisson) * (4 / np.pi / k))
 
 
-def tangential_on_end(
+def lateral_on_end(
     axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
     """Face load that frees the end from a unit top traction along y, without its factor i: array (depth, axial)."""
@@ -59,6 +61,10 @@ def tangential_on_end(
     inverse = 1.0 / (k2 + depth2)
     bracket = 2 * poisson * lateral**2 * inverse - axial2 * (k2 - depth2) * inverse**2
     return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
+
+
+ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_Y: lateral_on_end}
+"""Face load that frees the end from a unit load on the top, by its direction."""
 
 
 class AuxiliaryLoads(NamedTuple):
@@ -95,6 +101,12 @@ class EquationSet:
         Depth wavenumbers ``k_z``, 1/m.
     scale : array
         ``T dk_z / kappa`` at the depth nodes.
+    core : complex array (depth, wavenumber)
+        Coupling core ``M`` between depth nodes and axial wavenumbers.
+    top : complex array (wavenumber, depth)
+        Weighted spectrum, before `AxialModes.cosine`, of what a scaled face load leaves on the top.
+    factor : tuple of array
+        Factorised matrix ``1 / scale - N`` of the set.
     """
 
     modes: AxialModes
@@ -102,9 +114,9 @@ class EquationSet:
     poisson: float
     depth: FloatArray
     scale: FloatArray
-    _core: ComplexArray
-    _top: ComplexArray
-    _factor: tuple[FloatArray, FloatArray]
+    core: ComplexArray
+    top: ComplexArray
+    factor: tuple[FloatArray, FloatArray]
 
     @classmethod
     def build(
@@ -126,57 +138,59 @@ class EquationSet:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
-        arrays = (self.depth, self.scale, self._core, self._top, *self._factor)
+        arrays = (self.depth, self.scale, self.core, self.top, *self.factor)
         return sum(array.nbytes for array in arrays)
 
     def solve(self, source: FloatArray) -> FloatArray:
         """Scaled face loads ``scale * S`` from what the top load alone asks for at the depth nodes."""
-        return np.asarray(linalg.lu_solve(self._factor, source))
+        return np.asarray(linalg.lu_solve(self.factor, source))
 
-    def from_pressure(self, spectrum: ComplexArray) -> FloatArray:
-        """Face loads that a pressure of weighted `spectrum` (wavenumber, ...) alone asks for."""
-        k = np.sqrt(self.modes.wavenumbers**2 + self.lateral**2)
-        return np.real((self._core * (4 / np.pi / k)) @ spectrum)
+    def source(self, load: Load, spectrum: ComplexArray) -> FloatArray:
+        """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone.
 
-    def from_traction(self, spectrum: ComplexArray) -> FloatArray:
-        """Likewise for a traction along y, without its factor i."""
-        operator = tangential_on_end(self.modes.wavenumbers, self.depth, self.lateral, self.poisson)
+        That of a traction along y lacks its factor i.
+        """
+        axial = self.modes.wavenumbers
+        if load is Load.NORMAL:  # as normal_on_end, from the core that is at hand
+            operator = self.core * (4 / np.pi / np.sqrt(axial**2 + self.lateral**2))
+        else:
+            operator = ON_END[load](axial, self.depth, self.lateral, self.poisson)
         return np.real(operator @ spectrum)
 
     def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
         """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
-        return np.asarray(self._top @ scaled_face_load)
+        return np.asarray(self.top @ scaled_face_load)
 
     def auxiliary_loads(
-        self, spectrum: ComplexArray, *, tangential: bool, shortest: float, resolution: Resolution
+        self, spectrum: ComplexArray, loads: Sequence[Load], *, shortest: float, resolution: Resolution
     ) -> AuxiliaryLoads:
-        """Solve for the loads on H and V that free the ends from a pressure and, if wanted, from an equal traction.
+        """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn.
 
         Parameters
         ----------
         spectrum : complex array (wavenumber, column)
-            Weighted spectrum of the pressure.
-        tangential : bool
-            Whether as many columns for the traction (without its factor i) follow.
+            Weighted spectrum of the distribution.
+        loads : sequence of Load
+            Directions; the columns of the first come first.
         shortest : float
             Smallest distance from a loaded corner that matters, metres.
         resolution : Resolution
             Quadrature settings.
         """
-        source = self.from_pressure(spectrum)
-        if tangential:
-            source = np.hstack([source, self.from_traction(spectrum)])
-        equivalent = self.on_top(self.solve(source))
+        equivalent = self.on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
         last = max(resolution.ray_reach / shortest, 4 * self.lateral)
         depth, weights = ray_nodes(0.5 * self.lateral, last, resolution)
         axial = self.modes.wavenumbers
-        own = spectrum.shape[1]
+        columns = spectrum.shape[1]
         total = self.modes.on_end[:, None] * equivalent
-        total[:, :own] += spectrum
+        own = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
+        if Load.NORMAL in own:
+            total[:, own[Load.NORMAL]] += spectrum
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
-        for k, normal, traction in ((axial, total, spectrum), (axial.conj(), total.conj(), spectrum.conj())):
+        for k, normal, asis in ((axial, total, spectrum), (axial.conj(), total.conj(), spectrum.conj())):
             face_load += 0.5 * normal_on_end(k, depth, self.lateral, self.poisson) @ normal
-            if tangential:
-                face_load[:, own:] += 0.5 * tangential_on_end(k, depth, self.lateral, self.poisson) @ traction
+            for load, place in own.items():
+                if load is not Load.NORMAL:
+                    face_load[:, place] += 0.5 * ON_END[load](k, depth, self.lateral, self.poisson) @ asis
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)

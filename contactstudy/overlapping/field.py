@@ -8,20 +8,21 @@ rays, where every factor decays with the distance from the loaded corner; the fi
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import DECAY_LENGTHS
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import LateralLoads
+from contactstudy.overlapping.lateral import LateralColumns
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.overlapping.problem import EndProblem, parity_parts, views_of
 from contactstudy.threads import one_blas_thread
 
-# Positions over the length that agree to this many digits are the same distance from either end.
 SAME_POSITION = 12
+"""Digits to which positions over the length agree that are the same distance from either end. Accuracy."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,23 @@ class Harmonics:
         return len(self.even_in_y) + len(self.odd_in_y)
 
 
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """A field that is wanted, at the tensor product of `x`, `y` and `z`."""
+
+    problem: EndProblem
+    harmonics: Harmonics
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    reference: float | None
+
+    def zeros(self) -> FloatArray:
+        """Field (load, component, x, z, y), in the order in which it is summed."""
+        counts = (len(self.problem.loads), self.harmonics.count)
+        return np.zeros((*counts, self.x.size, self.z.size, self.y.size))
+
+
 def end_field(
     problem: EndProblem,
     harmonics: Harmonics,
@@ -62,7 +80,7 @@ def end_field(
     z: FloatArray,
     *,
     reference: float | None = None,
-) -> FloatArray:
+) -> dict[Load, FloatArray]:
     """Field that the free ends add to the half-space with all mirrored loads.
 
     Parameters
@@ -79,106 +97,96 @@ def end_field(
 
     Returns
     -------
-    array (load, component, x, y, z)
-        Under the pressure and, if wanted, under the traction.
+    dict of Load to array (component, x, y, z)
+        Under the load in each of the problem's directions.
     """
     with one_blas_thread():
-        return _layers(problem, harmonics, x, y, z, reference).swapaxes(3, 4)
+        field = _at_few_positions(_Task(problem, harmonics, x, y, z, reference))
+    return dict(zip(problem.loads, field.swapaxes(3, 4), strict=True))
 
 
-def _layers(
-    problem: EndProblem, harmonics: Harmonics, x: FloatArray, y: FloatArray, z: FloatArray, reference: float | None
-) -> FloatArray:
-    """Field as an array (load, component, x, z, y), in the order in which it is summed."""
-    fewer = graded_interpolation(x, problem.length, POSITIONS_PER_PANEL)
-    if fewer is not None:
-        positions, interpolation = fewer
-        coarse = _layers(problem, harmonics, positions, y, z, reference)
-        return (interpolation @ coarse.reshape(*coarse.shape[:3], -1)).reshape(*coarse.shape[:2], -1, z.size, y.size)
-    if np.isinf(problem.length):
-        return _first_half(problem, {0: problem.pressure}, harmonics, x, y, z, reference)[0]
-    # Parts of the load even and odd about mid-length make fields of which one half is the other's image.
-    half, where = np.unique(np.round(problem.from_end(x) / problem.length, SAME_POSITION), return_inverse=True)
-    parts = parity_parts(problem.pressure)
-    fields = _first_half(problem, parts, harmonics, problem.length * half, y, z, reference)
+def _at_few_positions(task: _Task) -> FloatArray:
+    """Field at many positions along x, by interpolation from fewer that are graded towards the ends."""
+    fewer = graded_interpolation(task.x, task.problem.length, POSITIONS_PER_PANEL)
+    if fewer is None:
+        return _by_symmetry(task)
+    positions, interpolation = fewer
+    field = _by_symmetry(replace(task, x=positions))
+    shape = (*field.shape[:2], task.x.size, *field.shape[3:])
+    return np.asarray(interpolation @ field.reshape(*field.shape[:3], -1)).reshape(shape)
+
+
+def _by_symmetry(task: _Task) -> FloatArray:
+    """Field from its parts even and odd about mid-length, of which one half is the other's image."""
+    problem, harmonics, length = task.problem, task.harmonics, task.problem.length
+    if np.isinf(length):
+        return _with_corner(task, {0: problem.cells})[0]
+    half, where = np.unique(np.round(problem.from_end(task.x) / length, SAME_POSITION), return_inverse=True)
+    fields = _with_corner(replace(task, x=length * half), parity_parts(problem.cells))
     signs = np.ones((harmonics.count, 1, 1, 1))
     signs[harmonics.odd_along_x] = -1.0
     first = sum(fields.values())
     second = sum(field * (parity * signs) for parity, field in fields.items())
-    result = np.empty((1 + problem.tangential, harmonics.count, x.size, z.size, y.size))
-    beyond = x > 0.5 * problem.length
+    result = task.zeros()
+    beyond = task.x > 0.5 * length
     for rows, seen in ((np.flatnonzero(~beyond), first), (np.flatnonzero(beyond), second)):
         result[:, :, rows] = np.asarray(seen)[:, :, where[rows]]
     return result
 
 
-def _first_half(
-    problem: EndProblem,
-    parts: Mapping[int, FloatArray],
-    harmonics: Harmonics,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    reference: float | None,
-) -> dict[int, FloatArray]:
-    """Layers of the load's parts, by parity, at points no farther from end I than from end II."""
-    offset = problem.corner_offset
-    result = _away_from_corner(problem, parts, harmonics, x, y, z, reference)
-    rows, columns = np.flatnonzero(x < offset), np.flatnonzero(z < offset)
+def _with_corner(task: _Task, parts: Mapping[int, FloatArray]) -> dict[int, FloatArray]:
+    """Field by parity; points on the loaded corner itself are evaluated a little below it."""
+    offset = task.problem.corner_offset
+    result = _sum_over_wavenumbers(task, parts)
+    rows, columns = np.flatnonzero(task.x < offset), np.flatnonzero(task.z < offset)
     if rows.size and columns.size:
-        at_corner = _away_from_corner(problem, parts, harmonics, x[rows], y, np.array([offset]), reference)
+        at_corner = _sum_over_wavenumbers(replace(task, x=task.x[rows], z=np.array([offset])), parts)
         for parity, field in result.items():
             field[:, :, rows[:, None], columns] = at_corner[parity]
     return result
 
 
-def _away_from_corner(
-    problem: EndProblem,
-    parts: Mapping[int, FloatArray],
-    harmonics: Harmonics,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    reference: float | None,
-) -> dict[int, FloatArray]:
-    distance = np.hypot(x[:, None], z[None, :])
+def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> dict[int, FloatArray]:
+    """Field by parity: the integral over the wavenumber along y."""
+    problem, harmonics = task.problem, task.harmonics
+    distance = np.hypot(task.x[:, None], task.z[None, :])
     shortest = max(float(distance.min()), problem.corner_offset)
-    shape = (1 + problem.tangential, harmonics.count, x.size, z.size, y.size)
-    result = {parity: np.zeros(shape) for parity in parts}
-    for panel in problem.panels(y, shortest, reference):
+    result = {parity: task.zeros() for parity in parts}
+    for panel in problem.panels(task.y, shortest, task.reference):
         if panel.nodes[0] * distance.min() >= DECAY_LENGTHS:
             break
-        for loads in problem.batches(panel, parts, y):
-            near = loads.nodes[0] * distance < DECAY_LENGTHS
-            rows, columns = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
+        for columns in problem.batches(panel, parts, task.y):
+            near = columns.nodes[0] * distance < DECAY_LENGTHS
+            rows, depths = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
             if not rows.size:
                 break
-            amplitudes = _amplitudes(problem, harmonics, loads, x[rows], z[columns], shortest)
+            amplitudes = _amplitudes(replace(task, x=task.x[rows], z=task.z[depths]), columns, shortest)
             for parity, field in result.items():
-                own = amplitudes[..., loads.parities == parity]
+                own = amplitudes[..., columns.parities == parity]
                 flat = own.reshape(*own.shape[:4], -1)
-                for load, values, waves in zip(field, flat, loads.syntheses(parity), strict=False):
-                    for components, synthesis in zip((harmonics.even_in_y, harmonics.odd_in_y), waves, strict=True):
-                        for component in components:
-                            load[component, rows[:, None], columns] += values[component] @ synthesis
+                for i, load in enumerate(problem.loads):
+                    even, odd = columns.synthesis(load, parity)
+                    for component in range(harmonics.count):
+                        wave = even if component in harmonics.even_in_y else odd
+                        field[i, component, rows[:, None], depths] += flat[i, component] @ wave
     return result
 
 
-def _amplitudes(
-    problem: EndProblem, harmonics: Harmonics, loads: LateralLoads, x: FloatArray, z: FloatArray, shortest: float
-) -> FloatArray:
-    """Answers to a batch of loads: array (load, component, x, z, wavenumber, column)."""
-    count = 1 + problem.tangential
-    amplitudes = np.zeros((count, harmonics.count, x.size, z.size, loads.nodes.size, loads.parities.size))
+def _amplitudes(task: _Task, columns: LateralColumns, shortest: float) -> FloatArray:
+    """Answers to a batch of columns: array (load, component, x, z, wavenumber, column)."""
+    problem, harmonics, z = task.problem, task.harmonics, task.z
+    count = len(problem.loads)
+    shape = (task.x.size, z.size, columns.nodes.size, columns.parities.size)
+    amplitudes = np.zeros((count, harmonics.count, *shape))
     depths = np.arange(z.size)[:, None]
-    for view in views_of(problem, loads, x, shortest):
-        for number, lateral in enumerate(loads.nodes):
+    for view in views_of(problem, columns, task.x, shortest):
+        for number, lateral in enumerate(columns.nodes):
             system, (equivalent, depth, face_load) = problem.auxiliary_loads(view, float(lateral), number, shortest)
             field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
             field += harmonics.beside_face_load(system, depth, face_load, view.x, z)
             by_load = field.reshape(*field.shape[:3], count, -1)
-            for load in range(count):
-                amplitudes[load][:, view.rows[:, None, None], depths, number, view.columns] = by_load[:, :, :, load]
+            for i in range(count):
+                amplitudes[i][:, view.rows[:, None, None], depths, number, view.columns] = by_load[:, :, :, i]
     return amplitudes
 
 

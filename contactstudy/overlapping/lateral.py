@@ -17,18 +17,24 @@ from scipy import special
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray, IntArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
 
-# A part smaller than this, over the load, is left out: a contact symmetric but for its tolerance is symmetric.
 NEGLIGIBLE = 1e-9
-# Below this wavenumber along y, over the smallest length of the problem, an amplitude is its poles and a constant. The
-# double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is taken much lower.
+"""Part of a load that is left out: a contact that is symmetric but for its tolerance is symmetric. Accuracy."""
+
 POLES_ALONE = 0.01
+"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and a constant.
+Accuracy. The double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is much lower."""
+
 POLE_SAMPLES = (1 / 3, 2 / 3, 1.0)
-# Phase in radians that one Gauss node follows.
+"""Where the poles are found, over that wavenumber. Accuracy."""
+
 PHASE_PER_NODE = 1.8
-# Columns, over all their wavenumbers, that share one set of points and one product along y.
+"""Phase that one Gauss node follows, radians. Accuracy."""
+
 BATCH = 16
+"""Columns, over all their wavenumbers, that share one set of points and one product along y. Speed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,45 +72,43 @@ class LateralPanel:
 
 
 @dataclass(frozen=True, eq=False)
-class LateralLoads:
-    """Top loads within one panel or a part of it, as columns for which the body is asked.
-
-    A column is asked for as a pressure and, where that is wanted, as a traction along y.
+class LateralColumns:
+    """A load within one panel or a part of it, as few functions of x ("columns") for which the body is solved.
 
     Attributes
     ----------
     nodes : array
         Wavenumbers along y, 1/m.
-    columns : array (cell, node or 1, column)
-        Functions of x.
+    along_x : array (cell, node or 1, column)
+        The functions of x.
     parities : array (column)
         1 or -1 for a part of the load even or odd about mid-length, 0 for a load that is not split.
     even, odd : array (node, column, y)
-        From the answers to their sum at positions y, for what under a pressure even in y is even or odd.
+        From the answers to their sum at positions y, for what under a load even in y is even or odd.
     """
 
     nodes: FloatArray
-    columns: FloatArray
+    along_x: FloatArray
     parities: IntArray
     even: FloatArray
     odd: FloatArray
 
-    def syntheses(self, parity: int) -> list[tuple[FloatArray, FloatArray]]:
-        """`even` and `odd` of one parity for the pressure and, likewise, for the traction: arrays (node column, y).
+    def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
+        """`even` and `odd` of one parity for a load in one direction: arrays (node column, y).
 
-        Kernels of a traction carry a factor i against those of a pressure, which turns a cosine into a sine.
+        Kernels of a load that a reflection along y turns round carry a factor i, which turns a cosine into a sine.
         """
         own = self.parities == parity
         even, odd = (waves[:, own].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
-        return [(even, odd), (odd, -even)]
+        return (even, odd) if load.sign_y > 0 else (odd, -even)
 
-    def batches(self) -> Iterator[LateralLoads]:
+    def batches(self) -> Iterator[LateralColumns]:
         """Parts of about `BATCH` columns over all their nodes."""
         step = max(1, BATCH // max(1, self.parities.size))
         for start in range(0, self.nodes.size, step):
             part = slice(start, start + step)
-            columns = self.columns if self.columns.shape[1] == 1 else self.columns[:, part]
-            yield LateralLoads(self.nodes[part], columns, self.parities, self.even[part], self.odd[part])
+            along_x = self.along_x if self.along_x.shape[1] == 1 else self.along_x[:, part]
+            yield LateralColumns(self.nodes[part], along_x, self.parities, self.even[part], self.odd[part])
 
 
 def lateral_panels(
@@ -142,52 +146,52 @@ def lateral_panels(
     return panels
 
 
-def lateral_loads(
+def lateral_columns(
     panel: LateralPanel, parts: Mapping[int, FloatArray], grid: Grid, y: FloatArray
-) -> LateralLoads | None:
-    """Columns of the `parts` (by parity) of a cell-wise uniform pressure within one panel; None if there are none."""
+) -> LateralColumns | None:
+    """Columns of the `parts` (by parity) of a cell-wise uniform load within one panel; None if there are none."""
     width = grid.dy * np.sinc(panel.fine * grid.dy / (2 * np.pi))
     phase = np.outer(grid.y, panel.fine)
     waves = [function(phase) * width for function in (np.cos, np.sin)]
     cosine, sine = panel.waves(y)
-    columns, parities, even, odd = [], [], [], []
-    for parity, pressure in parts.items():
-        spectra = [pressure @ wave for wave in waves]
+    along_x, parities, even, odd = [], [], [], []
+    for parity, cells in parts.items():
+        spectra = [cells @ wave for wave in waves]
         least = NEGLIGIBLE * max(np.abs(spectrum).max() for spectrum in spectra)
         for spectrum, at_even, at_odd in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
             if np.abs(spectrum).max() > least:
-                columns.append(spectrum)
+                along_x.append(spectrum)
                 parities.append(parity)
                 even.append(at_even)
                 odd.append(at_odd)
-    if not columns:
+    if not along_x:
         return None
-    loads = LateralLoads(
-        panel.fine, np.stack(columns, axis=-1), np.array(parities), np.stack(even, axis=1), np.stack(odd, axis=1)
+    columns = LateralColumns(
+        panel.fine, np.stack(along_x, axis=-1), np.array(parities), np.stack(even, axis=1), np.stack(odd, axis=1)
     )
-    return loads if panel.interpolation is None else _at_nodes(loads, panel.nodes, panel.interpolation)
+    return columns if panel.interpolation is None else _at_nodes(columns, panel.nodes, panel.interpolation)
 
 
-def _at_nodes(loads: LateralLoads, nodes: FloatArray, interpolation: FloatArray) -> LateralLoads:
-    """Return the same loads as few functions of x, asked for at few nodes; as they are, if that is not less to ask."""
-    cells, fine, asked = loads.columns.shape
-    columns, parities, factors = [], [], []
-    for parity in np.unique(loads.parities):
-        own = loads.parities == parity
-        left, values, right = np.linalg.svd(loads.columns[..., own].reshape(cells, -1), full_matrices=False)
+def _at_nodes(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
+    """Return the same load as few functions of x at few nodes; as it is, if that is not less to solve for."""
+    cells, fine, given = columns.along_x.shape
+    along_x, parities, factors = [], [], []
+    for parity in np.unique(columns.parities):
+        own = columns.parities == parity
+        left, values, right = np.linalg.svd(columns.along_x[..., own].reshape(cells, -1), full_matrices=False)
         rank = int((values > NEGLIGIBLE * values[0]).sum())
         along = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
-        columns.append(left[:, :rank])
+        along_x.append(left[:, :rank])
         parities.append(np.full(rank, parity))
         factors.append((own, interpolation.T[:, None, :, None] * along))
     count = np.concatenate(parities)
-    if nodes.size * count.size >= fine * asked:
-        return loads
+    if nodes.size * count.size >= fine * given:
+        return columns
     even, odd = (
         np.concatenate([np.tensordot(factor, waves[:, own], axes=2) for own, factor in factors], axis=1)
-        for waves in (loads.even, loads.odd)
+        for waves in (columns.even, columns.odd)
     )
-    return LateralLoads(nodes, np.concatenate(columns, axis=1)[:, None, :], count, even, odd)
+    return LateralColumns(nodes, np.concatenate(along_x, axis=1)[:, None, :], count, even, odd)
 
 
 def cosine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:

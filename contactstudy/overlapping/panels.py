@@ -13,6 +13,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.overlapping.quadrature import growing_edges, lagrange, panel_nodes
 
 POSITIONS_PER_PANEL = 8
+"""Gauss positions per panel along x. Accuracy."""
 
 
 def graded_positions(reach: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:

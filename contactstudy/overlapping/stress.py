@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.field import Harmonics, end_field, real_product
 from contactstudy.overlapping.problem import EndProblem
 
 
-def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> dict[Load, FloatArray]:
     """Stresses that the free ends add to the half-space with all mirrored loads.
 
     Parameters
@@ -22,8 +23,8 @@ def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray)
 
     Returns
     -------
-    array (load, 6, x, y, z)
-        Under the pressure and, if wanted, under the traction: xx, yy, zz, xy, xz, yz in Pa.
+    dict of Load to array (6, x, y, z)
+        Under the load in each of the problem's directions: xx, yy, zz, xy, xz, yz in Pa.
     """
     return end_field(problem, STRESS, x, y, z)
 

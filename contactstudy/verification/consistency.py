@@ -11,8 +11,10 @@ from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.checks import FloatArray
 from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stress_field
 from contactstudy.fields.surface import surface_displacement
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
@@ -31,7 +33,9 @@ def free_end_checks() -> Iterator[Check]:
         pressure = on_cells(strip, (0, length), (-2, 2), (round(16 * length), 64))
         grid = Grid.from_centres(pressure["x"].values, pressure["y"].values)
         for depths, label in (((0.02, 0.05), "z = 0.02a, 0.05a"), ((0.1, 0.3, 1.0, 5.0), "z >= 0.1a")):
-            found = end_traction_residual(_body(length), pressure.values, 0.3, grid, grid.y[::5], np.array(depths))
+            found = end_traction_residual(
+                _body(length), sliding(pressure.values, 0.3), grid, grid.y[::5], np.array(depths)
+            )
             case = f"strip load on both ends, L = {length:g}a, f = 0.3"
             yield compare(case, f"traction on the ends / p0, {label}", "free ends", found, 0.0, 1e-4)
 
@@ -120,10 +124,12 @@ def alternation_checks() -> Iterator[Check]:
     settings = Resolution()
     modes = axial_modes(8.0, 2.0, 0.05, settings)[0]
     system = EquationSet.build(modes, 2.0, 0.3, 0.05, settings)
-    asked: FloatArray = system.from_pressure(modes.load_weights * modes.cell_integrals(np.array([0.0, 3.0]))[:, 0])
+    asked: FloatArray = system.source(
+        Load.NORMAL, modes.load_weights * modes.cell_integrals(np.array([0.0, 3.0]))[:, 0]
+    )
     explicit, face_load = system.solve(asked), asked.copy()
     for _ in range(200):
-        face_load = asked + system.from_pressure(modes.on_end * system.on_top(system.scale * face_load))
+        face_load = asked + system.source(Load.NORMAL, modes.on_end * system.on_top(system.scale * face_load))
     scale = np.abs(explicit).max()
     yield compare_fields(
         "equivalent loads at one wavenumber, 200 alternations",

@@ -19,7 +19,8 @@ from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
-from contactstudy.fields.surface import SurfaceOperator
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -199,9 +200,9 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     pressure = np.broadcast_to(quartic(grid.y), grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
-    stress = end_stress(EndProblem(8.0, 0.3, pressure, grid, True, resolution), *points)
-    operator = SurfaceOperator(body, grid, tangential=False, resolution=resolution)
-    return stress, operator(pressure)
+    stress = end_stress(EndProblem(8.0, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, resolution), *points)
+    operator = SurfaceOperator.of(OperatorRequest(body, grid, resolution=resolution))
+    return np.stack([stress[load] for load in stress]), operator({Load.NORMAL: pressure})
 
 
 def _quadrature_errors(resolution: Resolution) -> tuple[float, float]:

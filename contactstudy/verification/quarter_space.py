@@ -20,6 +20,7 @@ from contactstudy.bodies.models import HalfSpace, QuarterSpace
 from contactstudy.checks import FloatArray
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import surface_displacement
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
@@ -102,7 +103,7 @@ def resultant_checks() -> Iterator[Check]:
         (modes,) = axial_modes(np.inf, lateral, 1e-4, settings)
         system = EquationSet.build(modes, lateral, poisson, 1e-4, settings)
         spectrum = modes.load_weights * modes.cosine(np.array([place]))[:, 0]
-        scaled = system.solve(system.from_pressure(spectrum))
+        scaled = system.solve(system.source(Load.NORMAL, spectrum))
         on_top = system.on_top(scaled) / modes.weights
         small = np.abs(modes.ray) < 3e-3  # against 1 / place; the lateral wavenumber is smaller still
         top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[small]), on_top.real[small]))
@@ -143,12 +144,12 @@ def antiplane_checks() -> Iterator[Check]:
     system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
     near = system.depth > 1e-3  # below the wavelength along y there is always some
-    scale = np.abs(system.from_pressure(spectrum)[near]).max()
+    scale = np.abs(system.source(Load.NORMAL, spectrum)[near]).max()
     yield compare_fields(
         "traction along y that does not vary along y",
         "load asked of the end, over that for an equal pressure",
         SOURCE,
-        system.from_traction(spectrum)[near] / scale,
+        system.source(Load.ALONG_Y, spectrum)[near] / scale,
         0.0,
         1e-4,
     )

@@ -11,8 +11,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import Body, FiniteLengthSpace, Grid, HalfSpace, stress_field
-from contactstudy.fields.surface import SurfaceOperator, surface_operator
-from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.kernels.load import Load
 from tests.benchmarks.peers import contact_of
 from tests.benchmarks.problems import HALF_WIDTH, STEEL, roller
 from tests.benchmarks.timing import Report, Row, medians, nudge, show
@@ -25,14 +25,14 @@ def building(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and what a second case pays for it."""
     grid = Grid((0.0, 8 * HALF_WIDTH), (-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), 128, 64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
-    surface_operator(body, grid, tangential=False)
+    surface_operator(OperatorRequest(body, grid))
     works: dict[str, Callable[[], object]] = {
-        "cold": lambda: SurfaceOperator(body, grid, tangential=False, resolution=Resolution()),
-        "friction": lambda: SurfaceOperator(body, grid, tangential=True, resolution=Resolution()),
-        "kept": lambda: surface_operator(body, grid, tangential=False),
+        "cold": lambda: SurfaceOperator.of(OperatorRequest(body, grid)),
+        "friction": lambda: SurfaceOperator.of(OperatorRequest(body, grid, (Load.NORMAL, Load.ALONG_Y))),
+        "kept": lambda: surface_operator(OperatorRequest(body, grid)),
     }
     seconds = medians(works, repeats, warm_up=False)
-    held = surface_operator(body, grid, tangential=False).nbytes / 1e6
+    held = surface_operator(OperatorRequest(body, grid)).nbytes / 1e6
     yield Row(
         "building the operator, 128 x 64, L = 8a",
         show(seconds["cold"]),
@@ -103,7 +103,7 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)
         grid = Grid.from_centres(problem.labelled()["x"].values, problem.labelled()["y"].values)
-        make = partial(SurfaceOperator, problem.body, grid, tangential=False, resolution=Resolution())
+        make = partial(SurfaceOperator.of, OperatorRequest(problem.body, grid))
         build[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
         contact[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
         counts[cells] = int(contact_of(problem)["iterations"])

@@ -16,6 +16,7 @@ from contactstudy import (
     surface_displacement,
 )
 from contactstudy.bodies.models import guilbault_factor
+from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual
 from contactstudy.verification.load_cases import LINE_LOAD
 
@@ -40,7 +41,7 @@ def test_mirror_leaves_normal_stress_on_the_ends_and_no_shear(strip_pressure, un
     assert float(np.abs(stress["sigma_xx"]).min()) > 0.1
     assert float(np.abs(stress["tau_xz"]).max()) < 1e-8
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-    assert end_traction_residual(body, pressure.values, 0.0, grid, np.zeros(1), np.array([0.1])) > 0.3
+    assert end_traction_residual(body, sliding(pressure.values, 0.0), grid, np.zeros(1), np.array([0.1])) > 0.3
 
 
 def test_factor_multiplies_the_mirrored_loads_only(on_cells, unit_material: Material) -> None:

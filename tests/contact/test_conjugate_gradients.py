@@ -10,12 +10,19 @@ from scipy import optimize
 
 from contactstudy import FiniteLengthSpace, Grid, Material
 from contactstudy.contact.conjugate_gradients import Resultants, solve_complementarity
-from contactstudy.fields.surface import surface_operator
+from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.kernels.load import Load
 
 GRID = Grid((0.0, 3.0), (-1.0, 1.0), 18, 12)
-OPERATOR = surface_operator(FiniteLengthSpace(material=Material(1.0, 0.3), length=3.0), GRID, tangential=False)
+BODY_OPERATOR = surface_operator(OperatorRequest(FiniteLengthSpace(material=Material(1.0, 0.3), length=3.0), GRID))
+
+
+def operator(pressure: np.ndarray) -> np.ndarray:
+    return BODY_OPERATOR({Load.NORMAL: pressure})
+
+
 SIZE = GRID.cells_x * GRID.cells_y
-MATRIX = np.stack([OPERATOR(unit.reshape(GRID.shape)).ravel() for unit in np.eye(SIZE)], axis=1)
+MATRIX = np.stack([operator(unit.reshape(GRID.shape)).ravel() for unit in np.eye(SIZE)], axis=1)
 LEVER = GRID.x[:, None] - 1.7
 TILTING = Resultants(50.0, LEVER)
 
@@ -40,8 +47,8 @@ def bad_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
 def test_a_prescribed_approach_against_non_negative_least_squares(rng: np.random.Generator, sharp: bool):
     gap = rough_gap(rng, sharp) - 0.5
     found = solve_complementarity(
-        OPERATOR,
-        OPERATOR.precondition,
+        operator,
+        BODY_OPERATOR.precondition,
         gap,
         Resultants(None),
         bad_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0),
@@ -62,8 +69,8 @@ def test_a_prescribed_load_meets_the_conditions_of_contact(
 ):
     gap = rough_gap(rng, sharp)
     found = solve_complementarity(
-        OPERATOR,
-        OPERATOR.precondition,
+        operator,
+        BODY_OPERATOR.precondition,
         gap,
         resultants,
         bad_guess(rng, gap),
@@ -73,7 +80,7 @@ def test_a_prescribed_load_meets_the_conditions_of_contact(
     assert found.converged
     assert found.pressure.min() >= 0
     assert found.pressure.sum() == pytest.approx(50.0)
-    sunk = OPERATOR(found.pressure)
+    sunk = operator(found.pressure)
     opening = gap + sunk - found.motion[0]
     if resultants.lever is not None:
         assert abs(float((found.pressure * LEVER).sum())) < 1e-9 * 50.0

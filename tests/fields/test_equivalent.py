@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, QuarterSpace, equivalent_loads
+from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping import problem
 
@@ -20,12 +21,10 @@ def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
     y = grid.y[[10, 28, 33, 50]]
 
-    def on_ends(load: np.ndarray, tangential: bool) -> np.ndarray:
-        return half_space_stress(
-            load, 0.3, grid, np.array([0.0, 8.0]), y, depths, extent=(0.0, 8.0), tangential=tangential
-        )[int(tangential), 0]
+    def on_ends(load: Load, cells: np.ndarray) -> np.ndarray:
+        return half_space_stress(load, cells, 0.3, grid, np.array([0.0, 8.0]), y, depths, extent=(0.0, 8.0))[0]
 
-    left = on_ends(loads["P_h1"].values, False) + friction * on_ends(pressure.values, True)
+    left = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
     # The top load is known on cells here, and within the window only.
     assert np.abs(left[0] - loads["P_v1"].sel(y=y)).max() < 2e-2
     assert np.abs(left[1] - loads["P_v2"].sel(y=y)).max() < 2e-2

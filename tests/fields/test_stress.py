@@ -9,7 +9,8 @@ import xarray as xr
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, stress_field
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.fields.stress import end_traction_residual, raw_stress
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.stress import end_traction_residual, stress_under
 from contactstudy.verification import closed_forms as ref
 from contactstudy.verification.load_cases import LOAD_CASES
 from contactstudy.verification.stored import load_stress
@@ -76,7 +77,7 @@ def test_free_ends_against_independent_finite_elements(name: str, on_cells) -> N
     assert np.median(difference) < 3e-6
     # The check can fail: the mirrored half-space alone is wrong by ten times as much and more.
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-    bare = raw_stress(HalfSpace(material=body.material), pressure.values, case.friction, grid, **points)
+    bare = stress_under(HalfSpace(material=body.material), sliding(pressure.values, case.friction), grid, **points)
     assert np.abs(bare[0] - reference.stress["sigma_xx"].transpose("x", "y", "z").values).max() > 1e-2
 
 
@@ -87,8 +88,9 @@ def test_ends_are_free_at_every_depth(strip_pressure, length: float, friction: f
     body = FiniteLengthSpace(length=length, material=Material(1.0, 0.3))
     grid = Grid.from_centres(pressure.x.values, pressure.y.values)
     y = pressure.y.values[::5]
-    shallow = end_traction_residual(body, pressure.values, friction, grid, y, np.array([0.02, 0.05]))
-    deep = end_traction_residual(body, pressure.values, friction, grid, y, np.array([0.1, 0.3, 1.0, 5.0]))
+    loads = sliding(pressure.values, friction)
+    shallow = end_traction_residual(body, loads, grid, y, np.array([0.02, 0.05]))
+    deep = end_traction_residual(body, loads, grid, y, np.array([0.1, 0.3, 1.0, 5.0]))
     assert shallow < 1e-4
     assert deep < 1e-5
 
@@ -99,9 +101,8 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
     step = 0.02
     for centre in ([0.3, 0.4, 0.5], [4.0, -0.6, 1.0], [7.9, 0.2, 0.3]):
         axes = [np.array([c - step, c, c + step]) for c in centre]
-        s = raw_stress(
-            short_body, pressure.values, friction, Grid.from_centres(pressure.x.values, pressure.y.values), *axes
-        )
+        grid = Grid.from_centres(pressure.x.values, pressure.y.values)
+        s = stress_under(short_body, sliding(pressure.values, friction), grid, *axes)
         xx, yy, zz, xy, xz, yz = s
 
         def slope(values: np.ndarray, axis: int) -> float:

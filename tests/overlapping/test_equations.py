@@ -8,12 +8,13 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid, Material
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import axial_modes
-from contactstudy.overlapping.displacement import build_end_correction
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
+from contactstudy.overlapping.surface import build_end_correction
 
 
 @pytest.mark.parametrize("lateral", [0.3, 2.0, 20.0])
@@ -24,12 +25,12 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
     chosen = modes[min(parity, len(modes) - 1)]
     system = EquationSet.build(chosen, lateral, 0.3, 0.05, Resolution())
     load = chosen.load_weights * chosen.cell_integrals(np.array([0.0, 3.0]))[:, 0]
-    asked = system.from_pressure(load)
+    asked = system.source(Load.NORMAL, load)
     explicit = system.solve(asked)
     face_load = asked.copy()
     for _ in range(200):
         on_top = system.on_top(system.scale * face_load)
-        face_load = asked + system.from_pressure(chosen.on_end * on_top)
+        face_load = asked + system.source(Load.NORMAL, chosen.on_end * on_top)
     assert np.abs(system.scale * face_load - explicit).max() < 1e-9 * np.abs(explicit).max()
     assert np.abs(explicit - system.scale * asked).max() > 0.05 * np.abs(explicit).max()
 
@@ -38,9 +39,9 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid((0.0, length), (-2.0, 2.0), 24, 16)
     correction = build_end_correction(
-        length, Material(1.0, 0.3), grid, reference=80.0, tangential=False, resolution=Resolution()
+        length, Material(1.0, 0.3), grid, (Load.NORMAL,), reference=80.0, resolution=Resolution()
     )
-    for kernel in correction.normal:
+    for kernel in correction.kernels[Load.NORMAL]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 
@@ -50,7 +51,9 @@ def test_no_internal_setting_matters() -> None:
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
 
     def stress(resolution: Resolution) -> np.ndarray:
-        return end_stress(EndProblem(8.0, 0.3, pressure, grid, True, resolution), *points)
+        both = (Load.NORMAL, Load.ALONG_Y)
+        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), *points)
+        return np.stack([fields[load] for load in both])
 
     usual = stress(Resolution())
     finer = {

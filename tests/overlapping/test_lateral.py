@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from scipy import integrate, special
 
 from contactstudy import Grid
-from contactstudy.overlapping.lateral import LateralPanel, cosine_moments, lateral_loads, lateral_panels
+from contactstudy.overlapping.lateral import LateralPanel, cosine_moments, lateral_columns, lateral_panels
 from contactstudy.overlapping.quadrature import Resolution
 
 GRID = Grid((0.0, 4.0), (-1.0, 1.0), 12, 40)
@@ -22,7 +22,7 @@ Y = np.array([-1.5, -0.2, 0.0, 0.7])
 def answered(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
     """Sums over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
     total = np.zeros((2, 2, len(parts), GRID.cells_x, Y.size))
-    loads = lateral_loads(panel, parts, GRID, Y)
+    loads = lateral_columns(panel, parts, GRID, Y)
     assert loads is not None
     for batch in loads.batches():
         for place, parity in enumerate(parts):
@@ -50,7 +50,7 @@ def test_few_columns_say_what_every_wavenumber_says(seed: int, rank: int, split:
 def test_a_product_of_x_and_y_is_asked_for_at_few_wavenumbers():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
-    loads = [lateral_loads(panel, {0: pressure}, GRID, Y) for panel in panels]
+    loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]
     columns = [each.nodes.size * each.parities.size for each in loads if each is not None]
     assert sum(columns) < 0.4 * sum(2 * panel.fine.size for panel in panels)
     assert columns[-1] == Resolution().lateral_nodes
@@ -58,14 +58,14 @@ def test_a_product_of_x_and_y_is_asked_for_at_few_wavenumbers():
 
 def test_a_load_that_is_even_in_y_has_no_odd_columns():
     pressure = np.ones(GRID.shape)
-    loads = lateral_loads(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID, Y)
+    loads = lateral_columns(lateral_panels(0.05, 2.5, 60.0, Resolution())[1], {0: pressure}, GRID, Y)
     assert loads is not None
     assert loads.parities.size == 1
 
 
 def test_no_load_has_no_columns():
     panel = lateral_panels(0.05, 2.5, 60.0, Resolution())[1]
-    assert lateral_loads(panel, {}, GRID, Y) is None
+    assert lateral_columns(panel, {}, GRID, Y) is None
 
 
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])

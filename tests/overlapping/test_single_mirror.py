@@ -20,7 +20,9 @@ from contactstudy import (
     surface_displacement,
 )
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.fields.stress import end_traction_residual, raw_stress
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.stress import end_traction_residual, stress_under
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -48,7 +50,7 @@ def test_ends_are_free_of_normal_stress_and_carry_some_shear(
 ) -> None:
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     body = single_mirror(4.0, unit_material)
-    stress = raw_stress(body, eccentric.values, friction, grid, np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    stress = stress_under(body, sliding(eccentric.values, friction), grid, np.array([0.0, 4.0]), ACROSS, DEPTHS)
     assert np.abs(stress[0]).max() < 3e-5
     assert np.abs(stress[4]).max() > 3e-3
 
@@ -56,8 +58,10 @@ def test_ends_are_free_of_normal_stress_and_carry_some_shear(
 def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
     """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
-    problem = EndProblem(4.0, 0.3, eccentric.values, grid, True, Resolution(), mirrored_once=True)
-    added = end_stress(problem, np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))
+    both = (Load.NORMAL, Load.ALONG_Y)
+    problem = EndProblem(4.0, 0.3, eccentric.values, both, grid, Resolution(), mirrored_once=True)
+    fields = end_stress(problem, np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))
+    added = np.stack([fields[load] for load in both])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
     assert np.abs(added[:, 0]).max() > 0.03
 
@@ -110,7 +114,7 @@ def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_mater
         grid = Grid.from_centres(pressure.x.values, pressure.y.values)
         depths = np.append(DEPTHS, [length, 2 * length])
         left[length] = [
-            end_traction_residual(body, pressure.values, FRICTION, grid, ACROSS, depths)
+            end_traction_residual(body, sliding(pressure.values, FRICTION), grid, ACROSS, depths)
             for body in (
                 single_mirror(length, unit_material),
                 FiniteLengthSpace(length=length, material=unit_material),

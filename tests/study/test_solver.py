@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from contactstudy import solve
+from contactstudy import cache, solve
 from contactstudy.fields import surface
 from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
@@ -69,17 +69,12 @@ def test_one_is_one_case(tmp_path):
 
 def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
     made = []
-
-    class Counted(surface.SurfaceOperator):
-        def __init__(self, body, grid, **options):
-            made.append((body, grid, tuple(sorted(options.items(), key=repr))))
-            super().__init__(body, grid, **options)
-
-    monkeypatch.setattr(surface, "SurfaceOperator", Counted)
+    build = surface.SurfaceOperator.of
+    monkeypatch.setattr(surface.SurfaceOperator, "of", lambda request: made.append(request) or build(request))
     # Friction outside: in the study's order the operators would alternate.
     sweep = {"friction": [0.0, 0.1, 0.2], "e_over_a": [0.0, 1.0]}
     study = small_study(base=BASE | {"stresses": False, "radius": 5.001e-3}, sweep=sweep, level="summary")
     assert run_study(study, tmp_path, workers=0).counts == {"ok": 6}
-    assert len([entry for entry in made if entry[0].model == "exact"]) == 2
+    assert len([entry for entry in made if entry.body.model == "exact"]) == 2
     assert len(made) == len(set(made))
-    assert surface._OPERATORS.limit <= 2**30
+    assert cache.info().limit <= 2**31

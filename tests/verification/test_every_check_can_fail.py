@@ -10,14 +10,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy.contact import solve as contact
-from contactstudy.fields import stress, surface
+from contactstudy import cache
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
-from contactstudy.cache import BoundedCache
-from contactstudy.kernels import centred
-from contactstudy.overlapping import problem
+from contactstudy.contact import solve as contact
+from contactstudy.fields import stress, surface
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import (
@@ -40,17 +39,10 @@ Patch = pytest.MonkeyPatch
 def switched_off(physics: Callable[[Patch], None]) -> Iterator[None]:
     """Change the physics; what was solved and kept before would hide it."""
     with pytest.MonkeyPatch.context() as patch:
-        for module, name in (
-            (surface, "_OPERATORS"),
-            (contact, "_CONTACTS"),
-            (stress, "_FIELDS"),
-            (centred, "_SPECTRA"),
-            (problem, "_EQUATION_SETS"),
-        ):
-            kept = getattr(module, name)
-            patch.setattr(module, name, BoundedCache(kept.limit, kept._size))
+        cache.clear()
         physics(patch)
         yield
+    cache.clear()
 
 
 def everywhere(patch: Patch, name: str, value: object) -> None:
@@ -90,7 +82,8 @@ def first_round_only(patch: Patch) -> None:
 
 
 def shear_that_needs_ends(patch: Patch) -> None:
-    patch.setattr(EquationSet, "from_traction", EquationSet.from_pressure)
+    source = EquationSet.source
+    patch.setattr(EquationSet, "source", lambda system, load, spectrum: source(system, Load.NORMAL, spectrum))
 
 
 def distorted(patch: Patch) -> None:

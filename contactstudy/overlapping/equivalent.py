@@ -7,18 +7,19 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.problem import EndProblem, views_of
 from contactstudy.threads import one_blas_thread
 
 
 class EquivalentLoads(NamedTuple):
-    """Equivalent loads, positive in compression, Pa; the first axis is the load: pressure, then traction.
+    """Equivalent loads under a load in one direction, positive in compression, Pa.
 
     Attributes
     ----------
-    added : array (load, x, y)
+    added : array (x, y)
         What the faces of V add to the pressure on the top of H.
-    first, second : array (load, y, z)
+    first, second : array (y, z)
         Loads on the faces at end I and end II.
     """
 
@@ -29,8 +30,8 @@ class EquivalentLoads(NamedTuple):
 
 def equivalent_loads_of(
     problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float | None = None
-) -> EquivalentLoads:
-    """Equivalent loads at positions `x` and `y` on the top, and at `y` and depths `z` on the ends.
+) -> dict[Load, EquivalentLoads]:
+    """Equivalent loads of each load, at positions `x` and `y` on the top, and at `y` and depths `z` on the ends.
 
     Between two ends an eccentric load tilts H and V against each other by an amount that grows like the logarithm of
     the distance, and the loads that tilt them make no stress: they are stated relative to ``|y| = reference``.
@@ -42,16 +43,16 @@ def equivalent_loads_of(
     x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, problem.length - offset), x)
     z = np.maximum(z, offset)
     shortest = float(min(problem.from_end(x).min(), z.min()))
-    count = 1 + problem.tangential
+    count = len(problem.loads)
     added = np.zeros((count, x.size, y.size))
     faces = np.zeros((2, count, z.size, y.size))
     with one_blas_thread():
         for panel in problem.panels(y, shortest, reference):
-            for loads in problem.batches(panel, {0: problem.pressure}, y):
-                top = np.zeros((x.size, loads.nodes.size, count, loads.parities.size))
-                sides = np.zeros((2, z.size, loads.nodes.size, count, loads.parities.size))
-                for view in views_of(problem, loads, x, shortest):
-                    for number, wavenumber in enumerate(loads.nodes):
+            for columns in problem.batches(panel, {0: problem.cells}, y):
+                top = np.zeros((x.size, columns.nodes.size, count, columns.parities.size))
+                sides = np.zeros((2, z.size, columns.nodes.size, count, columns.parities.size))
+                for view in views_of(problem, columns, x, shortest):
+                    for number, wavenumber in enumerate(columns.nodes):
                         lateral = float(wavenumber)
                         _, (equivalent, depth, face_load) = problem.auxiliary_loads(view, lateral, number, shortest)
                         top[view.rows, number] += np.real(view.cosine.T @ equivalent).reshape(view.rows.size, count, -1)
@@ -64,7 +65,8 @@ def equivalent_loads_of(
                             sides[1, :, number] += view.modes.parity * side
                         else:
                             sides[int(view.flipped), :, number] += side
-                for load, (synthesis, _) in zip(range(count), loads.syntheses(0), strict=False):
-                    added[load] += top[:, :, load].reshape(x.size, -1) @ synthesis
-                    faces[:, load] -= sides[:, :, :, load].reshape(2, z.size, -1) @ synthesis
-    return EquivalentLoads(added, faces[0].swapaxes(1, 2), faces[1].swapaxes(1, 2))
+                for i, load in enumerate(problem.loads):
+                    even, _ = columns.synthesis(load, 0)
+                    added[i] += top[:, :, i].reshape(x.size, -1) @ even
+                    faces[:, i] -= sides[:, :, :, i].reshape(2, z.size, -1) @ even
+    return {load: EquivalentLoads(added[i], faces[0, i].T, faces[1, i].T) for i, load in enumerate(problem.loads)}

@@ -1,0 +1,74 @@
+"""Loads on the top of a body, by direction, and the sum of what they do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.cache import ArrayKey
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
+
+
+class TopLoad(NamedTuple):
+    """A load in one direction: a factor times a distribution over the cells.
+
+    Attributes
+    ----------
+    cells : array (x, y)
+        Load per area on each cell, Pa.
+    factor : float
+        Factor on it. Loads that differ by a factor share the fields that are computed for their distribution.
+    """
+
+    cells: FloatArray
+    factor: float = 1.0
+
+    @property
+    def values(self) -> FloatArray:
+        """The load itself, Pa."""
+        return self.factor * self.cells
+
+
+Loads = Mapping[Load, TopLoad]
+"""What acts on the top, by direction."""
+
+
+def sliding(pressure: FloatArray, friction: float) -> Loads:
+    """Pressure and, in full sliding, the traction ``q = f p`` on the body along +y.
+
+    Examples
+    --------
+    >>> sorted(load.name for load in sliding(np.ones((2, 2)), 0.1))
+    ['ALONG_Y', 'NORMAL']
+    """
+    loads = {Load.NORMAL: TopLoad(pressure)}
+    return loads | {Load.ALONG_Y: TopLoad(pressure, friction)} if friction else loads
+
+
+def superposed(
+    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, FloatArray]]
+) -> FloatArray:
+    """Sum of the fields under all loads.
+
+    Parameters
+    ----------
+    loads : mapping of Load to TopLoad
+        At least one.
+    unit_fields : callable
+        From some directions and one distribution to the field under it in each of them. Loads with the same
+        distribution are taken together.
+    """
+    groups: dict[ArrayKey, list[Load]] = {}
+    for load, (cells, _) in loads.items():
+        groups.setdefault(ArrayKey(cells), []).append(load)
+    fields: dict[Load, FloatArray] = {}
+    for shared, directions in groups.items():
+        fields |= unit_fields(tuple(directions), shared.values)
+    first, *others = loads
+    total: FloatArray = np.multiply(loads[first].factor, fields[first], order="K")
+    for load in others:
+        total += loads[load].factor * fields[load]
+    return total
