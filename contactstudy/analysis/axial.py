@@ -7,6 +7,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import cell_size, dimension_along, positions
 from contactstudy.analysis.border import contact_borders
+from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import named
 
@@ -139,16 +140,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     require(dataset, "pressure")
     pressure = dataset["pressure"]
     along = dimension_along(pressure, "y")
-    low, high = xr.apply_ufunc(
-        contact_borders,
-        pressure,
-        positions(pressure, "y"),
-        input_core_dims=[[along], [along]],
-        output_core_dims=[[], []],
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
-    )
+    low, high = reduced(contact_borders, [(pressure, [along]), (positions(pressure, "y"), [along])], 2)
     exists = pressure.notnull().any(along)
     width = (0.5 * (high - low)).fillna(0.0).where(exists)
     return xr.Dataset(

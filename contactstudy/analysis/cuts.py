@@ -16,7 +16,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 ROUNDING = 1e-9
-"""Positions may lie outside the points of a result by this fraction of their range."""
+"""Positions may lie outside the points of a result by this fraction of their range. Accuracy."""
 
 
 def _inside(name: str, values: FloatArray, place: FloatArray) -> FloatArray:

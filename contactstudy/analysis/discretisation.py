@@ -14,13 +14,13 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 ASSUMED_ORDER = 1.0
-"""Below the orders observed (1.5 to 2 where the pressure is smooth), so that the estimate errs on the high side."""
+"""Below the orders observed (1.5 to 2 where the pressure is smooth): the estimate errs on the high side. Accuracy."""
 
 UNRESOLVED = 0.2
-"""Two grids whose values differ by more than this fraction say nothing about the limit."""
+"""Two grids whose values differ by more than this fraction say nothing about the limit. Accuracy."""
 
 FITTED = 3
-"""Columns of cells that are extrapolated to the end of the shape."""
+"""Columns of cells that are extrapolated to the end of the shape. Accuracy."""
 
 
 def extrapolated(coarse: float, fine: float, order: float, ratio: float = 2.0) -> float:

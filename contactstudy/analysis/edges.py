@@ -15,6 +15,9 @@ from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
+WIDTHS = 4096
+"""Points of the quadrature of the width over x. Accuracy."""
+
 
 def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     """Edges, half-width, length and area of a contact, to a few hundredths of a cell.
@@ -79,10 +82,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
 
 
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: float) -> float:
-    """Integral of the width over x.
-
-    At a smooth end the width goes to zero like a square root, so its square is what is interpolated between columns.
-    """
+    """Integral of the width over x."""
     columns = np.flatnonzero(np.isfinite(width))
     if np.any(np.diff(columns) > 1):
         return float(np.nansum(width) * grid.dx)
@@ -97,10 +97,11 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:
         return float(np.nansum(width) * grid.dx)
+    # At a smooth end the width goes to zero like a square root, so its square is what is interpolated.
     squared = width[columns] ** 2
     at = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])
     values = np.concatenate([[0.0][: smooth[0]], squared, [0.0][: smooth[1]]])
-    angles = np.pi * (np.arange(4096) + 0.5) / 4096
+    angles = np.pi * (np.arange(WIDTHS) + 0.5) / WIDTHS
     x = 0.5 * (first + last) - 0.5 * (last - first) * np.cos(angles)
     between = np.sqrt(np.maximum(CubicSpline(at, values)(x), 0.0))
     return float((between * np.sin(angles)).sum() * 0.5 * (last - first) * np.pi / angles.size)

@@ -17,6 +17,9 @@ from contactstudy.errors import InvalidInputError
 PLACES = ("first", "last", "middle", "peak")
 """Where a value is compared with that of a reference: near both ends, at mid-length, and wherever it is largest."""
 
+ROUNDING = 1e-9
+"""A point may lie beyond the reach of an end by this part of it. Accuracy."""
+
 
 def _along_axis(dataset: xr.Dataset, variable: str) -> xr.DataArray:
     """Largest value of a variable in each cross-section."""
@@ -50,7 +53,7 @@ def _ends(
 ) -> list[xr.DataArray]:
     """Largest value within `reach` of either border; NaN if the profile has no point there."""
     x, place = dimension_along(profile, "x"), positions(profile, "x")
-    near = reach * (1 + 1e-9)
+    near = reach * (1 + ROUNDING)
     return [profile.where(abs(place - border) <= near).max(x) for border in borders]
 
 

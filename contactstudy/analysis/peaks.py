@@ -7,6 +7,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.measures import measure
+from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.variables import named, variable_of
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -28,16 +29,8 @@ def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
 
 def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     """Largest value of `array` over some axes, with the positions along them."""
-    found = xr.apply_ufunc(
-        _largest,
-        array,
-        *(positions(array, axis) for axis in over),
-        input_core_dims=[list(over.values()), *([dim] for dim in over.values())],
-        output_core_dims=[[]] * (1 + len(over)),
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64] * (1 + len(over)),
-    )
+    places = [(positions(array, axis), [dim]) for axis, dim in over.items()]
+    found = reduced(_largest, [(array, list(over.values())), *places], 1 + len(over))
     base = variable_of(name, array.attrs)
     names = (f"peak_{name}", *(f"peak_{name}_{axis}" for axis in over))
     return xr.Dataset({each: named(each, value, base) for each, value in zip(names, found, strict=True)}).compute()

@@ -15,13 +15,7 @@ KEPT = ("hertz_half_width", "hertz_max_pressure")
 
 
 def _over(powers: tuple[int, int]) -> str:
-    """Name of a scale, such as ``p0 a**2``.
-
-    Examples
-    --------
-    >>> _over((0, 1)), _over((2, 1))
-    ('p0', 'p0 a**2')
-    """
+    """Name of a scale, such as ``p0 a**2``."""
     a, p0 = powers
     return " ".join(["p0"] * p0 + ([f"a**{a}"] if a > 1 else ["a"] * a))
 

@@ -14,6 +14,10 @@ from contactstudy.arrays.variables import STRESSES, describe, named
 from contactstudy.errors import InvalidInputError
 
 SHEARS = ("von_mises", "maximum_shear", "orthogonal_shear_amplitude")
+"""Measures of stress whose largest value in each slice is listed."""
+
+ROUNDING = 1e-9
+"""A stress point may lie beyond a slice by this part of the whole length and still belong to it. Accuracy."""
 
 
 def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
@@ -87,7 +91,7 @@ def _with_shears(result: xr.Dataset, one: xr.Dataset, borders: np.ndarray) -> xr
         sections = section_peak(one, name)
         stress = sections[f"peak_{name}"]
         x = dimension_along(stress, "x")
-        rounding = 1e-9 * (borders[-1] - borders[0])
+        rounding = ROUNDING * (borders[-1] - borders[0])
         at = stress[x].values
         inside = (at >= borders[:-1, None] - rounding) & (at <= borders[1:, None] + rounding)
         owned = stress.where(xr.DataArray(inside, dims=("slice", x)))

@@ -25,8 +25,8 @@ __all__ = [
     "variable_of",
 ]
 
-# The longest prefix or suffix first: the place of a peak is not the peak of a place.
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
+"""What each rule puts before and after a name, the longest first: `peak_gap_x` is where a peak is, not a peak."""
 
 
 def specification(name: str, base: Variable | None = None, *, coordinate: bool = False) -> Variable | None:

@@ -43,10 +43,13 @@ class Variable(NamedTuple):
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
 SLICE, CHECK, ENTRY = ("slice",), ("check",), ("entry",)
+"""Dimensions, for short."""
 
 AXES = ("x", "y", "z")
+"""Along the roller's axis, along rolling, and into the body."""
 
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+"""The six components, in the order of every array of stresses."""
 
 COORDINATES = {
     "x": Variable(X, "m", "x", "position along the roller's axis, from end I"),

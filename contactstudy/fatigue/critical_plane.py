@@ -20,14 +20,19 @@ from contactstudy.fatigue.history import over_history
 from contactstudy.fatigue.limits import FatigueLimits
 
 NORMALS, DIRECTIONS = 200, 8
-"""Planes of the first search, evenly over a hemisphere (about 10 degrees apart), and shear directions in each."""
+"""Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions in each. Accuracy."""
+
 STARTS = 4
-"""Best frames of the first search that are refined."""
+"""Best frames of the first search that are refined. Accuracy."""
+
 FIRST_TURN, LAST_TURN = np.radians(8.0), np.radians(1e-3)
-"""Largest and smallest rotation of plane and direction in the refinement."""
+"""Largest and smallest rotation of plane and direction in the refinement. Accuracy."""
+
 ROUNDING = 1e-11
+"""Gain, over the largest stress, below which a plane is no worse than another. Accuracy."""
+
 BLOCK = 2**24
-"""Numbers held at once in the first search."""
+"""Numbers held at once in the first search. Speed."""
 
 
 @cache

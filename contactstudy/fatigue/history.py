@@ -19,7 +19,10 @@ from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
 FEWEST_POSITIONS = 3
+"""Along y, for a history."""
+
 COMPONENT = "stress_component"
+"""Dimension of the six components while a history is worked on."""
 
 
 def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:

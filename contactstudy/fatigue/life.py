@@ -10,12 +10,14 @@ ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for r
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
+from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -163,16 +165,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     amplitude = measure(stress, "orthogonal_shear_amplitude")
     dim, depths = _depths(amplitude)
-    crest, at = xr.apply_ufunc(
-        _crest,
-        amplitude,
-        depths,
-        input_core_dims=[[dim], [dim]],
-        output_core_dims=[[], []],
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
-    )
+    crest, at = reduced(_crest, [(amplitude, [dim]), (depths, [dim])], 2)
     # Where nothing is loaded there is no risk, wherever the largest of nothing may be.
     density = (crest**chosen.stress * at.where(at > 0) ** (1 - chosen.depth)).where(crest != 0, 0.0)
     if ((crest > 0) & (at <= 0)).any():
@@ -242,16 +235,8 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
     dim, depths = _depths(stress)
-    density, mean = xr.apply_ufunc(
-        _risk_of_sections,
-        stress,
-        depths,
-        input_core_dims=[[dim], [dim]],
-        output_core_dims=[[], []],
-        kwargs={"limit": threshold, "exponents": chosen},
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
+    density, mean = reduced(
+        partial(_risk_of_sections, limit=threshold, exponents=chosen), [(stress, [dim]), (depths, [dim])], 2
     )
     return _along_axis(density, chosen).assign(mean_depth=named("mean_depth", mean.compute()))
 

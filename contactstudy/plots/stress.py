@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.contour import QuadContourSet
 
 LEVELS = 12
+"""About how many contours are drawn."""
 
 
 def _contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:

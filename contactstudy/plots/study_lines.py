@@ -23,6 +23,8 @@ QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 """What is drawn if nothing else is asked for."""
 
 MARKERS = "osD^vPX*"
+"""Of the lines, in turn."""
+
 WIDEST_LABEL, WIDEST_LEGEND = 34, 22
 """Characters after which the text of an axis and of the legend's title goes on in the next line."""
 

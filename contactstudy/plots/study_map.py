@@ -20,6 +20,7 @@ SCALES = {
     "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
 }
 """Units that figures show: from which size on, how much it is in SI, and its name."""
+
 MOST_NUMBERS = 80
 """Cells up to which each is labelled with its value."""
 

@@ -24,6 +24,8 @@ from contactstudy.verification.check import Check
 from contactstudy.verification.convergence import Table
 
 LEVELS = ("quick", "full")
+"""How thorough a run is."""
+
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "half-space": lambda full: half_space.checks(),
     "limits": lambda full: limits.checks(),

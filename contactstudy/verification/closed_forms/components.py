@@ -15,6 +15,7 @@ from contactstudy.checks import FloatArray
 Stress = dict[str, FloatArray]
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+"""Keys of a stress."""
 
 
 def von_mises(stress: Mapping[str, FloatArray]) -> FloatArray:
