@@ -6,14 +6,13 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.border import FITTED, SKIPPED, contact_borders
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
-from contactstudy.errors import InvalidInputError
 
 WIDTHS = 4096
 """Points of the quadrature of the width over x. Accuracy."""
@@ -55,11 +54,9 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
     (1.0, 1.0)
     """
-    checks.instance("contact", contact, xr.Dataset, "a Dataset")
+    require(contact, argument="contact")
     contact = single_case(contact)
-    for name in ("pressure", "gap"):
-        if name not in contact:
-            raise InvalidInputError("contact", sorted(map(str, contact.data_vars)), f"a Dataset with {name}")
+    require(contact, "pressure", "gap", argument="contact")
     pressure, grid = labelled_cells("contact.pressure", contact["pressure"])
     gap, _ = labelled_cells("contact.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import xarray as xr
 
+from contactstudy.arrays.vocabulary import VARIABLES
 from contactstudy.errors import InvalidInputError
 
 
@@ -29,7 +30,7 @@ def require(dataset: object, *names: str, argument: str = "dataset") -> None:
     >>> require(xr.Dataset({"gap": 0.0}), "gap")
     >>> require(xr.Dataset({"gap": 0.0}), "pressure")
     Traceback (most recent call last):
-    contactstudy.errors.InvalidInputError: dataset = ['gap']: must be a Dataset with pressure (pressure is missing; ...
+    contactstudy.errors.InvalidInputError: dataset = ['gap']: must be a Dataset with pressure; pressure is missing; ...
     """
     wanted = f"a Dataset with {', '.join(names)}" if names else "an xarray.Dataset"
     if not isinstance(dataset, xr.Dataset):
@@ -41,9 +42,9 @@ def require(dataset: object, *names: str, argument: str = "dataset") -> None:
     if status is not None and status.ndim == 0 and str(status.item()) != "ok":
         reason = str(dataset["message"].item()) if "message" in dataset else ""
         raise InvalidInputError(argument, f"a {status.item()} case", "a solved case", reason)
-    raise InvalidInputError(
-        argument,
-        sorted(map(str, dataset.data_vars)),
-        wanted,
-        f"{missing[0]} is missing; a study keeps stresses at level 'fields', pressure already at 'surface'",
-    )
+    hint = f"{missing[0]} is missing"
+    known = VARIABLES.get(missing[0])
+    if known is not None and known.dims:
+        level = "fields" if "z" in known.dims else "surface"
+        hint += f"; a study keeps it at level {level!r}"
+    raise InvalidInputError(argument, sorted(map(str, dataset.data_vars)), wanted, hint)

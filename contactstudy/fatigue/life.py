@@ -18,6 +18,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
 from contactstudy.analysis.reduced import reduced
+from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -271,8 +272,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     for name, dataset in (("risk", risk), ("reference", reference)):
-        if not isinstance(dataset, xr.Dataset) or "risk" not in dataset:
-            raise InvalidInputError(name, type(dataset).__name__, "a Dataset with risk")
+        require(dataset, "risk", argument=name)
     units = [dataset["risk"].attrs.get("units") for dataset in (risk, reference)]
     if units[0] != units[1]:
         raise InvalidInputError("reference", units[1], f"computed with the same exponents, {units[0]}")
