@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, dimension_along, positions
+from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
@@ -39,13 +39,12 @@ def _borders(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     return loaded.min(x).compute(), loaded.max(x).compute()
 
 
-def _at(profile: xr.DataArray, place: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
+def _at(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
     """Value of `profile` at the point nearest to `position`; NaN if that lies beyond its points."""
     x = dimension_along(profile, "x")
-    distance = abs(place - position)
-    step = (place.max(x) - place.min(x)) / np.maximum(place.count(x) - 1, 1)
+    distance = abs(positions(profile, "x") - position)
     nearest = distance.fillna(np.inf).argmin(x)
-    return profile.isel({x: nearest}).where(distance.min(x) <= step)
+    return profile.isel({x: nearest}).where(distance.min(x) <= cell_size(profile, "x"))
 
 
 def _ends(
@@ -124,5 +123,5 @@ def _values(
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     first, last = _ends(profile, borders, near)
-    middle = _at(profile, positions(profile, "x"), 0.5 * (borders[0] + borders[1]))
+    middle = _at(profile, 0.5 * (borders[0] + borders[1]))
     return first, last, middle, profile.max(dimension_along(profile, "x"))

@@ -32,5 +32,5 @@ def test_a_case_that_failed_says_why() -> None:
 
 
 def test_anything_else_is_no_dataset() -> None:
-    with pytest.raises(InvalidInputError, match="list.*Dataset"):
+    with pytest.raises(InvalidInputError, match=r"list.*Dataset"):
         require([], argument="result")
