@@ -44,7 +44,7 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
     Examples
     --------
     >>> specification("peak_von_mises_z").attrs
-    {'units': 'm', 'long_name': 'z of the largest von Mises equivalent stress'}
+    {'units': 'm', 'long_name': 'z of the largest von Mises stress'}
     >>> specification("peak_luck") is None
     True
     """

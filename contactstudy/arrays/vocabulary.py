@@ -122,14 +122,14 @@ FIELDS = {
 """Fields in the body, and the loads on the auxiliary bodies that make them."""
 
 MEASURES = {
-    "von_mises": Variable(XYZ, "Pa", r"\sigma_{vM}", "von Mises equivalent stress"),
-    "tresca": Variable(XYZ, "Pa", r"\sigma_{T}", "Tresca equivalent stress"),
-    "maximum_shear": Variable(XYZ, "Pa", r"\tau_{max}", "largest shear stress on any plane"),
-    "hydrostatic": Variable(XYZ, "Pa", r"\sigma_h", "hydrostatic stress, positive in tension"),
+    "von_mises": Variable(XYZ, "Pa", r"\sigma_{vM}", "von Mises stress"),
+    "tresca": Variable(XYZ, "Pa", r"\sigma_{T}", "Tresca stress"),
+    "maximum_shear": Variable(XYZ, "Pa", r"\tau_{max}", "maximum shear stress"),
+    "hydrostatic": Variable(XYZ, "Pa", r"\sigma_h", "hydrostatic stress"),
     "principal_stress": Variable((*XYZ, "principal"), "Pa", r"\sigma_i", "principal stress, largest first"),
     "principal_direction": Variable((*XYZ, "principal", "axis"), "1", "n_i", "unit vector along the principal stress"),
-    "orthogonal_shear_range": Variable(XZ, "Pa", r"2\tau_0", "range of the orthogonal shear stress tau_yz"),
-    "orthogonal_shear_amplitude": Variable(XZ, "Pa", r"\tau_0", "amplitude of the orthogonal shear stress tau_yz"),
+    "orthogonal_shear_range": Variable(XZ, "Pa", r"2\tau_0", "orthogonal shear range"),
+    "orthogonal_shear_amplitude": Variable(XZ, "Pa", r"\tau_0", "orthogonal shear amplitude"),
     "y_of_largest_shear": Variable(XZ, "m", "", "where tau_yz is largest"),
     "y_of_smallest_shear": Variable(XZ, "m", "", "where tau_yz is smallest"),
 }
