@@ -54,7 +54,7 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
     for prefix, suffix in _AFFIXES:
         middle = name.removeprefix(prefix).removesuffix(suffix)
         if name == f"{prefix}{middle}{suffix}" and middle:
-            of = base or VARIABLES.get(middle) or COORDINATES.get(middle) or specification(middle)
+            of = base or specification(middle) or specification(middle, coordinate=True)
             return of and _filled(RULES[f"{prefix}{{name}}{suffix}"], of)
     return None
 

@@ -206,6 +206,19 @@ def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> Non
     }
 
 
+def test_what_a_quantity_is_derived_from_is_named_or_left_open() -> None:
+    criterion = VARIABLES["dang_van"]
+    filled = specification("utilisation", criterion)
+    assert filled is not None
+    assert filled.long_name == "Dang Van's equivalent shear stress, over its limit"
+    left_open = specification("peak_utilisation")
+    assert left_open is not None
+    assert left_open.long_name == "largest value, over its limit"
+    over_a = specification("x_field_over_a", coordinate=True)
+    assert over_a is not None
+    assert (over_a.dims, over_a.symbol) == (("x_field",), "x/a")
+
+
 @pytest.mark.parametrize(
     ("name", "symbol", "units"),
     [
