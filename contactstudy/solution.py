@@ -184,6 +184,7 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
             raise WindowError(advice) from error
         raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
     _check_on_its_length(case, contact)
+    contact.warn_unless_converged(stacklevel=3)
     return contact
 
 

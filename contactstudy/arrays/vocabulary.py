@@ -85,6 +85,9 @@ CONTACT = {
         SCALAR, "1", "", "largest gap or overlap under pressure, over the variation of the displacement"
     ),
     "open_pressure_error": Variable(SCALAR, "1", "", "largest pressure where the gap is open, over the peak pressure"),
+    "load_position_error": Variable(
+        SCALAR, "1", "", "distance of the pressure's resultant from load_position, over the length of the contact"
+    ),
     "end_traction_residual": Variable(
         SCALAR, "1", "", "largest traction left on the free ends, over the peak pressure"
     ),

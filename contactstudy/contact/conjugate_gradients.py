@@ -14,6 +14,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy import optimize
 
 from contactstudy.checks import BoolArray, FloatArray
 
@@ -26,7 +27,13 @@ LEAST_ENTRY = 1e-12
 """Least pressure, over the largest, of a cell that enters the contact: it has to be in it. Speed."""
 
 LEAST_RESTORED = 0.1
-"""Least factor, over the mean one, when a pressure is tilted to restore its moment: it must not change sign. Speed."""
+"""Least factor, over the mean one, of a linear factor that restores the moment: it must not change sign. Speed."""
+
+ADDED = 0.1
+"""Pressure, over the largest, that is added everywhere if none lies on one side of where the load acts. Speed."""
+
+STEEPEST = 1e4
+"""Largest slope of the exponential factor that restores the moment instead. Speed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +45,8 @@ class Resultants:
     total : float or None
         Sum over the cells, Pa, conjugate to the approach; None if the approach is prescribed (as part of the gap).
     lever : array (x, 1), optional
-        Arm of each cell about the point where the load is to act, metres: the sum of arm times pressure is zero, and
-        the shape tilts about that point.
+        Arm of each cell about the point where the load is to act, over the largest arm: the sum of arm times pressure
+        is zero, and the shape tilts about that point.
     """
 
     total: float | None
@@ -53,7 +60,7 @@ class Resultants:
         return [np.ones((1, 1))] if self.lever is None else [np.ones((1, 1)), self.lever]
 
     def restored(self, pressure: FloatArray) -> FloatArray:
-        """Return the pressure times the factor, linear in the arm, that gives it the resultants."""
+        """Return the pressure times a factor that gives it the resultants: linear in the arm, or exponential."""
         if self.total is None:
             return pressure
         if self.lever is None:
@@ -65,7 +72,34 @@ class Resultants:
         if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
             return np.asarray(pressure * (self.total / sums[0]))
         constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
-        return np.asarray(pressure * np.maximum(constant + slope * self.lever, LEAST_RESTORED * constant))
+        factor = constant + slope * self.lever
+        if factor.min() < LEAST_RESTORED * constant:
+            factor = self._exponential(line, arm)
+        return np.asarray(pressure * factor)
+
+    def _exponential(self, line: FloatArray, arm: FloatArray) -> FloatArray:
+        """Factor ``C exp(s arm)``, positive whatever the moment; without pressure on both sides, only the sum's."""
+        assert self.total is not None
+        loaded = line > 0
+        line, own = line[loaded], arm[loaded]
+        slope = 0.0
+        if own.min() < 0 < own.max():
+
+            def moment(at: float) -> float:
+                weighted = line * np.exp(at * own - (at * own).max())
+                return float((weighted * own).sum() / weighted.sum())
+
+            reach = 1.0
+            while reach < STEEPEST and moment(-reach) * moment(reach) > 0:
+                reach *= 2
+            if moment(-reach) * moment(reach) <= 0:
+                slope = float(optimize.brentq(moment, -reach, reach, xtol=1e-15, rtol=1e-14))
+        factor = np.exp(slope * arm - (slope * own).max())
+        return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
+
+    def off_position(self, pressure: FloatArray) -> float:
+        """Distance of the pressure's resultant from where it is to act, over the largest arm."""
+        return 0.0 if self.lever is None else abs(float((pressure * self.lever).sum() / pressure.sum()))
 
 
 @dataclass(frozen=True)
@@ -142,7 +176,8 @@ def solve_complementarity(
             state.change_area(moved, closed, opening)
         else:
             state.pressure, state.sunk, state.fresh = moved, state.sunk - step * along, False
-            if violation <= tolerance * scale and change <= tolerance:
+            settled = violation <= tolerance * scale and change <= tolerance
+            if settled and resultants.off_position(state.pressure) <= tolerance:
                 converged = True
                 break
         if curvature <= 0:
@@ -178,7 +213,7 @@ class _State:
         self._gap, self._possible = gap, np.isfinite(gap)
         self._resultants, self._motions = resultants, resultants.motions
         self.applications = 0
-        self.pressure = resultants.restored(start)
+        self.pressure = resultants.restored(self._on_both_sides(start))
         self.sunk = self._apply(self.pressure)
         if resultants.total is None:
             self._scale_guess()
@@ -204,6 +239,16 @@ class _State:
             self.sunk, work = self._apply(self.pressure), -float(gap[gap < 0].sum())
         factor = work / float((self.pressure * self.sunk).sum())
         self.pressure, self.sunk = factor * self.pressure, factor * self.sunk
+
+    def _on_both_sides(self, pressure: FloatArray) -> FloatArray:
+        """Add a little pressure everywhere if all of it lies on one side of where the load acts."""
+        lever = self._resultants.lever
+        if lever is None:
+            return pressure
+        arms = lever[pressure.any(axis=1)]
+        if arms.min() < 0 < arms.max():
+            return pressure
+        return pressure + np.where(self._possible, ADDED * pressure.max(), 0.0)
 
     def opening(self) -> FloatArray:
         """Gap after the rigid motion that leaves the descent without resultants: the prescribed ones stay."""
@@ -247,7 +292,7 @@ class _State:
             # As in Polonsky and Keer: overlapping points enter with the step along the gap itself.
             scaled = self._preconditioner(np.where(closed, opening, 0.0))
             moved[closed] = np.maximum(-scaled[closed], LEAST_ENTRY * moved.max())
-        moved = self._resultants.restored(moved)
+        moved = self._resultants.restored(self._on_both_sides(moved))
         settled = self._apply(moved)
         # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
         part = _part_that_descends(moved - self.pressure, settled - self.sunk, opening) if closed.any() else 1.0

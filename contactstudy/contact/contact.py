@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -76,6 +76,8 @@ class Contact:
     ----------
     shape : Shape
         What was pressed on what.
+    settings : Settings
+        When the iteration stopped.
     pressure, gap, displacement : array (x, y)
         Pressure, Pa; gap after deformation and displacement of the body's top, metres.
     approach, tilt : float
@@ -91,6 +93,7 @@ class Contact:
     """
 
     shape: Shape
+    settings: Settings
     pressure: FloatArray
     gap: FloatArray
     displacement: FloatArray
@@ -111,9 +114,28 @@ class Contact:
         """Position x of the pressure's resultant, metres."""
         return float((self.pressure * self.shape.grid.x[:, None]).sum() / self.pressure.sum())
 
+    def warn_unless_converged(self, stacklevel: int) -> None:
+        """Say by how much the contact misses its conditions, if it did not converge."""
+        if self.converged:
+            return
+        violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(self.certificate).items() if value)
+        tolerance, most = self.settings
+        warnings.warn(
+            f"the contact iteration stopped after {self.iterations} operator applications without reaching "
+            f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {most}) or coarsen the grid",
+            ConvergenceWarning,
+            stacklevel=stacklevel + 1,
+        )
+
 
 def contact_of(shape: Shape, settings: Settings) -> Contact:
-    """Solve a contact whose parts are checked; raises and warns as `solve_contact`."""
+    """Solve a contact whose parts are checked.
+
+    Raises
+    ------
+    WindowError
+        If the contact reaches an edge of the grid where the body goes on.
+    """
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate = _iterate(_ContactRequest(shape, settings))
@@ -122,21 +144,12 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         displacement = own(loads)
         approached = displacement if shape.counterbody is None else _operator(shape)(loads)
     _check_window(shape.body, pressure)
-    if not iterate.converged:
-        warnings.warn(
-            f"the contact iteration stopped after {iterate.applications} operator applications without reaching "
-            f"tolerance = {settings.tolerance:g}; raise max_iterations (now {settings.max_iterations}) or coarsen "
-            "the grid",
-            ConvergenceWarning,
-            stacklevel=3,
-        )
     prescribed = shape.prescribed
     height = clearance + approached
     tilt = 0.0
-    lever = prescribed.resultants(grid).lever
-    if lever is not None:
-        tilt = iterate.motion[1]
-        height = height - tilt * lever
+    if prescribed.load_position is not None:
+        tilt = iterate.motion[1] / prescribed.largest_arm(grid)
+        height = height - tilt * (grid.x[:, None] - prescribed.load_position)
     touching, total = pressure > 0, pressure.sum()
     sunk = prescribed.lowered
     if prescribed.approach is None:
@@ -148,20 +161,32 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         approached,
         carried=float(total * grid.cell_area),
         load=prescribed.load,
+        off_position=_off_position(prescribed, grid, pressure),
         tolerance=settings.tolerance,
     )
     return Contact(
         shape,
+        settings,
         pressure,
         np.where(np.isfinite(opening), opening, np.inf),
         displacement,
         sunk,
         tilt,
         iterate.applications,
-        iterate.converged,
+        iterate.converged and certificate.holds(settings.tolerance),
         own.reference,
         certificate,
     )
+
+
+def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> float:
+    """Distance of the resultant from its prescribed position, over the length of the contact."""
+    if prescribed.load_position is None:
+        return 0.0
+    line = pressure.sum(axis=1)
+    touching = np.flatnonzero(line)
+    length = grid.dx * (touching[-1] - touching[0] + 1)
+    return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 
 class _ContactRequest(NamedTuple):

@@ -66,5 +66,10 @@ class Prescribed(NamedTuple):
         """Return what the pressure on the cells has to sum up to."""
         if self.load is None:
             return Resultants(None)
-        lever = None if self.load_position is None else grid.x[:, None] - self.load_position
+        lever = None if self.load_position is None else (grid.x[:, None] - self.load_position) / self.largest_arm(grid)
         return Resultants(self.load / grid.cell_area, lever)
+
+    def largest_arm(self, grid: Grid) -> float:
+        """Return the largest distance of a cell from where the load acts, metres."""
+        assert self.load_position is not None
+        return float(np.abs(grid.x - self.load_position).max())

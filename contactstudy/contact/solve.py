@@ -120,6 +120,7 @@ def solve_contact(
     )
     settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
     contact = contact_of(shape, settings)
+    contact.warn_unless_converged(stacklevel=2)
     return contact_dataset(contact, friction, x=gap["x"].values, y=gap["y"].values)
 
 

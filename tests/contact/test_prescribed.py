@@ -8,6 +8,7 @@ import xarray as xr
 
 from contactstudy import (
     Case,
+    ConvergenceWarning,
     FiniteLengthSpace,
     Grid,
     HalfSpace,
@@ -225,3 +226,34 @@ def test_approach_and_tilt_say_what_they_are_relative_to():
         assert f"|y| = {10 * LENGTH:g} m" in result[name].attrs["reference"]
     assert result.tilt.attrs["centre"] == "load_position"
     assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
+
+
+def test_a_load_near_the_end_of_a_short_contact_acts_where_it_was_prescribed():
+    """All the pressure of the first guess lies on one side of the load, so no factor on it could balance it."""
+    body = FiniteLengthSpace(length=2e-3, material=STEEL)
+    roller = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, end_distance=-9.9e-3, load_position=5e-5)
+    result = solve(case, stresses=False)
+    assert bool(result.converged)
+    assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)
+
+
+@pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-6])
+def test_a_balanced_load_does_not_depend_on_the_unit_of_length(scale: float):
+    length, cells = 0.2e-3 * scale, 16
+    x = (np.arange(cells) + 0.5) * length / cells
+    y = (np.arange(cells) + 0.5 - cells / 2) * 1e-5 * scale
+    gap = xr.DataArray(
+        np.broadcast_to(y**2 / (2 * 5e-3 * scale), (cells, cells)), coords={"x": x, "y": y}, dims=("x", "y")
+    )
+    body = FiniteLengthSpace(length=length, material=STEEL)
+    result = solve_contact(body, gap, load=5.0 * scale**2, load_position=0.6 * length)
+    assert bool(result.converged)
+    assert float(result.tilt) == pytest.approx(1.3416577e-3, rel=1e-6)
+
+
+def test_a_tolerance_beyond_rounding_is_not_converged(on_cells, half_space: HalfSpace):
+    gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
+    with pytest.warns(ConvergenceWarning, match="penetration_error"):
+        result = solve_contact(half_space, gap, load=4 / 3, tolerance=1e-300)
+    assert not bool(result.converged)
