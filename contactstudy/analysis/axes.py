@@ -10,27 +10,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import AXES
 from contactstudy.errors import InvalidInputError
-
-AXES = ("x", "y", "z")
-
-
-def require(dataset: object, *names: str) -> None:
-    """Raise unless `dataset` is a Dataset with the variables `names`."""
-    if not isinstance(dataset, xr.Dataset):
-        raise InvalidInputError("dataset", type(dataset).__name__, "an xarray.Dataset")
-    missing = [name for name in names if name not in dataset]
-    status = dataset.get("status")
-    if missing and status is not None and status.ndim == 0 and str(status.item()) != "ok":
-        reason = str(dataset["message"].item()) if "message" in dataset else ""
-        raise InvalidInputError("dataset", f"a {status.item()} case", "a solved case", reason)
-    if missing:
-        raise InvalidInputError(
-            "dataset",
-            sorted(map(str, dataset.data_vars)),
-            f"a Dataset with {', '.join(names)}",
-            f"{missing[0]} is missing; a study keeps stresses at level 'fields', pressure already at 'surface'",
-        )
 
 
 def dimension_along(array: xr.DataArray, axis: str) -> str:

@@ -5,15 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import cell_size, dimension_along, positions, require
+from contactstudy.analysis.axes import cell_size, dimension_along, positions
 from contactstudy.analysis.border import contact_borders
-
-
-def labelled(array: xr.DataArray, name: str, units: str, long_name: str) -> xr.DataArray:
-    """Return `array` with a name, a unit and a meaning."""
-    named = array.rename(name)
-    named.attrs = {"units": units, "long_name": long_name}
-    return named
+from contactstudy.analysis.reduced import reduced
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named
 
 
 def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
@@ -43,7 +39,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     require(dataset, "pressure")
     pressure = dataset["pressure"]
     largest = pressure.max(dimension_along(pressure, "y"))
-    return labelled(largest, "axial_pressure", "Pa", "largest pressure across y")
+    return named("axial_pressure", largest)
 
 
 def line_load(dataset: xr.Dataset) -> xr.DataArray:
@@ -74,7 +70,7 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     require(dataset, "pressure")
     pressure = dataset["pressure"]
     load = pressure.sum(dimension_along(pressure, "y"), min_count=1) * cell_size(pressure, "y")
-    return labelled(load, "line_load", "N/m", "load per length along the axis")
+    return named("line_load", load)
 
 
 def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.DataArray | float) -> xr.DataArray:
@@ -108,7 +104,8 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     load = line_load(dataset)
     along, place, half_cell = dimension_along(load, "x"), positions(load, "x"), 0.5 * cell_size(load, "x")
     shared = (np.minimum(place + half_cell, stop) - np.maximum(place - half_cell, start)).clip(0.0)
-    return labelled((load * shared).sum(along, min_count=1), "load", "N", "load between two positions along the axis")
+    carried = (load * shared).sum(along, min_count=1)
+    return named("load", carried).assign_attrs(comment="between two positions along the axis")
 
 
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
@@ -143,22 +140,13 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     require(dataset, "pressure")
     pressure = dataset["pressure"]
     along = dimension_along(pressure, "y")
-    low, high = xr.apply_ufunc(
-        contact_borders,
-        pressure,
-        positions(pressure, "y"),
-        input_core_dims=[[along], [along]],
-        output_core_dims=[[], []],
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
-    )
+    low, high = reduced(contact_borders, [(pressure, [along]), (positions(pressure, "y"), [along])], 2)
     exists = pressure.notnull().any(along)
     width = (0.5 * (high - low)).fillna(0.0).where(exists)
     return xr.Dataset(
         {
-            "half_width": labelled(width, "half_width", "m", "half-width of the contact"),
-            "contact_middle": labelled(0.5 * (low + high), "contact_middle", "m", "y of the contact's middle"),
+            "half_width": named("half_width", width),
+            "contact_middle": named("contact_middle", 0.5 * (low + high)),
         }
     )
 
@@ -191,7 +179,7 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     gap = dataset["initial_gap"]
     smallest = gap.min(dimension_along(gap, "y"))
     smallest = smallest.where(np.isfinite(smallest))
-    return labelled(smallest, "unloaded_gap", "m", "smallest gap across y before deformation")
+    return named("unloaded_gap", smallest)
 
 
 def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:

@@ -7,21 +7,18 @@ the power 2/3 outside are straight lines through the edge: quadratics are fitted
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import Array, FloatArray, IntArray
 
-Array = npt.NDArray[Any]
-
-# The cells on either side of an edge carry the error of a cell that the edge cuts; the fits begin behind them.
 SKIPPED = 2
+"""Cells on either side of an edge that are left out: they carry the error of the cell that the edge cuts. Accuracy."""
+
 FITTED = 5
+"""Cells behind these that a quadratic is fitted to. Accuracy."""
 
 EDGE_UNCERTAINTY = 0.04
-"""Largest error of an edge in cells, as seen at Hertz' contacts whose edge lies anywhere in a cell."""
+"""Largest error of an edge in cells, as seen at Hertz' contacts whose edge lies anywhere in a cell. Accuracy."""
 
 
 def contact_borders(pressure: Array, place: Array, gap: Array | None = None) -> tuple[Array, Array]:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import dimension_along, positions, require
-from contactstudy.analysis.axial import axial_pressure, labelled, unloaded_gap
+from contactstudy.analysis.axes import dimension_along, positions
+from contactstudy.analysis.axial import axial_pressure, unloaded_gap
 from contactstudy.analysis.peaks import peak
-
-Array = npt.NDArray[Any]
+from contactstudy.analysis.reduced import reduced
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named
+from contactstudy.checks import Array
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:
@@ -51,19 +50,11 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     (3.0, 2.0)
     """
     axial = axial_pressure(dataset)
-    first, last = xr.apply_ufunc(
-        _first_and_last,
-        axial,
-        input_core_dims=[[dimension_along(axial, "x")]],
-        output_core_dims=[[], []],
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[axial.dtype, axial.dtype],
-    )
+    first, last = reduced(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     return xr.Dataset(
         {
-            "edge_pressure_first": labelled(first, "first", "Pa", "pressure in the first loaded cells along x"),
-            "edge_pressure_last": labelled(last, "last", "Pa", "pressure in the last loaded cells along x"),
+            "edge_pressure_first": named("edge_pressure_first", first),
+            "edge_pressure_last": named("edge_pressure_last", last),
         }
     )
 
@@ -80,10 +71,7 @@ def _range(place: Array, chosen: Array) -> tuple[Array, Array]:
 
 
 def _scalars(pressure: Array, facing: Array, x: Array, y: Array) -> tuple[Array, ...]:
-    """Scalars of contacts (..., x, y): area, length, width, loss of length, resultant, its position, middle of facing.
-
-    NaN for a case that has no pressure.
-    """
+    """Area, length, width, loss of length, resultant, its x, middle of what faces; of contacts (..., x, y), or NaN."""
     known = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
     # A case that failed has no positions either.
     place_x, place_y = (np.where(known[..., None], place, 0.0) for place in (x, y))
@@ -150,29 +138,25 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
     opposite = unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)
-    area, length, width, loss, resultant, position, middle = xr.apply_ufunc(
-        _scalars,
-        pressure,
-        opposite.notnull(),
-        positions(pressure, "x"),
-        positions(pressure, "y"),
-        input_core_dims=[[x, y], [x], [x], [y]],
-        output_core_dims=[[]] * 7,
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64] * 7,
-    )
-    if about is not None:
-        middle = checks.finite("about", about, "metres")
-    values: dict[str, tuple[xr.DataArray, str, str]] = {
-        "contact_area": (area, "m2", "area of the loaded cells"),
-        "contact_length": (length, "m", "contact length, in whole cells"),
-        "contact_width": (width, "m", "contact width, in whole cells"),
-        "resultant": (resultant, "N", "resultant of the pressure"),
-        "load_position": (position, "m", "x where the resultant acts"),
-        "moment": (resultant * (position - middle), "N m", "moment of the pressure, positive for a load at larger x"),
+    arguments = [
+        (pressure, [x, y]),
+        (opposite.notnull(), [x]),
+        (positions(pressure, "x"), [x]),
+        (positions(pressure, "y"), [y]),
+    ]
+    area, length, width, loss, resultant, position, middle = reduced(_scalars, arguments, 7)
+    centre = middle if about is None else checks.finite("about", about, "metres")
+    values = {
+        "contact_area": area,
+        "contact_length": length,
+        "contact_width": width,
+        "resultant": resultant,
+        "load_position": position,
+        "moment": resultant * (position - centre),
     }
     if "initial_gap" in dataset:
-        values["contact_length_loss"] = (loss, "m", "length where roller and body face each other without load")
-    scalars = {name: labelled(value, name, units, meaning) for name, (value, units, meaning) in values.items()}
+        values["contact_length_loss"] = loss
+    scalars = {name: named(name, value) for name, value in values.items()}
+    for name in ("contact_area", "contact_length"):
+        scalars[name].attrs["comment"] = "in whole cells"
     return xr.Dataset({**peak(dataset, "pressure"), **edge_pressure(dataset), **scalars}).compute()

@@ -8,33 +8,15 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import AXES, axis_dimensions, positions, require, single_case
-from contactstudy.analysis.measures import measure
-from contactstudy.arrays.variables import COORDINATES
+from contactstudy.analysis.axes import axis_dimensions, positions, single_case
+from contactstudy.analysis.fields import fields_on_one_grid
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import AXES, labels
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 ROUNDING = 1e-9
-"""Positions may lie outside the points of a result by this fraction of their range."""
-
-
-def _fields(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
-    """Fields to cut: those named, or all stresses; or all surfaces if there are no stresses."""
-    if variables is not None:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        fields = {name: measure(dataset, name) for name in names}
-    else:
-        by_depth: list[dict[str, xr.DataArray]] = [{}, {}]
-        for name, array in dataset.data_vars.items():
-            along = axis_dimensions(array)
-            if "x" in along and "y" in along:
-                by_depth["z" not in along][str(name)] = array
-        fields = by_depth[0] or by_depth[1]
-    grids = {tuple(axis_dimensions(array).values()) for array in fields.values()}
-    if len(grids) != 1 or grids == {()}:
-        shown = {name: array.dims for name, array in fields.items()}
-        raise InvalidInputError("variables", shown, "fields on the same points along x, y or z")
-    return fields
+"""Positions may lie outside the points of a result by this fraction of their range. Accuracy."""
 
 
 def _inside(name: str, values: FloatArray, place: FloatArray) -> FloatArray:
@@ -108,7 +90,7 @@ def along_line(
     require(dataset)
     one = single_case(dataset)
     count = checks.count("points", points, least=2)
-    fields = _fields(one, variables)
+    fields = fields_on_one_grid(one, variables, along=("x", "y"))
     ends = [checks.coordinates(name, values) for name, values in (("start", start), ("end", end))]
     size = ends[0].size
     if size not in (2, 3) or ends[1].size != size:
@@ -125,8 +107,8 @@ def along_line(
         values = low + share * (high - low)
         if axis in along:
             values = _inside(axis, values, positions(next(iter(fields.values())), axis).values)
-        where[axis] = xr.DataArray(values, dims="distance", attrs=_attributes(axis))
-    distance = ("distance", share * length, {"units": "m", "long_name": "distance along the line"})
+        where[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
+    distance = ("distance", share * length, labels("distance", coordinate=True))
     return _assemble(fields, where).assign_coords({"distance": distance, **where})
 
 
@@ -172,17 +154,13 @@ def in_plane(
     if len(given) != 1:
         raise InvalidInputError("x, y, z", (x, y, z), "exactly one of them a number, the others None")
     ((axis, value),) = given.items()
-    fields = _fields(one, variables)
+    fields = fields_on_one_grid(one, variables, along=("x", "y"))
     first = next(iter(fields.values()))
     if axis not in axis_dimensions(first):
         raise InvalidInputError("variables", list(fields), f"fields along {axis}")
     place = _inside(axis, np.array([checks.finite(axis, value, "metres")]), positions(first, axis).values)
-    at = xr.DataArray(place[0], attrs=_attributes(axis))
+    at = xr.DataArray(place[0], attrs=labels(axis, coordinate=True))
     return _assemble(fields, {axis: at}).assign_coords({axis: at})
-
-
-def _attributes(axis: str) -> dict[str, str]:
-    return {"units": COORDINATES[axis].units, "long_name": COORDINATES[axis].long_name}
 
 
 def _assemble(fields: dict[str, xr.DataArray], where: dict[str, xr.DataArray]) -> xr.Dataset:

@@ -14,13 +14,13 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 ASSUMED_ORDER = 1.0
-"""Below the orders observed (1.5 to 2 where the pressure is smooth), so that the estimate errs on the high side."""
+"""Below the orders observed (1.5 to 2 where the pressure is smooth): the estimate errs on the high side. Accuracy."""
 
 UNRESOLVED = 0.2
-"""Two grids whose values differ by more than this fraction say nothing about the limit."""
+"""Two grids whose values differ by more than this fraction say nothing about the limit. Accuracy."""
 
 FITTED = 3
-"""Columns of cells that are extrapolated to the end of the shape."""
+"""Columns of cells that are extrapolated to the end of the shape. Accuracy."""
 
 
 def extrapolated(coarse: float, fine: float, order: float, ratio: float = 2.0) -> float:
@@ -109,13 +109,7 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     result = xr.Dataset()
     for name, value in measured[0].items():
         error = np.inf if name in unbounded else _estimated_error(measured[1][name], value, ratio, displaced)
-        units = "m" if name == "half_width_middle" else "Pa"
-        result[name] = ((), value, {"units": units})
-        result[f"{name}_error"] = (
-            (),
-            error,
-            {"units": units, "long_name": f"estimated discretisation error of {name}"},
-        )
+        result[name], result[f"{name}_error"] = value, error
         if np.isinf(error):
             result[f"{name}_error"].attrs["comment"] = "no limit in sight: the end is sharp or the grid too coarse"
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in cells]

@@ -6,14 +6,16 @@ import numpy as np
 import xarray as xr
 from scipy.interpolate import CubicSpline
 
-from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.border import FITTED, SKIPPED, contact_borders
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import describe
 from contactstudy.checks import FloatArray
-from contactstudy.errors import InvalidInputError
+
+WIDTHS = 4096
+"""Points of the quadrature of the width over x. Accuracy."""
 
 
 def contact_edges(contact: xr.Dataset) -> xr.Dataset:
@@ -52,11 +54,9 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
     (1.0, 1.0)
     """
-    checks.instance("contact", contact, xr.Dataset, "a Dataset")
+    require(contact, argument="contact")
     contact = single_case(contact)
-    for name in ("pressure", "gap"):
-        if name not in contact:
-            raise InvalidInputError("contact", sorted(map(str, contact.data_vars)), f"a Dataset with {name}")
+    require(contact, "pressure", "gap", argument="contact")
     pressure, grid = labelled_cells("contact.pressure", contact["pressure"])
     gap, _ = labelled_cells("contact.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
@@ -79,10 +79,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
 
 
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: float) -> float:
-    """Integral of the width over x.
-
-    At a smooth end the width goes to zero like a square root, so its square is what is interpolated between columns.
-    """
+    """Integral of the width over x."""
     columns = np.flatnonzero(np.isfinite(width))
     if np.any(np.diff(columns) > 1):
         return float(np.nansum(width) * grid.dx)
@@ -97,10 +94,11 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:
         return float(np.nansum(width) * grid.dx)
+    # At a smooth end the width goes to zero like a square root, so its square is what is interpolated.
     squared = width[columns] ** 2
     at = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])
     values = np.concatenate([[0.0][: smooth[0]], squared, [0.0][: smooth[1]]])
-    angles = np.pi * (np.arange(4096) + 0.5) / 4096
+    angles = np.pi * (np.arange(WIDTHS) + 0.5) / WIDTHS
     x = 0.5 * (first + last) - 0.5 * (last - first) * np.cos(angles)
     between = np.sqrt(np.maximum(CubicSpline(at, values)(x), 0.0))
     return float((between * np.sin(angles)).sum() * 0.5 * (last - first) * np.pi / angles.size)

@@ -6,13 +6,19 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, dimension_along, positions, require
+from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named, variable_of
 from contactstudy.errors import InvalidInputError
 
-PLACES = {"first": "at the first end", "last": "at the last end", "middle": "in the middle", "peak": "at its largest"}
+PLACES = ("first", "last", "middle", "peak")
+"""Where a value is compared with that of a reference: near both ends, at mid-length, and wherever it is largest."""
+
+ROUNDING = 1e-9
+"""A point may lie beyond the reach of an end by this part of it. Accuracy."""
 
 
 def _along_axis(dataset: xr.Dataset, variable: str) -> xr.DataArray:
@@ -33,13 +39,12 @@ def _borders(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     return loaded.min(x).compute(), loaded.max(x).compute()
 
 
-def _at(profile: xr.DataArray, place: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
+def _at(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
     """Value of `profile` at the point nearest to `position`; NaN if that lies beyond its points."""
     x = dimension_along(profile, "x")
-    distance = abs(place - position)
-    step = (place.max(x) - place.min(x)) / np.maximum(place.count(x) - 1, 1)
+    distance = abs(positions(profile, "x") - position)
     nearest = distance.fillna(np.inf).argmin(x)
-    return profile.isel({x: nearest}).where(distance.min(x) <= step)
+    return profile.isel({x: nearest}).where(distance.min(x) <= cell_size(profile, "x"))
 
 
 def _ends(
@@ -47,7 +52,7 @@ def _ends(
 ) -> list[xr.DataArray]:
     """Largest value within `reach` of either border; NaN if the profile has no point there."""
     x, place = dimension_along(profile, "x"), positions(profile, "x")
-    near = reach * (1 + 1e-9)
+    near = reach * (1 + ROUNDING)
     return [profile.where(abs(place - border) <= near).max(x) for border in borders]
 
 
@@ -97,18 +102,16 @@ def edge_factors(
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)
     values = {
-        "end_over_middle_first": (first / middle, "at the first end, over that in the middle"),
-        "end_over_middle_last": (last / middle, "at the last end, over that in the middle"),
+        "end_over_middle_first": first / middle,
+        "end_over_middle_last": last / middle,
     }
     if reference is not None:
         require(reference, "pressure")
         others = _values(reference, variable, near)
         for name, own, other in zip(PLACES, (first, last, middle, largest), others, strict=True):
-            values[f"over_reference_{name}"] = (own / other, f"{PLACES[name]}, over that of the reference")
-    result = xr.Dataset({name: value.reset_coords(drop=True) for name, (value, _) in values.items()})
-    for name, (_, meaning) in values.items():
-        result[name].attrs = {"units": "1", "long_name": f"{variable.replace('_', ' ')} {meaning}"}
-    return result
+            values[f"over_reference_{name}"] = own / other
+    base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
+    return xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in values.items()})
 
 
 def _values(
@@ -120,5 +123,5 @@ def _values(
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     first, last = _ends(profile, borders, near)
-    middle = _at(profile, positions(profile, "x"), 0.5 * (borders[0] + borders[1]))
+    middle = _at(profile, 0.5 * (borders[0] + borders[1]))
     return first, last, middle, profile.max(dimension_along(profile, "x"))

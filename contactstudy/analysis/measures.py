@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import require
 from contactstudy.arrays.invariants import hydrostatic, maximum_shear, orthogonal_shear_range, tresca, von_mises
+from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
 

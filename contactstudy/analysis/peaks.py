@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.measures import measure
-from contactstudy.arrays.variables import COORDINATES, VARIABLES
+from contactstudy.analysis.reduced import reduced
+from contactstudy.arrays.variables import named, variable_of
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
-
-Array = npt.NDArray[Any]
 
 
 def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
@@ -32,29 +29,11 @@ def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
 
 def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     """Largest value of `array` over some axes, with the positions along them."""
-    found = xr.apply_ufunc(
-        _largest,
-        array,
-        *(positions(array, axis) for axis in over),
-        input_core_dims=[list(over.values()), *([dim] for dim in over.values())],
-        output_core_dims=[[]] * (1 + len(over)),
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64] * (1 + len(over)),
-    )
-    known = VARIABLES.get(name)
-    meaning = str(array.attrs.get("long_name", name))
-    result = xr.Dataset(
-        {f"peak_{name}": found[0]} | dict(zip((f"peak_{name}_{axis}" for axis in over), found[1:], strict=True))
-    )
-    result[f"peak_{name}"].attrs = {
-        "units": array.attrs.get("units", known.units if known else ""),
-        "long_name": f"largest {meaning}",
-    }
-    for axis in over:
-        attributes = {"units": COORDINATES[axis].units, "long_name": f"{axis} of the largest {meaning}"}
-        result[f"peak_{name}_{axis}"].attrs = attributes
-    return result.compute()
+    places = [(positions(array, axis), [dim]) for axis, dim in over.items()]
+    found = reduced(_largest, [(array, list(over.values())), *places], 1 + len(over))
+    base = variable_of(name, array.attrs)
+    names = (f"peak_{name}", *(f"peak_{name}_{axis}" for axis in over))
+    return xr.Dataset({each: named(each, value, base) for each, value in zip(names, found, strict=True)}).compute()
 
 
 def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:

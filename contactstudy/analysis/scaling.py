@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import xarray as xr
 
-from contactstudy.analysis.axes import AXES, require
-from contactstudy.arrays.variables import VARIABLES
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import COORDINATES, Variable, variable_of
 
 SCALES = {"m": (1, 0), "m2": (2, 0), "Pa": (0, 1), "N/m": (1, 1), "N": (2, 1), "N m": (3, 1)}
 """Powers of a and of p0 in each unit: a length is divided by a, a load by p0 a**2, and so on."""
@@ -15,13 +15,7 @@ KEPT = ("hertz_half_width", "hertz_max_pressure")
 
 
 def _over(powers: tuple[int, int]) -> str:
-    """Name of a scale, such as ``p0 a**2``.
-
-    Examples
-    --------
-    >>> _over((0, 1)), _over((2, 1))
-    ('p0', 'p0 a**2')
-    """
+    """Name of a scale, such as ``p0 a**2``."""
     a, p0 = powers
     return " ".join(["p0"] * p0 + ([f"a**{a}"] if a > 1 else ["a"] * a))
 
@@ -60,24 +54,22 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
     # Variables, not arrays: there is nothing to align, and the positions change themselves.
     half_width, pressure = (dataset[name].variable for name in KEPT)
 
-    def scaled(array: xr.DataArray, unit: str) -> xr.Variable:
-        powers = SCALES[unit]
+    def scaled(array: xr.DataArray, known: Variable) -> xr.Variable:
+        powers = SCALES[known.units]
         result = array.variable / (half_width ** powers[0] * pressure ** powers[1])
         # Dimensions of the study come first, as they do in the result.
         result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
-        meaning = array.attrs.get("long_name", array.name)
-        result.attrs = {**array.attrs, "units": "1", "long_name": f"{meaning}, over {_over(powers)}"}
+        result.attrs = {**array.attrs, "units": "1", "long_name": f"{known.long_name}, over {_over(powers)}"}
         return result
 
     variables, coordinates = {}, {}
     for name, array in dataset.data_vars.items():
-        known = VARIABLES.get(str(name))
-        unit = array.attrs.get("units", known.units if known else "")
-        if unit in SCALES and name not in KEPT:
-            variables[name] = scaled(array, unit)
+        known = variable_of(str(name), array.attrs)
+        if known.units in SCALES and name not in KEPT:
+            variables[name] = scaled(array, known)
     for name, coordinate in dataset.coords.items():
-        is_position = name in AXES or name in [f"{axis}_field" for axis in AXES] or name == "distance"
+        known = variable_of(str(name), coordinate.attrs, coordinate=True)
         shared = name in dataset.dims and half_width.ndim > 0
-        if is_position and not shared:
-            coordinates[name] = scaled(coordinate, "m")
+        if name in COORDINATES and known.units == "m" and not shared:
+            coordinates[name] = scaled(coordinate, known)
     return dataset.assign_coords(coordinates).assign(variables)

@@ -6,13 +6,18 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import dimension_along, require, single_case
+from contactstudy.analysis.axes import dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.variables import STRESSES
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES, describe, named
 from contactstudy.errors import InvalidInputError
 
 SHEARS = ("von_mises", "maximum_shear", "orthogonal_shear_amplitude")
+"""Measures of stress whose largest value in each slice is listed."""
+
+ROUNDING = 1e-9
+"""A stress point may lie beyond a slice by this part of the whole length and still belong to it. Accuracy."""
 
 
 def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
@@ -67,20 +72,17 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     weights = xr.DataArray(share, dims=("slice", x))
     result = xr.Dataset(
         {
-            "position": ("slice", 0.5 * (borders[1:] + borders[:-1]), {"units": "m", "long_name": "middle"}),
-            "width": ("slice", np.full(number, width), {"units": "m", "long_name": "width of the slice"}),
-            "load": (weights * cells["line_load"]).sum(x).assign_attrs(units="N", long_name="load of the slice"),
+            "position": ("slice", 0.5 * (borders[1:] + borders[:-1])),
+            "width": ("slice", np.full(number, width)),
+            "load": named("load", (weights * cells["line_load"]).sum(x)).assign_attrs(comment="of the slice"),
         },
-        coords={"slice": ("slice", np.arange(1, number + 1), {"long_name": "number of the slice, from end I"})},
+        coords={"slice": np.arange(1, number + 1)},
     )
     result["axial_pressure"] = cells["axial_pressure"].where(weights > 0.5 * weights.max(x)).max(x)
     for name in ("half_width", "unloaded_gap"):
         if name in cells:
             result[name] = (weights * cells[name]).sum(x) / weights.sum(x)
-    for name in ("axial_pressure", "half_width", "unloaded_gap"):
-        if name in cells:
-            result[name].attrs = cells[name].attrs
-    return _with_shears(result, one, borders) if all(name in one for name in STRESSES) else result
+    return describe(_with_shears(result, one, borders) if all(name in one for name in STRESSES) else result)
 
 
 def _with_shears(result: xr.Dataset, one: xr.Dataset, borders: np.ndarray) -> xr.Dataset:
@@ -89,7 +91,7 @@ def _with_shears(result: xr.Dataset, one: xr.Dataset, borders: np.ndarray) -> xr
         sections = section_peak(one, name)
         stress = sections[f"peak_{name}"]
         x = dimension_along(stress, "x")
-        rounding = 1e-9 * (borders[-1] - borders[0])
+        rounding = ROUNDING * (borders[-1] - borders[0])
         at = stress[x].values
         inside = (at >= borders[:-1, None] - rounding) & (at <= borders[1:, None] + rounding)
         owned = stress.where(xr.DataArray(inside, dims=("slice", x)))

@@ -6,11 +6,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import contact_results, peak
+from contactstudy.arrays.variables import named
 from contactstudy.errors import InvalidInputError
-
-
-def _scalar(value: xr.DataArray | float, units: str, long_name: str) -> xr.DataArray:
-    return xr.DataArray(float(value), attrs={"units": units, "long_name": long_name})
 
 
 def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -35,15 +32,16 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     >>> float(result.peak_pressure_x), float(result.end_pressure_over_p0), float(result.contact_length)
     (1.0, 1.25, 3.0)
     """
-    contact = contact_results(dataset)
-    kept = ("peak_pressure", "peak_pressure_x", "peak_pressure_y", "contact_length", "contact_width")
-    result = {name: _scalar(contact[name], **contact[name].attrs) for name in kept}
+    contact = contact_results(dataset).reset_coords(drop=True)
+    kept = ["peak_pressure", "peak_pressure_x", "peak_pressure_y", "contact_length", "contact_width"]
     scale = float(dataset["hertz_max_pressure"])
-    first, last = (float(contact[f"edge_pressure_{end}"]) / scale for end in ("first", "last"))
-    result["end_pressure_over_p0_first"] = _scalar(first, "1", "pressure in the first loaded cells, over p0")
-    result["end_pressure_over_p0_last"] = _scalar(last, "1", "pressure in the last loaded cells, over p0")
-    result["end_pressure_over_p0"] = _scalar(0.5 * (first + last), "1", "mean of the pressures at both ends, over p0")
-    return xr.Dataset(result)
+    first, last = (contact[f"edge_pressure_{end}"] / scale for end in ("first", "last"))
+    ends = {
+        "end_pressure_over_p0_first": first,
+        "end_pressure_over_p0_last": last,
+        "end_pressure_over_p0": 0.5 * (first + last),
+    }
+    return contact[kept].assign({name: named(name, value) for name, value in ends.items()})
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -74,7 +72,7 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
         return xr.Dataset()
     if np.isnan(dataset["von_mises"].values).all():
         raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
-    return peak(dataset, "von_mises").map(lambda value: _scalar(value, **value.attrs), keep_attrs=True)
+    return peak(dataset, "von_mises").reset_coords(drop=True)
 
 
 def summarize(dataset: xr.Dataset) -> xr.Dataset:

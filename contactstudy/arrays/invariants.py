@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.variables import STRESSES, VARIABLES
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import AXES, STRESSES, describe, named
 from contactstudy.errors import InvalidInputError
 
 PRINCIPAL = "principal"
-AXES = ("x", "y", "z")
+"""Dimension of the principal stresses."""
 
 
 def von_mises(stress: xr.Dataset) -> xr.DataArray:
@@ -32,15 +33,14 @@ def von_mises(stress: xr.Dataset) -> xr.DataArray:
 
     Examples
     --------
-    >>> zero = xr.DataArray(0.0)
-    >>> shear = xr.Dataset({name: zero for name in STRESSES} | {"tau_xy": zero + 1.0})
+    >>> shear = xr.Dataset(dict.fromkeys(STRESSES, 0.0) | {"tau_xy": 1.0})
     >>> round(float(von_mises(shear)), 6)
     1.732051
     """
-    _require(stress, STRESSES)
+    require(stress, *STRESSES, argument="stress")
     xx, yy, zz, xy, xz, yz = (stress[name] for name in STRESSES)
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    return _labelled(squared**0.5, "von_mises", VARIABLES["von_mises"].long_name)
+    return named("von_mises", squared**0.5)
 
 
 def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
@@ -65,12 +65,11 @@ def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
 
     Examples
     --------
-    >>> zero = xr.DataArray(0.0)
-    >>> shear = xr.Dataset({name: zero for name in STRESSES} | {"tau_xy": zero + 1.0})
+    >>> shear = xr.Dataset(dict.fromkeys(STRESSES, 0.0) | {"tau_xy": 1.0})
     >>> principal_stresses(shear).principal_stress.values.round(6).tolist()
     [1.0, 0.0, -1.0]
     """
-    _require(stress, STRESSES)
+    require(stress, *STRESSES, argument="stress")
     components = xr.broadcast(*(stress[name] for name in STRESSES))
     xx, yy, zz, xy, xz, yz = (component.values for component in components)
     tensor = np.stack([xx, xy, xz, xy, yy, yz, xz, yz, zz], axis=-1).astype(np.float64)
@@ -87,11 +86,7 @@ def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
         },
         coords={**first.coords, PRINCIPAL: [1, 2, 3], "axis": list(AXES)},
     )
-    result["principal_stress"].attrs = {"units": "Pa", "long_name": "principal stress, largest first"}
-    result["principal_direction"].attrs = {"units": "1", "long_name": "unit vector along the principal stress"}
-    result[PRINCIPAL].attrs = {"units": "1", "long_name": "rank of the principal stress, 1 the largest"}
-    result["axis"].attrs = {"long_name": "component along this axis"}
-    return result
+    return describe(result)
 
 
 def tresca(stress: xr.Dataset) -> xr.DataArray:
@@ -100,28 +95,22 @@ def tresca(stress: xr.Dataset) -> xr.DataArray:
     Parameters
     ----------
     stress : Dataset
-        The six components `sigma_xx` ... `tau_yz`, Pa, of any dimensions.
+        The six components as for :func:`von_mises`, finite.
 
     Returns
     -------
     DataArray
         Pa, with the dimensions of the components.
 
-    Raises
-    ------
-    InvalidInputError
-        If a component is missing, or not finite.
-
     Examples
     --------
-    >>> zero = xr.DataArray(0.0)
-    >>> shear = xr.Dataset({name: zero for name in STRESSES} | {"tau_xy": zero + 1.0})
+    >>> shear = xr.Dataset(dict.fromkeys(STRESSES, 0.0) | {"tau_xy": 1.0})
     >>> round(float(tresca(shear)), 6)
     2.0
     """
     principal = principal_stresses(stress)["principal_stress"]
     difference = principal.sel({PRINCIPAL: 1}, drop=True) - principal.sel({PRINCIPAL: 3}, drop=True)
-    return _labelled(difference, "tresca", "Tresca equivalent stress")
+    return named("tresca", difference)
 
 
 def maximum_shear(stress: xr.Dataset) -> xr.DataArray:
@@ -130,26 +119,20 @@ def maximum_shear(stress: xr.Dataset) -> xr.DataArray:
     Parameters
     ----------
     stress : Dataset
-        The six components `sigma_xx` ... `tau_yz`, Pa, of any dimensions.
+        The six components as for :func:`von_mises`, finite.
 
     Returns
     -------
     DataArray
         Pa, with the dimensions of the components.
 
-    Raises
-    ------
-    InvalidInputError
-        If a component is missing, or not finite.
-
     Examples
     --------
-    >>> zero = xr.DataArray(0.0)
-    >>> tension = xr.Dataset({name: zero for name in STRESSES} | {"sigma_xx": zero + 1.0})
+    >>> tension = xr.Dataset(dict.fromkeys(STRESSES, 0.0) | {"sigma_xx": 1.0})
     >>> float(maximum_shear(tension))
     0.5
     """
-    return _labelled(0.5 * tresca(stress), "maximum_shear", "largest shear stress on any plane")
+    return named("maximum_shear", 0.5 * tresca(stress))
 
 
 def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
@@ -158,17 +141,12 @@ def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
     Parameters
     ----------
     stress : Dataset
-        With `sigma_xx`, `sigma_yy` and `sigma_zz`, Pa, of any dimensions.
+        With `sigma_xx`, `sigma_yy` and `sigma_zz` as for :func:`von_mises`.
 
     Returns
     -------
     DataArray
         Pa, with the dimensions of the components.
-
-    Raises
-    ------
-    InvalidInputError
-        If a component is missing.
 
     Examples
     --------
@@ -176,9 +154,9 @@ def hydrostatic(stress: xr.Dataset) -> xr.DataArray:
     -2.0
     """
     normal = STRESSES[:3]
-    _require(stress, normal)
+    require(stress, *normal, argument="stress")
     xx, yy, zz = (stress[name] for name in normal)
-    return _labelled((xx + yy + zz) / 3, "hydrostatic", "hydrostatic stress, positive in tension")
+    return named("hydrostatic", (xx + yy + zz) / 3)
 
 
 def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
@@ -211,7 +189,7 @@ def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
     >>> float(cycle.orthogonal_shear_range), float(cycle.orthogonal_shear_amplitude), float(cycle.y_of_largest_shear)
     (0.5, 0.25, -0.9)
     """
-    _require(stress, ("tau_yz",))
+    require(stress, "tau_yz", argument="stress")
     shear = stress["tau_yz"]
     rolling = [str(dim) for dim in shear.dims if dim in ("y", "y_field")]
     if len(rolling) != 1 or rolling[0] not in shear.coords:
@@ -220,32 +198,10 @@ def orthogonal_shear_range(stress: xr.Dataset) -> xr.Dataset:
     if not shear.sizes[along] or not np.isfinite(shear.values).all():
         raise InvalidInputError("stress.tau_yz", "empty or not finite", "finite stresses")
     difference = shear.max(along) - shear.min(along)
-    lengths = {
-        "y_of_largest_shear": (shear.idxmax(along), "where tau_yz is largest"),
-        "y_of_smallest_shear": (shear.idxmin(along), "where tau_yz is smallest"),
+    values = {
+        "orthogonal_shear_range": difference,
+        "orthogonal_shear_amplitude": 0.5 * difference,
+        "y_of_largest_shear": shear.idxmax(along),
+        "y_of_smallest_shear": shear.idxmin(along),
     }
-    result = xr.Dataset(
-        {
-            "orthogonal_shear_range": _labelled(difference, "range", "range of tau_yz over a rolling cycle"),
-            "orthogonal_shear_amplitude": _labelled(0.5 * difference, "amplitude", "half the range of tau_yz"),
-        }
-        | {name: position for name, (position, _) in lengths.items()}
-    )
-    for name, (_, meaning) in lengths.items():
-        result[name].attrs = {"units": "m", "long_name": meaning}
-    return result
-
-
-def _require(stress: xr.Dataset, names: tuple[str, ...]) -> None:
-    """Raise if a component is missing."""
-    if not isinstance(stress, xr.Dataset):
-        raise InvalidInputError("stress", type(stress).__name__, f"a Dataset with {', '.join(names)}")
-    if any(name not in stress for name in names):
-        raise InvalidInputError("stress", sorted(map(str, stress.data_vars)), f"a Dataset with {', '.join(names)}")
-
-
-def _labelled(array: xr.DataArray, name: str, meaning: str) -> xr.DataArray:
-    """Name a stress and give it its unit."""
-    named = array.rename(name)
-    named.attrs = {"units": "Pa", "long_name": meaning}
-    return named
+    return xr.Dataset({name: named(name, value) for name, value in values.items()})

@@ -34,9 +34,10 @@ METRES = {
 """Units of length that a file may use, and their size in metres."""
 
 WIDEST_STEP = 3.0
-"""A step between positions that is this many times as wide as the steps beside it is a gap."""
+"""A step between positions that is this many times as wide as the steps beside it is a gap. Accuracy."""
 
 COMMENT = "#"
+"""Begins a line of a text file that is not read."""
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
@@ -142,6 +143,7 @@ def _chosen(found: list[str], positions: tuple[str, ...], values: tuple[str, ...
 
 
 def _number(line: int, name: str, field: str) -> float:
+    """Read a field of a text file: a number, or NaN where it is empty."""
     try:
         return float(field) if field.strip() else np.nan
     except ValueError:

@@ -1,76 +1,118 @@
-"""The schema of every Dataset of the package: each variable's dimensions, unit and meaning, in one table."""
+"""Units and names of everything that the package returns, attached from the one table of variables."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
-from typing import NamedTuple
+from typing import Any
 
 import xarray as xr
 
+from contactstudy.arrays.vocabulary import AXES, COORDINATES, RULES, STRESSES, VARIABLES, Variable
 
-class Variable(NamedTuple):
-    """Specification of one variable."""
+__all__ = [
+    "AXES",
+    "COORDINATES",
+    "RULES",
+    "STRESSES",
+    "VARIABLES",
+    "Variable",
+    "describe",
+    "labels",
+    "named",
+    "package_version",
+    "specification",
+    "variable_of",
+]
 
-    dims: tuple[str, ...]
-    units: str
-    long_name: str
+_AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
+"""What each rule puts before and after a name, the longest first: `peak_gap_x` is where a peak is, not a peak."""
 
 
-XY, XYZ, SCALAR = ("x", "y"), ("x", "y", "z"), ()
+def specification(name: str, base: Variable | None = None, *, coordinate: bool = False) -> Variable | None:
+    """Specification of a variable or coordinate by its name; None if the package has none of that name.
 
-COORDINATES = {
-    "x": Variable(("x",), "m", "position along the roller's axis, from end I"),
-    "y": Variable(("y",), "m", "position along rolling and sliding, from under the roller's centre"),
-    "z": Variable(("z",), "m", "depth below the loaded surface"),
-}
+    Parameters
+    ----------
+    name : str
+        Name in the table, or one that a rule makes of another.
+    base : Variable, optional
+        What a derived quantity is derived from; default: what its name says.
+    coordinate : bool
+        Whether the name is that of a coordinate.
 
-STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+    Examples
+    --------
+    >>> specification("peak_von_mises_z").attrs
+    {'units': 'm', 'long_name': 'z of the largest von Mises stress'}
+    >>> specification("peak_luck") is None
+    True
+    """
+    known = (COORDINATES if coordinate else VARIABLES).get(name)
+    if known is not None:
+        return _filled(known, base or Variable((), "", "", "value"))
+    for prefix, suffix in _AFFIXES:
+        middle = name.removeprefix(prefix).removesuffix(suffix)
+        if name == f"{prefix}{middle}{suffix}" and middle:
+            of = base or specification(middle) or specification(middle, coordinate=True)
+            return of and _filled(RULES[f"{prefix}{{name}}{suffix}"], of)
+    return None
 
-VARIABLES = {
-    "pressure": Variable(XY, "Pa", "contact pressure"),
-    "shear_traction": Variable(XY, "Pa", "shear traction on the body along +y"),
-    "gap": Variable(XY, "m", "gap after deformation"),
-    "initial_gap": Variable(XY, "m", "gap before deformation"),
-    "displacement_z": Variable(XY, "m", "normal displacement of the top, into the body"),
-    "u_x": Variable(XYZ, "m", "displacement along the roller's axis"),
-    "u_y": Variable(XYZ, "m", "displacement along rolling"),
-    "u_z": Variable(XYZ, "m", "displacement along depth"),
-    "sigma_xx": Variable(XYZ, "Pa", "normal stress along the roller's axis"),
-    "sigma_yy": Variable(XYZ, "Pa", "normal stress along rolling"),
-    "sigma_zz": Variable(XYZ, "Pa", "normal stress along depth"),
-    "tau_xy": Variable(XYZ, "Pa", "shear stress xy"),
-    "tau_xz": Variable(XYZ, "Pa", "shear stress xz"),
-    "tau_yz": Variable(XYZ, "Pa", "shear stress yz"),
-    "von_mises": Variable(XYZ, "Pa", "von Mises equivalent stress"),
-    "y_left": Variable(("x",), "m", "first y of the contact"),
-    "y_right": Variable(("x",), "m", "last y of the contact"),
-    "half_width": Variable(("x",), "m", "half-width of the contact"),
-    "x_first": Variable(SCALAR, "m", "first x of the contact"),
-    "x_last": Variable(SCALAR, "m", "last x of the contact"),
-    "contact_length": Variable(SCALAR, "m", "length of the contact along the roller's axis"),
-    "contact_area": Variable(SCALAR, "m2", "area of the contact"),
-    "peak_pressure": Variable(SCALAR, "Pa", "largest contact pressure"),
-    "end_pressure_first": Variable(SCALAR, "Pa", "largest pressure at the end nearer to end I"),
-    "end_pressure_last": Variable(SCALAR, "Pa", "largest pressure at the end nearer to end II"),
-    "half_width_middle": Variable(SCALAR, "m", "half-width of the contact at mid-length"),
-    "hertz_half_width": Variable(SCALAR, "m", "half-width of the Hertz line contact of the same load per length"),
-    "hertz_max_pressure": Variable(SCALAR, "Pa", "peak pressure of the Hertz line contact of the same load per length"),
-    "load": Variable(SCALAR, "N", "normal load"),
-    "approach": Variable(SCALAR, "m", "approach of roller and body, relative to its reference"),
-    "tilt": Variable(SCALAR, "rad", "tilt relative to its reference, positive if larger x is pressed deeper"),
-    "load_position": Variable(SCALAR, "m", "position x of the pressure's resultant"),
-    "iterations": Variable(SCALAR, "1", "applications of the contact operator"),
-    "converged": Variable(SCALAR, "1", "whether the contact iteration reached its tolerance"),
-    "load_error": Variable(SCALAR, "1", "resultant of the pressure minus the load, over the load"),
-    "penetration_error": Variable(
-        SCALAR, "1", "largest gap or overlap under pressure, over the variation of the displacement"
-    ),
-    "open_pressure_error": Variable(SCALAR, "1", "largest pressure where the gap is open, over the peak pressure"),
-    "load_position_error": Variable(
-        SCALAR, "1", "distance of the pressure's resultant from load_position, over the length of the contact"
-    ),
-    "end_traction_residual": Variable(SCALAR, "1", "largest traction left on the free ends, over the peak pressure"),
-}
+
+def _filled(row: Variable, base: Variable) -> Variable:
+    """Row of a table with what its braces stand for."""
+    words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol}
+    dims = base.dims if row.dims == ("{name}",) else row.dims
+    symbol = row.symbol.format(**words) if "{symbol}" in row.symbol else row.symbol
+    return Variable(dims, row.units.format(**words), symbol, row.long_name.format(**words))
+
+
+def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:
+    """Specification of a variable that carries labels: these count first, the table where they say nothing.
+
+    Examples
+    --------
+    >>> variable_of("pressure", {"units": "1"}).units, variable_of("pressure", {}).units
+    ('1', 'Pa')
+    """
+    known = specification(name, coordinate=coordinate) or Variable((), "", "", name)
+    return known._replace(
+        units=str(attributes.get("units", known.units)), long_name=str(attributes.get("long_name", known.long_name))
+    )
+
+
+def labels(name: str, base: Variable | None = None, *, coordinate: bool = False) -> dict[str, str]:
+    """Attributes of a variable or coordinate by its name; empty if the package has none of that name.
+
+    Examples
+    --------
+    >>> labels("x", coordinate=True)["units"], labels("anything")
+    ('m', {})
+    """
+    known = specification(name, base, coordinate=coordinate)
+    return known.attrs if known else {}
+
+
+def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
+    """Return `array` with a name of the table and its unit and meaning, instead of what it carried.
+
+    Parameters
+    ----------
+    name : str
+        In the table, or made by a rule.
+    array : DataArray
+        Values.
+    base : Variable, optional
+        What the quantity is derived from; default: what its name says.
+
+    Examples
+    --------
+    >>> named("load", xr.DataArray(1.0)).attrs
+    {'units': 'N', 'long_name': 'normal load'}
+    """
+    renamed = array.rename(name)
+    renamed.attrs = labels(name, base)
+    return renamed
 
 
 def package_version() -> str:
@@ -81,8 +123,15 @@ def package_version() -> str:
         return "unknown"
 
 
-def describe(dataset: xr.Dataset, title: str) -> xr.Dataset:
-    """Return `dataset` with units, names and CF attributes from the table; attributes already there stay.
+def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
+    """Return `dataset` with units and meanings from the table; attributes already there stay.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Variables and coordinates that the table does not know stay as they are.
+    title : str, optional
+        Of a Dataset that stands alone: adds the attributes that the CF conventions ask of it.
 
     Examples
     --------
@@ -91,17 +140,8 @@ def describe(dataset: xr.Dataset, title: str) -> xr.Dataset:
     """
     described = dataset.copy()
     for name, variable in described.variables.items():
-        specification = VARIABLES.get(str(name)) or COORDINATES.get(str(name))
-        if specification is not None:
-            variable.attrs = {
-                "units": specification.units,
-                "long_name": specification.long_name,
-                **variable.attrs,
-            }
-    described.attrs = {
-        "Conventions": "CF-1.11",
-        "title": title,
-        "source": f"contactstudy {package_version()}",
-        **described.attrs,
-    }
+        variable.attrs = labels(str(name), coordinate=name in described.coords) | variable.attrs
+    if title is not None:
+        own = {"Conventions": "CF-1.11", "title": title, "source": f"contactstudy {package_version()}"}
+        described.attrs = own | described.attrs
     return described

@@ -15,7 +15,7 @@ from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
-from contactstudy.arrays.variables import COORDINATES
+from contactstudy.arrays.variables import labels, named
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -25,16 +25,9 @@ SAME_PLACE = 1e-3
 
 def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
     """Heights on a grid with their CF attributes."""
-    coordinates = {
-        name: (name, values, {"units": COORDINATES[name].units, "long_name": COORDINATES[name].long_name})
-        for name, values in (("x", grid.x), ("y", grid.y))
-    }
-    attributes = {
-        "units": "m",
-        "long_name": "height of the rough surface, positive towards the other body",
-        "source": source,
-    }
-    return xr.DataArray(heights, coordinates, ("x", "y"), name="height", attrs=attributes)
+    positions = {"x": grid.x, "y": grid.y}
+    coordinates = {name: (name, values, labels(name, coordinate=True)) for name, values in positions.items()}
+    return named("height", xr.DataArray(heights, coordinates, ("x", "y"))).assign_attrs(source=source)
 
 
 def self_affine(

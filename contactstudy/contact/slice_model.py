@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import COORDINATES, package_version
+from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -99,26 +99,21 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     radius = local_radius(roller.profile, from_middle, roller.length, roller.radius)
     carried = load_per_length * factor if edge_riser else load_per_length
     pressure = np.sqrt(carried * case.modulus / (np.pi * radius))
-    variables = {
-        "load_per_length": (load_per_length, "N m-1", "load per length of each slice"),
-        "pressure": (pressure, "Pa", "peak pressure of each slice" + (" with stress riser" if edge_riser else "")),
-        "half_width": (2 * pressure * radius / case.modulus, "m", "half-width of each slice"),
-        "deflection": (deflection, "m", "deflection of each slice"),
-        "edge_factor": (factor, "1", "stress riser of ISO/TS 16281, a factor on the load"),
+    fields = {
+        "load_per_length": load_per_length,
+        "pressure": pressure,
+        "half_width": 2 * pressure * radius / case.modulus,
+        "deflection": deflection,
+        "edge_factor": factor,
     }
-    scalars = {"load": (case.normal_load, "N", "normal load"), "approach": (approach, "m", "approach at mid-length")}
-    return xr.Dataset(
-        {name: ("x", values, {"units": unit, "long_name": text}) for name, (values, unit, text) in variables.items()}
-        | {name: ((), value, {"units": unit, "long_name": text}) for name, (value, unit, text) in scalars.items()},
-        coords={"x": ("x", x, {"units": COORDINATES["x"].units, "long_name": COORDINATES["x"].long_name})},
-        attrs={
-            "Conventions": "CF-1.11",
-            "title": "slice model of ISO/TS 16281",
-            "source": f"contactstudy {package_version()}",
-            "slices": slices,
-            "tilt": tilt,
-        },
+    result = xr.Dataset(
+        {name: ("x", values) for name, values in fields.items()} | {"load": case.normal_load, "approach": approach},
+        coords={"x": x},
+        attrs={"slices": slices, "tilt": tilt},
     )
+    result["pressure"].attrs["comment"] = "peak of each slice" + (", with stress riser" if edge_riser else "")
+    result["approach"].attrs["reference"] = "undeformed bodies, at mid-length"
+    return describe(result, "slice model of ISO/TS 16281")
 
 
 def _equilibrium(height: FloatArray, stiffness: float, load: float) -> tuple[float, FloatArray]:

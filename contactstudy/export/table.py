@@ -10,8 +10,8 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
-from contactstudy.analysis.axes import require
-from contactstudy.arrays.variables import COORDINATES, VARIABLES
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import variable_of
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -20,9 +20,9 @@ if TYPE_CHECKING:
 Line = tuple[Sequence[float], Sequence[float]]
 
 
-def _heading(name: str, array: xr.DataArray) -> str:
-    known = VARIABLES.get(name) or COORDINATES.get(name.removesuffix("_field"))
-    units = array.attrs.get("units", known.units if known else "")
+def _heading(name: str, array: xr.DataArray, *, coordinate: bool) -> str:
+    """Name of a column, with its unit."""
+    units = variable_of(name, array.attrs, coordinate=coordinate).units
     return f"{name} [{units}]" if units and units != "1" else name
 
 
@@ -89,7 +89,10 @@ def to_table(
     along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
     frame = chosen.to_dataframe().reset_index()
     names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
-    return frame[names].rename(columns={name: _heading(str(name), chosen[name]) for name in names if name in chosen})
+    headings = {
+        name: _heading(str(name), chosen[name], coordinate=name in chosen.coords) for name in names if name in chosen
+    }
+    return frame[names].rename(columns=headings)
 
 
 def to_csv(

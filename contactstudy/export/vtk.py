@@ -9,23 +9,15 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import measure, single_case
-from contactstudy.analysis.axes import AXES, axis_dimensions, positions, require
-from contactstudy.arrays.variables import STRESSES
+from contactstudy.analysis import single_case
+from contactstudy.analysis.axes import axis_dimensions, positions
+from contactstudy.analysis.fields import fields_on_one_grid
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import AXES, STRESSES
 from contactstudy.errors import InvalidInputError
 
 TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)
 """Place of xx, xy, xz, yx, ... among the six components of a result."""
-
-
-def _fields(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
-    """Fields on one grid: those named, or all in the body, or all on its surface if there are none in the body."""
-    if variables is not None:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        return {name: measure(dataset, name) for name in names}
-    fields = {str(name): array for name, array in dataset.data_vars.items() if len(axis_dimensions(array)) > 1}
-    inside = {name: array for name, array in fields.items() if "z" in axis_dimensions(array)}
-    return inside or fields
 
 
 def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str] | None = None) -> Path:
@@ -70,11 +62,7 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     target = Path(path)
     if target.suffix != ".vtr":
         raise InvalidInputError("path", str(path), "a file name that ends with .vtr")
-    fields = _fields(single_case(dataset), variables)
-    grids = {tuple(axis_dimensions(array).values()) for array in fields.values()}
-    if len(grids) != 1 or grids == {()}:
-        shown = {name: array.dims for name, array in fields.items()}
-        raise InvalidInputError("variables", shown, "fields on the same points along x, y or z", "name some of them")
+    fields = fields_on_one_grid(single_case(dataset), variables)
     first = next(iter(fields.values()))
     along = axis_dimensions(first)
     # The format asks for increasing positions; an axis that the fields do not have is a plane at 0.

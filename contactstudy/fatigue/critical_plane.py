@@ -9,27 +9,30 @@ from __future__ import annotations
 
 from functools import cache
 from itertools import product
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.variables import AXES, VARIABLES, describe, named
+from contactstudy.checks import Array
 from contactstudy.fatigue.history import over_history
 from contactstudy.fatigue.limits import FatigueLimits
 
-Array = npt.NDArray[Any]
-
 NORMALS, DIRECTIONS = 200, 8
-"""Planes of the first search, evenly over a hemisphere (about 10 degrees apart), and shear directions in each."""
+"""Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions in each. Accuracy."""
+
 STARTS = 4
-"""Best frames of the first search that are refined."""
+"""Best frames of the first search that are refined. Accuracy."""
+
 FIRST_TURN, LAST_TURN = np.radians(8.0), np.radians(1e-3)
-"""Largest and smallest rotation of plane and direction in the refinement."""
+"""Largest and smallest rotation of plane and direction in the refinement. Accuracy."""
+
 ROUNDING = 1e-11
+"""Gain, over the largest stress, below which a plane is no worse than another. Accuracy."""
+
 BLOCK = 2**24
-"""Numbers held at once in the first search."""
+"""Numbers held at once in the first search. Speed."""
 
 
 @cache
@@ -164,21 +167,12 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     total, shear, normal, plane = over_history(
         lambda history: _worst_planes(history, limits.findley_slope), stress, (None, None, None, ("axis", 3))
     )
-    result = xr.Dataset(
-        {
-            "findley": total,
-            "utilisation": total / limits.findley_limit,
-            "findley_shear": shear,
-            "findley_normal": normal,
-            "findley_plane": plane,
-        }
-    ).assign_coords(axis=["x", "y", "z"])
-    for name, units, meaning in (
-        ("findley", "Pa", "Findley's sum on the worst plane"),
-        ("utilisation", "1", "Findley's sum over its limit"),
-        ("findley_shear", "Pa", "shear amplitude on the worst plane"),
-        ("findley_normal", "Pa", "largest normal stress on the worst plane"),
-        ("findley_plane", "1", "unit normal of the worst plane"),
-    ):
-        result[name].attrs = {"units": units, "long_name": meaning}
-    return result
+    values = {
+        "findley": total,
+        "utilisation": total / limits.findley_limit,
+        "findley_shear": shear,
+        "findley_normal": normal,
+        "findley_plane": plane,
+    }
+    result = xr.Dataset({name: named(name, value, VARIABLES["findley"]) for name, value in values.items()})
+    return describe(result.assign_coords(axis=list(AXES)))

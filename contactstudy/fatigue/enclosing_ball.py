@@ -10,16 +10,19 @@ Computer Science, LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust s
 from __future__ import annotations
 
 from itertools import product
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 
-Array = npt.NDArray[Any]
+from contactstudy.checks import Array
 
 ROUNDING = 1e-10
-"""A point may lie outside a ball by this fraction of its radius."""
+"""A point may lie outside a ball by this fraction of its radius. Accuracy."""
+
+REGULAR = 1e-15
+"""Part of the trace added to the diagonal of a system of points, lest it be singular. Accuracy."""
+
 MOST_STEPS = 500
+"""Points that may join a ball before it counts as not found: a safeguard."""
 
 
 def enclosing_balls(points: Array) -> tuple[Array, Array]:
@@ -88,7 +91,7 @@ def _join(path: Array, held: Array, used: Array, far: Array) -> tuple[Array, Arr
         # Circumcentre new + sum(share * others): equally far from the new point and from those of the subset.
         count = int(mask.sum())
         part = gram[:, mask][:, :, mask]
-        regular = part + 1e-15 * np.eye(count) * (1 + np.trace(part, axis1=1, axis2=2))[:, None, None]
+        regular = part + REGULAR * np.eye(count) * (1 + np.trace(part, axis1=1, axis2=2))[:, None, None]
         share = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if count else square[:, mask]
         offset = np.einsum("pi,pia->pa", share, others[:, mask])
         squared = (offset**2).sum(axis=1)

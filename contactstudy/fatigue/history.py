@@ -8,21 +8,21 @@ what the window leaves out between its border and the unloaded state is measured
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy.analysis import dimension_along
-from contactstudy.analysis.axes import require
-from contactstudy.arrays.variables import STRESSES
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES, named
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
-Array = npt.NDArray[Any]
-
 FEWEST_POSITIONS = 3
+"""Along y, for a history."""
+
 COMPONENT = "stress_component"
+"""Dimension of the six components while a history is worked on."""
 
 
 def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
@@ -138,6 +138,4 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
         return (np.divide(border, largest, out=np.zeros_like(border), where=largest > 0),)
 
     (result,) = over_history(remainder, stress, (None,))
-    result = result.rename("window_remainder")
-    result.attrs = {"units": "1", "long_name": "stress at the borders of the window over the largest of the passage"}
-    return result
+    return named("window_remainder", result)

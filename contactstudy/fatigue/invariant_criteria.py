@@ -9,18 +9,16 @@ study of multiaxial high-cycle fatigue criteria for metals, International Journa
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis import positions
+from contactstudy.arrays.variables import VARIABLES, named
+from contactstudy.checks import Array
 from contactstudy.fatigue.enclosing_ball import enclosing_balls
 from contactstudy.fatigue.history import histories, over_history
 from contactstudy.fatigue.limits import FatigueLimits
-
-Array = npt.NDArray[Any]
 
 
 def _deviators(history: Array) -> tuple[Array, Array]:
@@ -45,12 +43,9 @@ def _largest_shear(deviator: Array) -> Array:
     return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
 
 
-def _assemble(values: dict[str, tuple[xr.DataArray, str, str]]) -> xr.Dataset:
-    result = {}
-    for name, (array, units, meaning) in values.items():
-        result[name] = array.rename(name)
-        result[name].attrs = {"units": units, "long_name": meaning}
-    return xr.Dataset(result)
+def _labelled(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
+    """Results of a criterion with their names and units; the utilisation is that of its sum."""
+    return xr.Dataset({name: named(name, array, VARIABLES[criterion]) for name, array in values.items()})
 
 
 def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -104,21 +99,18 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         return (*chosen, at[:, 0].astype(np.float64))
 
     total, shear, mean, instant = over_history(criterion, stress, (None,) * 4)
-    return _assemble(
-        {
-            "dang_van": (total, "Pa", "Dang Van's equivalent shear stress"),
-            "utilisation": (total / limits.torsion, "1", "Dang Van's equivalent shear stress over its limit"),
-            "dang_van_shear": (shear, "Pa", "shear at the worst instant"),
-            "dang_van_hydrostatic": (mean, "Pa", "hydrostatic stress at the worst instant"),
-            "dang_van_y": (_position(tensor, rolling, instant), "m", "y of the worst instant"),
-        }
-    )
+    values = {
+        "dang_van": total,
+        "utilisation": total / limits.torsion,
+        "dang_van_shear": shear,
+        "dang_van_hydrostatic": mean,
+        "dang_van_y": _position(tensor, rolling, instant),
+    }
+    return _labelled("dang_van", values)
 
 
 def _position(tensor: xr.DataArray, rolling: str, instant: xr.DataArray) -> xr.DataArray:
     """Position along the rolling direction of the instants with these numbers; NaN for the unloaded state."""
-    from contactstudy.analysis import positions
-
     instant = instant.compute()
     loaded = instant < tensor.sizes[rolling]
     number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
@@ -170,11 +162,10 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
 
     shear, mean = over_history(criterion, stress, (None, None))
     total = shear + slope * mean
-    return _assemble(
-        {
-            "crossland": (total, "Pa", "Crossland's equivalent shear stress"),
-            "utilisation": (total / limits.torsion, "1", "Crossland's equivalent shear stress over its limit"),
-            "crossland_shear": (shear, "Pa", "amplitude of the root of J2"),
-            "crossland_hydrostatic": (mean, "Pa", "largest hydrostatic stress of the history"),
-        }
-    )
+    values = {
+        "crossland": total,
+        "utilisation": total / limits.torsion,
+        "crossland_shear": shear,
+        "crossland_hydrostatic": mean,
+    }
+    return _labelled("crossland", values)

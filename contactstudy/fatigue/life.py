@@ -10,17 +10,18 @@ ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for r
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
+from contactstudy.analysis.reduced import reduced
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
-
-Array = npt.NDArray[Any]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -119,13 +120,12 @@ def _along_axis(density: xr.DataArray, exponents: LifeExponents) -> xr.Dataset:
     if (place.diff(x) <= 0).any():
         raise InvalidInputError("x", place.values, "increasing positions")
     risk = xr.apply_ufunc(_integral, density, place, input_core_dims=[[x], [x]])
-    result = xr.Dataset({"risk_density": density, "risk": risk.reset_coords(drop=True)})
-    result["risk_density"].attrs = {
-        "units": exponents.units(1),
-        "long_name": "risk of fatigue per length of the roller and of the raceway",
-    }
-    result["risk"].attrs = {"units": exponents.units(2), "long_name": "risk of fatigue per length of the raceway"}
-    return result
+    return xr.Dataset(
+        {
+            "risk_density": named("risk_density", density).assign_attrs(units=exponents.units(1)),
+            "risk": named("risk", risk.reset_coords(drop=True)).assign_attrs(units=exponents.units(2)),
+        }
+    )
 
 
 def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None) -> xr.Dataset:
@@ -166,16 +166,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     amplitude = measure(stress, "orthogonal_shear_amplitude")
     dim, depths = _depths(amplitude)
-    crest, at = xr.apply_ufunc(
-        _crest,
-        amplitude,
-        depths,
-        input_core_dims=[[dim], [dim]],
-        output_core_dims=[[], []],
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
-    )
+    crest, at = reduced(_crest, [(amplitude, [dim]), (depths, [dim])], 2)
     # Where nothing is loaded there is no risk, wherever the largest of nothing may be.
     density = (crest**chosen.stress * at.where(at > 0) ** (1 - chosen.depth)).where(crest != 0, 0.0)
     if ((crest > 0) & (at <= 0)).any():
@@ -185,10 +176,9 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
             "largest below it",
             "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
         )
-    result = _along_axis(density, chosen).assign(shear_amplitude=crest.compute(), shear_depth=at.compute())
-    result["shear_amplitude"].attrs = {"units": "Pa", "long_name": "largest amplitude of the orthogonal shear"}
-    result["shear_depth"].attrs = {"units": "m", "long_name": "depth of the largest amplitude"}
-    return result
+    return _along_axis(density, chosen).assign(
+        shear_amplitude=named("shear_amplitude", crest.compute()), shear_depth=named("shear_depth", at.compute())
+    )
 
 
 def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
@@ -246,20 +236,10 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
     dim, depths = _depths(stress)
-    density, mean = xr.apply_ufunc(
-        _risk_of_sections,
-        stress,
-        depths,
-        input_core_dims=[[dim], [dim]],
-        output_core_dims=[[], []],
-        kwargs={"limit": threshold, "exponents": chosen},
-        dask="parallelized",
-        dask_gufunc_kwargs={"allow_rechunk": True},
-        output_dtypes=[np.float64, np.float64],
+    density, mean = reduced(
+        partial(_risk_of_sections, limit=threshold, exponents=chosen), [(stress, [dim]), (depths, [dim])], 2
     )
-    result = _along_axis(density, chosen).assign(mean_depth=mean.compute())
-    result["mean_depth"].attrs = {"units": "m", "long_name": "stress-weighted mean depth of the risk"}
-    return result
+    return _along_axis(density, chosen).assign(mean_depth=named("mean_depth", mean.compute()))
 
 
 def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents | None = None) -> xr.DataArray:
@@ -292,14 +272,11 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     for name, dataset in (("risk", risk), ("reference", reference)):
-        if not isinstance(dataset, xr.Dataset) or "risk" not in dataset:
-            raise InvalidInputError(name, type(dataset).__name__, "a Dataset with risk")
+        require(dataset, "risk", argument=name)
     units = [dataset["risk"].attrs.get("units") for dataset in (risk, reference)]
     if units[0] != units[1]:
         raise InvalidInputError("reference", units[1], f"computed with the same exponents, {units[0]}")
     own, other = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
     ratio = (other / own.where(own > 0)).where((own != 0) | (other == 0), np.inf)
-    result = (ratio ** (1 / chosen.weibull)).rename("relative_life")
-    result.attrs = {"units": "1", "long_name": "life over that of the reference"}
-    return result
+    return named("relative_life", ratio ** (1 / chosen.weibull))

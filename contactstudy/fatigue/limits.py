@@ -9,6 +9,9 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 
+ROUNDING = 1e-9
+"""Slope of Crossland's criterion below zero that rounding may make. Accuracy."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class FatigueLimits:
@@ -61,7 +64,7 @@ class FatigueLimits:
         """``A = 3 tau_w / sigma_w - sqrt(3)``: bending, sqrt(J2) s/sqrt(3), hydrostatic s/3, is on the limit."""
         slope = 3 * self.ratio - np.sqrt(3)
         # Limits that von Mises' stress relates give zero up to rounding.
-        if slope < -1e-9:
+        if slope < -ROUNDING:
             raise InvalidInputError(
                 "torsion",
                 self.torsion,

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import sliding
@@ -72,16 +73,16 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     added, first, second = (
         np.asarray(sum(top.factor * unit[load][i] for load, top in loads.items())) for i in range(3)
     )
-    attributes: dict[str, str | float] = {"units": "Pa"}
+    attributes: dict[str, str | float] = {}
     if reference is not None:
-        attributes |= {
+        attributes = {
             "reference_distance": reference,
             "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
         }
     fields = {
-        "P_h1": (("x", "y"), values + added, attributes | {"long_name": "equivalent pressure on the top, P_h1"}),
-        "P_v1": (("y", "z"), first, attributes | {"long_name": "equivalent pressure on end plane I, P_v1"}),
+        "P_h1": (("x", "y"), values + added, attributes),
+        "P_v1": (("y", "z"), first, attributes),
     }
     if np.isfinite(length):
-        fields["P_v2"] = (("y", "z"), second, attributes | {"long_name": "equivalent pressure on end plane II, P_v2"})
-    return xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths})
+        fields["P_v2"] = (("y", "z"), second, attributes)
+    return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))

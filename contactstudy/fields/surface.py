@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import named
 from contactstudy.bodies.models import Body
 from contactstudy.cache import kept
 from contactstudy.checks import FloatArray
@@ -154,13 +154,8 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     operator = surface_operator(OperatorRequest(body, grid, tuple(loads)))
     with one_blas_thread():
         displacement = operator({load: top.values for load, top in loads.items()})
-    labelled = xr.DataArray(
-        displacement,
-        coords={"x": pressure["x"], "y": pressure["y"]},
-        dims=("x", "y"),
-        attrs=displacement_reference(operator.reference),
-    )
-    return describe(labelled.to_dataset(name="displacement_z"), "")["displacement_z"]
+    sunk = xr.DataArray(displacement, coords={"x": pressure["x"], "y": pressure["y"]}, dims=("x", "y"))
+    return named("displacement_z", sunk).assign_attrs(displacement_reference(operator.reference))
 
 
 def displacement_reference(reference: float) -> dict[str, str | float]:

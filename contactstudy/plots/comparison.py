@@ -9,8 +9,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import along_line, axial_pressure, dimension_along, positions, section_peak, single_case
-from contactstudy.analysis.axes import require
 from contactstudy.analysis.measures import measure
+from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import line_styles, new_axes, units
 

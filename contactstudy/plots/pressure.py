@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.plots.style import COLORS, new_axes, units
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ def plot_axial_pressure(
     >>> pressure = xr.DataArray([[1.0], [2.0]], dims=("x", "y"), coords={"x": [0.5, 1.5], "y": [0.0]})
     >>> one = xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
     >>> plot_axial_pressure(one).get_ylabel()
-    'pressure, $p/p_0$'
+    'contact pressure, $p/p_0$'
     """
     require(dataset, "pressure")
     one = single_case(dataset)

@@ -9,20 +9,14 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.style import line_styles, new_axes
 from contactstudy.profiles import Profile
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 POINTS = 4001
-DASHES: tuple[Any, ...] = (
-    "-",
-    (0, (6, 1.5)),
-    (0, (1, 1)),
-    (0, (6, 1.5, 1, 1.5)),
-    (0, (3, 1.5)),
-    (0, (8, 2, 1, 2, 1, 2)),
-)
+"""Points that a profile is drawn with. Speed."""
 
 
 def plot_profile(
@@ -65,10 +59,7 @@ def plot_profile(
     x = 0.5 * length * np.linspace(-1, 1, POINTS)
     drop = np.array(profile.drop(x, length), dtype=np.float64)
     drop[~np.isfinite(drop)] = np.nan
-    if ax is None:
-        from matplotlib import pyplot
-
-        ax = pyplot.subplots(figsize=(6.4, 3.2), layout="constrained")[1]
+    ax = new_axes(ax, (6.4, 3.2))
     ax.plot(1e3 * x, 1e6 * drop, **style)
     if not ax.yaxis_inverted():
         ax.invert_yaxis()
@@ -115,12 +106,8 @@ def plot_profiles(
     checks.instance("profiles", profiles, Mapping, "a mapping of names to profiles")
     if not profiles:
         raise InvalidInputError("profiles", dict(profiles), "at least one profile")
-    import matplotlib
-
-    colors = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.85, len(profiles)))
-    for number, (name, profile) in enumerate(profiles.items()):
-        dashes = DASHES[number % len(DASHES)]
-        ax = plot_profile(profile, length, ax, deepest=deepest, label=name, color=colors[number], linestyle=dashes)
+    for (name, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
+        ax = plot_profile(profile, length, ax, deepest=deepest, label=name, **style)
     assert ax is not None
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

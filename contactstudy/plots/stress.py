@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import COLORS, Units, new_axes, units
 
@@ -17,18 +17,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import QuadContourSet
 
-Array = npt.NDArray[np.float64]
 LEVELS = 12
+"""About how many contours are drawn."""
 
 
-def _contours(ax: Axes, across: Array, down: Array, values: Array, levels: Any) -> QuadContourSet:
+def _contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:
     """Draw filled contours with every second level drawn as a line."""
     drawn = ax.contourf(across, down, values, levels=levels, cmap=COLORS)
     ax.contour(drawn, levels=np.asarray(drawn.levels)[::2], colors="white", linewidths=0.5)
     return drawn
 
 
-def _grid(plane: xr.DataArray, across: str, down: str, unit: Units) -> tuple[Array, Array, Array]:
+def _grid(plane: xr.DataArray, across: str, down: str, unit: Units) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Positions and values (down, across) of a plane in the units of the figure."""
     dims = [dimension_along(plane, axis) for axis in (across, down)]
     if min(plane.sizes[dim] for dim in dims) < 2:

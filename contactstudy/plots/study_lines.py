@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.study_map import one_value, readable
@@ -23,6 +23,8 @@ QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 """What is drawn if nothing else is asked for."""
 
 MARKERS = "osD^vPX*"
+"""Of the lines, in turn."""
+
 WIDEST_LABEL, WIDEST_LEGEND = 34, 22
 """Characters after which the text of an axis and of the legend's title goes on in the next line."""
 

@@ -8,24 +8,19 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import require
+from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import COLORS, new_axes
+from contactstudy.plots.style import COLORS, SYMBOLS, new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-SYMBOLS = {
-    "e_over_a": "distance of the roller's end from the free end, $e/a$",
-    "friction": "friction, $f$",
-    "gamma": r"length over radius, $\gamma$",
-    "max_pressure": "Hertz pressure, $p_0$",
-}
 SCALES = {
     "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
     "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
 }
 """Units that figures show: from which size on, how much it is in SI, and its name."""
+
 MOST_NUMBERS = 80
 """Cells up to which each is labelled with its value."""
 

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.variables import STRESSES, specification
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -30,22 +31,15 @@ DASHES: tuple[Any, ...] = (
 """Lines differ by their dashes as well as by colour."""
 
 AXIS_MEANINGS = {"x": "distance from the free end", "y": "position along rolling", "z": "depth"}
+"""Words for the axes, shorter than in the table of variables."""
 
 SYMBOLS = {
-    "pressure": ("pressure", "p"),
-    "von_mises": ("von Mises stress", r"\sigma_{vM}"),
-    "tresca": ("Tresca stress", r"\sigma_{T}"),
-    "maximum_shear": ("largest shear stress", r"\tau_{max}"),
-    "hydrostatic": ("hydrostatic stress", r"\sigma_h"),
-    "orthogonal_shear_amplitude": ("orthogonal shear amplitude", r"\tau_0"),
-    "orthogonal_shear_range": ("orthogonal shear range", r"2\tau_0"),
-    "sigma_xx": ("", r"\sigma_{xx}"),
-    "sigma_yy": ("", r"\sigma_{yy}"),
-    "sigma_zz": ("", r"\sigma_{zz}"),
-    "tau_xy": ("", r"\tau_{xy}"),
-    "tau_xz": ("", r"\tau_{xz}"),
-    "tau_yz": ("", r"\tau_{yz}"),
+    "e_over_a": "distance of the roller's end from the free end, $e/a$",
+    "friction": "friction, $f$",
+    "gamma": r"length over radius, $\gamma$",
+    "max_pressure": "Hertz pressure, $p_0$",
 }
+"""Labels of swept parameters that the theory has a symbol for; the symbols of variables stand in their table."""
 
 
 class Units(NamedTuple):
@@ -67,13 +61,16 @@ class Units(NamedTuple):
 
     def stress_label(self, variable: str) -> str:
         """Label of a stress or a pressure."""
-        meaning, symbol = SYMBOLS.get(variable, (variable.replace("_", " "), ""))
-        if not symbol:
+        known = specification(variable)
+        if known is None or not known.symbol:
+            meaning = known.long_name if known else variable.replace("_", " ")
             return f"{meaning}{' over $p_0$' if self.over_stress == '/p_0' else ' (MPa)'}"
-        return f"{meaning}, ${symbol}{self.over_stress}$".removeprefix(", ")
+        meaning = "" if variable in STRESSES else f"{known.long_name}, "
+        return f"{meaning}${known.symbol}{self.over_stress}$"
 
 
 MILLIMETRES = Units(1e-3, 1e6, r"\ \mathrm{(mm)}", r"\ \mathrm{(MPa)}")
+"""What figures with ``si=True`` are drawn in."""
 
 
 def units(dataset: xr.Dataset, *, si: bool) -> Units:

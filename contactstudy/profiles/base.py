@@ -46,6 +46,7 @@ class Shape:
 
 
 def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
+    """Summands of a profile; itself unless it is a sum."""
     return profile.terms if isinstance(profile, Sum) else (profile,)
 
 

@@ -12,7 +12,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Profile, Shape, local_radius
 
 STEP = 1e-10
-"""Largest step between the two halves at mid-length, metres: about one atom."""
+"""Largest step between the two halves at mid-length, metres: about one atom. Accuracy."""
 
 
 @dataclass(frozen=True)

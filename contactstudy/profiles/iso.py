@@ -9,14 +9,10 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.profiles.base import Shape
+from contactstudy.profiles.logarithmic import logarithmic_drop
 
 SHORT = 2.5
 """Length over diameter up to which a cylindrical roller is crowned all along."""
-
-
-def _logarithmic(amplitude: float, t: FloatArray) -> FloatArray:
-    with np.errstate(divide="ignore"):
-        return np.asarray(-amplitude * np.log1p(-np.minimum(t**2, 1.0)))
 
 
 @dataclass(frozen=True)
@@ -65,9 +61,9 @@ class IsoCylindrical(Shape):
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
         crowned = SHORT * self.diameter
         if length <= crowned:
-            return _logarithmic(0.00035 * self.diameter, 2 * np.asarray(x) / length)
+            return logarithmic_drop(0.00035 * self.diameter, 2 * np.asarray(x) / length)
         inside = np.maximum(2 * np.abs(x) - (length - crowned), 0.0)
-        return _logarithmic(0.0005 * self.diameter, inside / crowned)
+        return logarithmic_drop(0.0005 * self.diameter, inside / crowned)
 
 
 @dataclass(frozen=True)
@@ -107,4 +103,4 @@ class IsoTapered(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
-        return _logarithmic(0.00045 * self.diameter, 2 * np.asarray(x) / length)
+        return logarithmic_drop(0.00045 * self.diameter, 2 * np.asarray(x) / length)

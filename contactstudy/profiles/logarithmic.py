@@ -17,6 +17,12 @@ EDGE_SHARE = 0.5 / math.sqrt(math.e)
 """Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``."""
 
 
+def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> FloatArray:
+    """Drop ``A ln(1 / (1 - share t**2))`` (m); at ``share = 1`` infinite from ``|t| = 1`` on."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(-amplitude * np.log1p(-share * np.minimum(t**2, 1.0)))
+
+
 def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) -> float:
     """Amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` (m) of a logarithmic profile from its design pressure.
 
@@ -103,8 +109,7 @@ class Lundberg(Shape):
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
         if self.delta * self.amplitude == 0:
             return np.zeros(np.shape(x))
-        with np.errstate(divide="ignore"):
-            return np.asarray(-self.delta * self.amplitude * np.log1p(-np.minimum((2 * x / length) ** 2, 1.0)))
+        return logarithmic_drop(self.delta * self.amplitude, 2 * np.asarray(x) / length)
 
 
 @dataclass(frozen=True)
@@ -154,6 +159,7 @@ class JohnsGohar(Shape):
         return cls(amplitude, hertz.line_half_width(max_pressure, radius, modulus))
 
     def _share(self, length: float) -> float:
+        """Part of Lundberg's argument that is kept, ``1 - 0.3033 b / h``."""
         share = 1 - EDGE_SHARE * self.half_width / (length / 2)
         if share < 0:
             raise InvalidInputError(
@@ -170,8 +176,7 @@ class JohnsGohar(Shape):
         share = self._share(length)
         if self.amplitude == 0:
             return np.zeros(np.shape(x))
-        with np.errstate(divide="ignore"):
-            return np.asarray(-self.amplitude * np.log1p(-share * np.minimum((2 * x / length) ** 2, 1.0)))
+        return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, share)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from contactstudy.arrays.variables import COORDINATES, package_version
+from contactstudy.arrays.variables import describe, labels
 from contactstudy.study.cube import Cube
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Entry, Folder
@@ -79,13 +79,8 @@ def open_study(folder: str | Path) -> xr.Dataset:
         except StoreError:  # removed or replaced this very moment by a run that goes on
             continue
     dataset = _with_fields(dataset, plan.cube, {key: usable[key] for key in structures}, structures)
-    dataset.attrs = {
-        "Conventions": "CF-1.11",
-        "title": study.description or f"study {study.name}",
-        "source": f"contactstudy {package_version()}",
-        "contactstudy_study": study.to_json(),
-    }
-    return dataset
+    dataset.attrs = {"contactstudy_study": study.to_json()}
+    return describe(dataset, study.description or f"study {study.name}")
 
 
 def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, npt.NDArray[Any], dict[str, str]]:
@@ -95,7 +90,7 @@ def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, 
     else:
         array = np.asarray([np.nan if value is None else value for value in values])
     parameter = PARAMETERS.get(name)
-    attributes = {"long_name": parameter.meaning} if parameter else {"long_name": "number of the case"}
+    attributes = {"long_name": parameter.meaning} if parameter else labels("case", coordinate=True)
     if parameter and parameter.units:
         attributes["units"] = parameter.units
     return dim, array, attributes
@@ -118,12 +113,8 @@ def _summaries(plan: Plan, entries: list[Entry], place: Folder) -> xr.Dataset:
         if set(names) - set(attributes) and set(entry.scalars) - set(attributes):
             attributes |= scalar_attributes(place.path / entry.path)
     variables: dict[str, Any] = {name: (cube.dims, array, attributes.get(name, {})) for name, array in scalars.items()}
-    for name, text, meaning in (
-        ("status", status, "state of the case"),
-        ("message", message, "why the case is not ok"),
-        ("case_id", identity, "identity of the case"),
-    ):
-        variables[name] = (cube.dims, text.astype(np.str_), {"long_name": meaning})
+    for name, text in (("status", status), ("message", message), ("case_id", identity)):
+        variables[name] = (cube.dims, text.astype(np.str_))
     return xr.Dataset(variables, coords=coordinates)
 
 
@@ -167,12 +158,7 @@ def _positions(
     dim: str, by_case: dict[tuple[int, ...], npt.NDArray[np.float64]], cube: Cube, dataset: xr.Dataset
 ) -> tuple[str, dict[str, Any]]:
     """Name that a dimension of the cases gets, and the coordinates along it."""
-    known = COORDINATES.get(dim[0])
-    attributes = {"units": known.units, "long_name": known.long_name} if known else {}
-    over = {
-        "units": "1",
-        "long_name": {"x": "distance from the free end over a", "y": "y over a", "z": "depth over a"}.get(dim[0], dim),
-    }
+    attributes, over = (labels(name, coordinate=True) for name in (dim, f"{dim}_over_a"))
     size = max(values.size for values in by_case.values())
     table = np.full((*cube.shape, size), np.nan)
     for place, values in by_case.items():

@@ -23,7 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from contactstudy.arrays.variables import COORDINATES
+from contactstudy.arrays.variables import describe
 from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
 
@@ -141,12 +141,10 @@ def write_case(path: Path, dataset: xr.Dataset, level: str, header: Header) -> N
     used = {dim for variable in kept.data_vars.values() for dim in variable.dims}
     kept = kept.drop_vars([name for name in kept.coords if not set(kept[name].dims) <= used])
     flags = {name: entry.astype(np.int8) for name, entry in kept.data_vars.items() if entry.dtype == bool}
-    kept = kept.assign(flags)
+    kept = describe(kept.assign(flags))
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in kept.variables.items():
-        known = COORDINATES.get(str(name)[0]) if name in variable.dims else None
-        default = {"units": known.units, "long_name": known.long_name} if known else {}
-        variable.attrs = default | _attributes(variable.attrs)
+        variable.attrs = _attributes(variable.attrs)
         variable.encoding = {}
         depth = any(str(dim).startswith("z") for dim in variable.dims)
         if variable.ndim >= 2:

@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.summary import summarize
-from contactstudy.arrays.variables import package_version
+from contactstudy.arrays.variables import named, package_version
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
@@ -170,7 +170,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
         return Record(job.id, "failed", time.perf_counter() - began, error=type(error).__name__, message=str(error))
     seconds = time.perf_counter() - began
-    scalars["seconds"] = xr.DataArray(seconds, attrs={"units": "s", "long_name": "time of solving"})
+    scalars["seconds"] = named("seconds", xr.DataArray(seconds))
     run = {
         **job.circumstances,
         "time": datetime.now(UTC).isoformat(timespec="seconds"),

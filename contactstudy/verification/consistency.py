@@ -24,6 +24,7 @@ from contactstudy.verification.problems import on_cells, strip, unit_material
 
 
 def _body(length: float) -> FiniteLengthSpace:
+    """Body of the unit material."""
     return FiniteLengthSpace(length=length, material=unit_material())
 
 

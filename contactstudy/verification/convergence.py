@@ -176,6 +176,7 @@ FINEST = Resolution(
     lateral_reach=20.0,
 )
 """Quadrature that the errors of others are measured against."""
+
 SETTINGS: dict[str, tuple[Any, ...]] = {
     "order": (4, 6, 8, 12),
     "ratio": (6.0, 4.0, 3.0, 2.0),
@@ -191,6 +192,7 @@ SETTINGS: dict[str, tuple[Any, ...]] = {
 
 
 QUADRATURE_CASE = "smooth load on both ends, L = 8a"
+"""What the errors of the quadratures are those of."""
 
 
 @lru_cache(maxsize=4)

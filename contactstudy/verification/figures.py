@@ -18,9 +18,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 COLUMNS = 3
+"""Panels beside one another."""
 
 
 def _panels(count: int) -> tuple[Figure, list[Axes]]:
+    """Figure with so many panels, in rows."""
     from matplotlib.figure import Figure
 
     rows = -(-count // COLUMNS)

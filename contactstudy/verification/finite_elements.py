@@ -24,11 +24,16 @@ from contactstudy.verification.problems import on_cells, on_grid, unit_material
 from contactstudy.verification.stored import load_contact, load_stress
 
 SOURCE = "finite elements (scikit-fem), own error {:.0e} {}"
+"""Source of every check here, with its error and the unit of that."""
+
 QUICK_STRESSES = ("full_sliding", "eccentric_sliding", "thin", "plate_sliding")
+"""Load cases of the quick level."""
+
 CELLS_Y = 128
-"""Cells over the loaded width."""
+"""Cells over the loaded width. Accuracy."""
+
 CONTACT_CELLS = 16
-"""Cells per half-width along x in contacts."""
+"""Cells per half-width along x in contacts. Accuracy."""
 
 
 def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:

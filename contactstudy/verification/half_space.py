@@ -24,9 +24,11 @@ from contactstudy.verification.problems import (
 )
 
 POISSON = 0.3
+"""Of every body here, unless a check states another."""
 
 
 def _body() -> HalfSpace:
+    """Half-space of the unit material."""
     return HalfSpace(material=unit_material(POISSON))
 
 

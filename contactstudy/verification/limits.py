@@ -26,6 +26,7 @@ from contactstudy.verification.problems import (
 )
 
 POISSON = 0.3
+"""Of every body here."""
 
 
 def plane_checks() -> Iterator[Check]:

@@ -160,6 +160,7 @@ LOAD_CASES: dict[str, LoadCase] = {
     "plate_sliding": LoadCase(0.5, Uniform(), friction=0.3),
     "wedge_sliding": LoadCase(4.0, Linear(0.2), friction=0.2, poisson=0.1),
 }
+"""Loads whose stresses are stored, by name."""
 
 CONTACT_CASES: dict[str, ContactCase] = {
     "flush": ContactCase(8.0, 0.0),
@@ -167,3 +168,4 @@ CONTACT_CASES: dict[str, ContactCase] = {
     "crowned": ContactCase(8.0, 0.5, crown=0.15),
     "overhanging": ContactCase(8.0, -2.0, crown=0.03),
 }
+"""Contacts that are stored, by name."""

@@ -35,6 +35,8 @@ from contactstudy.verification.problems import (
 )
 
 POISSON = 0.3
+"""Of every body here, unless a check states another."""
+
 MIRROR_ERRORS = {0.3: -0.2190, 0.15: -0.1130}
 """Guilbault's errors of the largest edge displacement under a mirrored load, by Poisson's ratio."""
 

@@ -29,17 +29,24 @@ from contactstudy.verification.problems import on_cells, point_pressure, unit_ma
 
 ALONG_EDGE = 3.362954
 """Displacement along the edge under a point load on it, over the half-space's; for every Poisson's ratio."""
+
 ALONG_NORMAL = {0.0: 2.0, 0.3: 2.4727}
 """Likewise along the inward normal, by Poisson's ratio."""
+
 EXTRA_DEFLECTION = {0.0: 1.3677, 0.3: 1.8452, 0.5: 2.7561}
 """``kappa``: at the distance d the edge adds ``kappa (1 - nu**2) P / (2 pi E d)`` to the deflection at a load."""
+
 TOP_RESULTANT = 1 / (1 - 4 / np.pi**2)
 """Resultant of the equivalent load on the top for a unit load, its images not counted."""
+
 END_RESULTANT = -2 / np.pi * TOP_RESULTANT
 """Likewise on the end plane: tension."""
 
 SOURCE = "exact limit of the quarter space"
+"""Source of closed forms."""
+
 COMPUTED = "limit of the quarter space, computed apart from the solver"
+"""Source of numbers that no closed form gives."""
 
 
 def _scaled_displacement(poisson: float, grid: Grid, at: tuple[int, int], distance: FloatArray) -> FloatArray:

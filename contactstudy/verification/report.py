@@ -13,6 +13,7 @@ from contactstudy.verification.convergence import Table
 from contactstudy.verification.suite import Verification
 
 HEADING = f"{'':4}  {'difference':>10}  {'allowed':>8}  {'computed':>11}  {'reference':>11}  case: quantity [source]"
+"""Columns of the report."""
 
 
 def line(check: Check) -> str:
@@ -99,6 +100,7 @@ def page(verification: Verification, figures: dict[str, str]) -> str:
 
 
 def _row(cells: list[str]) -> str:
+    """Row of a Markdown table."""
     return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells).replace("|  |", "| |") + " |"
 
 

@@ -16,8 +16,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES, ContactCase, LoadCase
 
-STRESS_FILE = "finite_elements_stress.nc"
-CONTACT_FILE = "finite_elements_contact.nc"
+STRESS_FILE, CONTACT_FILE = "finite_elements_stress.nc", "finite_elements_contact.nc"
+"""Files of the stored finite elements."""
 
 
 def data_file(name: str) -> Path:

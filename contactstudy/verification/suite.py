@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks as arguments
-from contactstudy.arrays.variables import package_version
+from contactstudy.arrays.variables import describe
 from contactstudy.verification import (
     consistency,
     convergence,
@@ -24,6 +24,8 @@ from contactstudy.verification.check import Check
 from contactstudy.verification.convergence import Table
 
 LEVELS = ("quick", "full")
+"""How thorough a run is."""
+
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "half-space": lambda full: half_space.checks(),
     "limits": lambda full: limits.checks(),
@@ -87,12 +89,8 @@ class Verification:
             for name, values in zip(names, zip(*rows, strict=True), strict=True):
                 kind = object if isinstance(values[0], str) else float
                 data[f"convergence_{name}"] = ("entry", np.array(values, dtype=kind))
-        return data.assign_attrs(
-            title="verification of contactstudy",
-            source=f"contactstudy {package_version()}",
-            level=self.level,
-            seconds=round(self.seconds, 1),
-        )
+        data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
+        return describe(data, "verification of contactstudy")
 
 
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:

@@ -11,7 +11,7 @@ import numpy as np
 
 from contactstudy import profiles
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 TEXT = (ROOT / "docs" / "profiles.md").read_text()
 
 

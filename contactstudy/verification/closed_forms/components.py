@@ -1,4 +1,8 @@
-"""Stresses as a dictionary of components, and their equivalent stress."""
+"""Stresses as a dictionary of components, and their equivalent stress.
+
+Names and formula also stand in :mod:`contactstudy.arrays`; they are written here a second time on purpose, as all
+closed forms, so that a mistake there shows.
+"""
 
 from __future__ import annotations
 
@@ -11,6 +15,7 @@ from contactstudy.checks import FloatArray
 Stress = dict[str, FloatArray]
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+"""Keys of a stress."""
 
 
 def von_mises(stress: Mapping[str, FloatArray]) -> FloatArray:

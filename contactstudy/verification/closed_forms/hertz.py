@@ -1,4 +1,8 @@
-"""Dimensions of Hertz contacts: point, line and ellipse."""
+"""Dimensions of Hertz contacts: point, line and ellipse.
+
+The line contact also stands in :mod:`contactstudy.bodies.hertz`, which the solver uses. It is written here a second
+time on purpose: a reference that called the code under test would repeat its mistakes.
+"""
 
 from __future__ import annotations
 

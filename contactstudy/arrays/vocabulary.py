@@ -1,0 +1,234 @@
+"""Every variable that the package returns: dimensions, unit, symbol and meaning, in one table.
+
+The text of results, files and figures is taken from here by :mod:`contactstudy.arrays.variables`. A symbol is LaTeX
+without dollar signs, as in the theory; quantities that no formula uses have none. Texts and quantities whose unit
+depends on the row have an empty unit.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class Variable(NamedTuple):
+    """Specification of one variable.
+
+    Attributes
+    ----------
+    dims : tuple of str
+        Dimensions in a result of one case; a study puts its swept parameters in front.
+    units : str
+        SI, in the spelling of the CF conventions.
+    symbol : str
+        LaTeX, without dollar signs.
+    long_name : str
+        Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from.
+
+    Examples
+    --------
+    >>> VARIABLES["load"].attrs
+    {'units': 'N', 'long_name': 'normal load'}
+    """
+
+    dims: tuple[str, ...]
+    units: str
+    symbol: str
+    long_name: str
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """Attributes of the variable in a Dataset."""
+        return {"units": self.units, "long_name": self.long_name} if self.units else {"long_name": self.long_name}
+
+
+X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
+SLICE, CHECK, ENTRY = ("slice",), ("check",), ("entry",)
+"""Dimensions, for short."""
+
+AXES = ("x", "y", "z")
+"""Along the roller's axis, along rolling, and into the body."""
+
+STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
+"""The six components, in the order of every array of stresses."""
+
+COORDINATES = {
+    "x": Variable(X, "m", "x", "position along the roller's axis, from end I"),
+    "y": Variable(("y",), "m", "y", "position along rolling and sliding, from under the roller's centre"),
+    "z": Variable(("z",), "m", "z", "depth below the loaded surface"),
+    "x_field": Variable(("x_field",), "m", "x", "position of the stresses along the roller's axis, from end I"),
+    "y_field": Variable(("y_field",), "m", "y", "position of the stresses along rolling and sliding"),
+    "distance": Variable(("distance",), "m", "s", "distance along the line"),
+    "slice": Variable(SLICE, "1", "k", "number of the slice, from end I"),
+    "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
+    "axis": Variable(("axis",), "", "", "component along this axis"),
+    "case": Variable(("case",), "1", "", "number of the case"),
+}
+"""Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
+
+CONTACT = {
+    "pressure": Variable(XY, "Pa", "p", "contact pressure"),
+    "shear_traction": Variable(XY, "Pa", "q", "shear traction on the body along +y"),
+    "gap": Variable(XY, "m", "g", "gap after deformation"),
+    "initial_gap": Variable(XY, "m", "g_0", "gap before deformation"),
+    "displacement_z": Variable(XY, "m", "u_z", "normal displacement of the top, into the body"),
+    "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
+    "load": Variable(SCALAR, "N", "F", "normal load"),
+    "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
+    "tilt": Variable(
+        SCALAR, "rad", r"\theta", "tilt relative to its reference, positive if larger x is pressed deeper"
+    ),
+    "load_position": Variable(SCALAR, "m", "x_F", "position x of the pressure's resultant"),
+    "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
+    "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
+    "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),
+    "penetration_error": Variable(
+        SCALAR, "1", "", "largest gap or overlap under pressure, over the variation of the displacement"
+    ),
+    "open_pressure_error": Variable(SCALAR, "1", "", "largest pressure where the gap is open, over the peak pressure"),
+    "load_position_error": Variable(
+        SCALAR, "1", "", "distance of the pressure's resultant from load_position, over the length of the contact"
+    ),
+    "end_traction_residual": Variable(
+        SCALAR, "1", "", "largest traction left on the free ends, over the peak pressure"
+    ),
+    "hertz_half_width": Variable(SCALAR, "m", "a", "half-width of the Hertz line contact of the same load per length"),
+    "hertz_max_pressure": Variable(
+        SCALAR, "Pa", "p_0", "peak pressure of the Hertz line contact of the same load per length"
+    ),
+    "end_pressure_first": Variable(SCALAR, "Pa", r"p_\mathrm{I}", "largest pressure at the end nearer to end I"),
+    "end_pressure_last": Variable(SCALAR, "Pa", r"p_\mathrm{II}", "largest pressure at the end nearer to end II"),
+    "half_width_middle": Variable(SCALAR, "m", r"b_\mathrm{m}", "half-width of the contact at mid-length"),
+}
+"""The contact: of a case, of a shape with a body, and of a rough surface."""
+
+SLICE_MODEL = {
+    "load_per_length": Variable(X, "N/m", "w", "load per length of each slice"),
+    "deflection": Variable(X, "m", "d_k", "deflection of each slice"),
+    "edge_factor": Variable(X, "1", "", "stress riser of ISO/TS 16281, a factor on the load"),
+}
+"""What the slice model alone returns."""
+
+FIELDS = {
+    "u_x": Variable(XYZ, "m", "u_x", "displacement along the roller's axis"),
+    "u_y": Variable(XYZ, "m", "u_y", "displacement along rolling"),
+    "u_z": Variable(XYZ, "m", "u_z", "displacement along depth"),
+    "sigma_xx": Variable(XYZ, "Pa", r"\sigma_{xx}", "normal stress along the roller's axis"),
+    "sigma_yy": Variable(XYZ, "Pa", r"\sigma_{yy}", "normal stress along rolling"),
+    "sigma_zz": Variable(XYZ, "Pa", r"\sigma_{zz}", "normal stress along depth"),
+    "tau_xy": Variable(XYZ, "Pa", r"\tau_{xy}", "shear stress xy"),
+    "tau_xz": Variable(XYZ, "Pa", r"\tau_{xz}", "shear stress xz"),
+    "tau_yz": Variable(XYZ, "Pa", r"\tau_{yz}", "shear stress yz"),
+    "P_h1": Variable(XY, "Pa", "P_{h1}", "equivalent pressure on the top, P_h1"),
+    "P_v1": Variable(YZ, "Pa", "P_{v1}", "equivalent pressure on end plane I, P_v1"),
+    "P_v2": Variable(YZ, "Pa", "P_{v2}", "equivalent pressure on end plane II, P_v2"),
+}
+"""Fields in the body, and the loads on the auxiliary bodies that make them."""
+
+MEASURES = {
+    "von_mises": Variable(XYZ, "Pa", r"\sigma_{vM}", "von Mises stress"),
+    "tresca": Variable(XYZ, "Pa", r"\sigma_{T}", "Tresca stress"),
+    "maximum_shear": Variable(XYZ, "Pa", r"\tau_{max}", "maximum shear stress"),
+    "hydrostatic": Variable(XYZ, "Pa", r"\sigma_h", "hydrostatic stress"),
+    "principal_stress": Variable((*XYZ, "principal"), "Pa", r"\sigma_i", "principal stress, largest first"),
+    "principal_direction": Variable((*XYZ, "principal", "axis"), "1", "n_i", "unit vector along the principal stress"),
+    "orthogonal_shear_range": Variable(XZ, "Pa", r"2\tau_0", "orthogonal shear range"),
+    "orthogonal_shear_amplitude": Variable(XZ, "Pa", r"\tau_0", "orthogonal shear amplitude"),
+    "y_of_largest_shear": Variable(XZ, "m", "", "where tau_yz is largest"),
+    "y_of_smallest_shear": Variable(XZ, "m", "", "where tau_yz is smallest"),
+}
+"""Measures of stress."""
+
+ANALYSIS = {
+    "axial_pressure": Variable(X, "Pa", r"\max_y p", "largest pressure across y"),
+    "line_load": Variable(X, "N/m", "w", "load per length along the axis"),
+    "half_width": Variable(X, "m", "b", "half-width of the contact"),
+    "contact_middle": Variable(X, "m", r"y_\mathrm{m}", "y of the contact's middle"),
+    "unloaded_gap": Variable(X, "m", r"\min_y g_0", "smallest gap across y before deformation"),
+    "y_left": Variable(X, "m", r"y_\mathrm{l}", "first y of the contact"),
+    "y_right": Variable(X, "m", r"y_\mathrm{r}", "last y of the contact"),
+    "x_first": Variable(SCALAR, "m", "", "first x of the contact"),
+    "x_last": Variable(SCALAR, "m", "", "last x of the contact"),
+    "contact_length": Variable(SCALAR, "m", "", "length of the contact along the roller's axis"),
+    "contact_width": Variable(SCALAR, "m", "", "width of the contact along rolling, in whole cells"),
+    "contact_area": Variable(SCALAR, "m2", "A", "area of the contact"),
+    "contact_length_loss": Variable(SCALAR, "m", "", "length where roller and body face each other without load"),
+    "edge_pressure_first": Variable(SCALAR, "Pa", "", "pressure in the first loaded cells along x"),
+    "edge_pressure_last": Variable(SCALAR, "Pa", "", "pressure in the last loaded cells along x"),
+    "end_pressure_over_p0_first": Variable(SCALAR, "1", "", "pressure in the first loaded cells, over p0"),
+    "end_pressure_over_p0_last": Variable(SCALAR, "1", "", "pressure in the last loaded cells, over p0"),
+    "end_pressure_over_p0": Variable(SCALAR, "1", "", "mean of the pressures at both ends, over p0"),
+    "resultant": Variable(SCALAR, "N", "F", "resultant of the pressure"),
+    "moment": Variable(SCALAR, "N m", "M", "moment of the pressure, positive for a load at larger x"),
+    "end_over_middle_first": Variable(SCALAR, "1", "", "{variable} at the first end, over that in the middle"),
+    "end_over_middle_last": Variable(SCALAR, "1", "", "{variable} at the last end, over that in the middle"),
+    "over_reference_first": Variable(SCALAR, "1", "", "{variable} at the first end, over that of the reference"),
+    "over_reference_last": Variable(SCALAR, "1", "", "{variable} at the last end, over that of the reference"),
+    "over_reference_middle": Variable(SCALAR, "1", "", "{variable} in the middle, over that of the reference"),
+    "over_reference_peak": Variable(SCALAR, "1", "", "{variable} at its largest, over that of the reference"),
+    "position": Variable(SLICE, "m", "x_k", "middle of the slice"),
+    "width": Variable(SLICE, "m", "", "width of the slice"),
+}
+"""What :mod:`contactstudy.analysis` reads off a result."""
+
+FATIGUE = {
+    "window_remainder": Variable(XZ, "1", "", "stress at the borders of the window over the largest of the passage"),
+    "dang_van": Variable(XZ, "Pa", r"\tau + \alpha \sigma_h", "Dang Van's equivalent shear stress"),
+    "dang_van_shear": Variable(XZ, "Pa", r"\tau", "shear at the worst instant"),
+    "dang_van_hydrostatic": Variable(XZ, "Pa", r"\sigma_h", "hydrostatic stress at the worst instant"),
+    "dang_van_y": Variable(XZ, "m", "", "y of the worst instant"),
+    "crossland": Variable(XZ, "Pa", r"\sqrt{J_{2,a}} + A \sigma_{h,max}", "Crossland's equivalent shear stress"),
+    "crossland_shear": Variable(XZ, "Pa", r"\sqrt{J_{2,a}}", "amplitude of the root of J2"),
+    "crossland_hydrostatic": Variable(XZ, "Pa", r"\sigma_{h,max}", "largest hydrostatic stress of the history"),
+    "findley": Variable(XZ, "Pa", r"\tau_a + k \sigma_{n,max}", "Findley's sum on the worst plane"),
+    "findley_shear": Variable(XZ, "Pa", r"\tau_a", "shear amplitude on the worst plane"),
+    "findley_normal": Variable(XZ, "Pa", r"\sigma_{n,max}", "largest normal stress on the worst plane"),
+    "findley_plane": Variable((*XZ, "axis"), "1", "n", "unit normal of the worst plane"),
+    "utilisation": Variable(XZ, "1", "", "{variable}, over its limit"),
+    "shear_amplitude": Variable(X, "Pa", r"\tau_0", "largest amplitude of the orthogonal shear"),
+    "shear_depth": Variable(X, "m", "z_0", "depth of the largest amplitude"),
+    "mean_depth": Variable(X, "m", "z'", "stress-weighted mean depth of the risk"),
+    "risk_density": Variable(X, "Pa**c m**(1 - h)", "", "risk of fatigue per length of the roller and of the raceway"),
+    "risk": Variable(SCALAR, "Pa**c m**(2 - h)", "", "risk of fatigue per length of the raceway"),
+    "relative_life": Variable(SCALAR, "1", "", "life over that of the reference"),
+}
+"""What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
+
+STUDIES = {
+    "status": Variable(SCALAR, "", "", "state of the case"),
+    "message": Variable(SCALAR, "", "", "why the case is not ok"),
+    "case_id": Variable(SCALAR, "", "", "identity of the case"),
+    "seconds": Variable(SCALAR, "s", "", "time of solving"),
+}
+"""What a study adds to its cases."""
+
+VERIFICATION = {
+    "group": Variable(CHECK, "", "", "group of the check"),
+    "case": Variable(CHECK, "", "", "what was solved"),
+    "quantity": Variable(CHECK, "", "", "what is compared, with its unit"),
+    "source": Variable(CHECK, "", "", "where the reference comes from"),
+    "computed": Variable(CHECK, "", "", "value of the package, in the unit of the quantity"),
+    "expected": Variable(CHECK, "", "", "value of the reference, in the unit of the quantity"),
+    "difference": Variable(CHECK, "", "", "what is compared with the tolerance"),
+    "tolerance": Variable(CHECK, "", "", "largest difference that passes"),
+    "passed": Variable(CHECK, "", "", "whether the difference is within the tolerance"),
+    "convergence_title": Variable(ENTRY, "", "", "convergence table of the entry"),
+    "convergence_setting": Variable(ENTRY, "", "", "setting that is varied"),
+    "convergence_against": Variable(ENTRY, "", "", "where the reference comes from"),
+    "convergence_of": Variable(ENTRY, "", "", "quantity whose error is given"),
+    "convergence_value": Variable(ENTRY, "", "", "value of the setting"),
+    "convergence_error": Variable(ENTRY, "", "", "error of the quantity with this value of the setting"),
+}
+"""What :func:`contactstudy.verification.verify` returns."""
+
+VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | STUDIES | VERIFICATION
+"""Every variable of the package but those that are named by a rule."""
+
+RULES = {
+    "peak_{name}": Variable(SCALAR, "{units}", r"\max {symbol}", "largest {variable}"),
+    "peak_{name}_x": Variable(SCALAR, "m", "", "x of the largest {variable}"),
+    "peak_{name}_y": Variable(SCALAR, "m", "", "y of the largest {variable}"),
+    "peak_{name}_z": Variable(SCALAR, "m", "", "z of the largest {variable}"),
+    "{name}_error": Variable(SCALAR, "{units}", "", "estimated discretisation error of the {variable}"),
+    "{name}_over_a": Variable(("{name}",), "1", "{symbol}/a", "{variable}, over a"),
+}
+"""Names made from those of other variables or coordinates, whose unit, symbol and meaning go into the braces."""

@@ -1,0 +1,235 @@
+"""What the package returns stands in the table of variables, and what stands there is returned."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from types import ModuleType
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import contactstudy as cs
+from contactstudy import analysis, fatigue, study, verification
+from contactstudy.arrays.variables import (
+    COORDINATES,
+    RULES,
+    VARIABLES,
+    describe,
+    named,
+    specification,
+    variable_of,
+)
+from contactstudy.study.parameters import PARAMETERS
+from contactstudy.verification import suite
+from contactstudy.verification.check import compare
+from contactstudy.verification.convergence import Table
+
+Returned = dict[str, xr.Dataset]
+
+KEEPS_WHAT_IT_GETS = {"normalized", "single_case", "measure", "positions", "along_line", "in_plane"}
+"""Functions whose result has the variables of their argument, perhaps in other units."""
+
+
+def functions() -> dict[str, Callable[..., object]]:
+    """Public functions that return labelled data, by name."""
+    packages: list[ModuleType] = [cs, analysis, fatigue, study, verification]
+    values = {name: getattr(package, name) for package in packages for name in package.__all__}
+    for module in (cs.roughness, cs.slices):
+        own = vars(module).items()
+        values |= {name: value for name, value in own if getattr(value, "__module__", "") == module.__name__}
+    return {
+        name: value
+        for name, value in values.items()
+        if inspect.isfunction(value)
+        and not name.startswith("_")
+        and inspect.signature(value).return_annotation in ("xr.Dataset", "xr.DataArray")
+    }
+
+
+FUNCTIONS = functions()
+
+
+def as_dataset(value: xr.Dataset | xr.DataArray) -> xr.Dataset:
+    if isinstance(value, xr.Dataset):
+        return value
+    return value.coords.to_dataset() if value.name in value.coords else value.to_dataset(name=str(value.name))
+
+
+@pytest.fixture(scope="module")
+def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
+    """What every public function returns, by its name."""
+    steel = cs.Material(210e9, 0.3)
+    length, half_width = 0.4e-3, 65e-6
+    body = cs.FiniteLengthSpace(length=length, material=steel)
+    roller = cs.Roller(radius=5e-3, length=length, material=steel)
+    case = cs.Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1)
+    grid = cs.Grid((0.0, length), (-4 * half_width, 4 * half_width), 16, 48)
+    depths = half_width * np.array([0.25, 0.5, 1.0])
+    solved = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths, error_estimate=True)
+    pressure = solved["pressure"]
+    contact = cs.solve_contact(body, solved["initial_gap"], load=case.normal_load)
+    coarse = cs.solve(case, grid.coarsened(), stresses=False)
+    strip = strip_result(half_width, 1.5e9)
+    limits = fatigue.FatigueLimits(bending=500e6, torsion=300e6)
+    criterion = fatigue.dang_van(strip, limits)
+    risk = fatigue.lundberg_palmgren(strip)
+    rough = cs.roughness.self_affine(grid, rms_height=1e-7, hurst=0.8, longest=2e-4, shortest=60e-6, seed=1)
+    file = tmp_path_factory.mktemp("rough") / "map.nc"
+    rough.to_netcdf(file)
+    check = compare("case", "peak pressure", "closed form", 1.0, 1.0, 0.1)
+    errors = {"stress": (0.1, 0.01)}
+    table = Table(title="orders", setting="order", source="the finest", values=(1.0, 2.0), errors=errors, used=2.0)
+    checked = suite.Verification("full", {"one": [check]}, [table])
+    values: dict[str, xr.Dataset | xr.DataArray] = {
+        "solve": solved,
+        "solve_contact": contact,
+        "stress_field": cs.stress_field(body, pressure, z=depths),
+        "displacement_field": cs.displacement_field(body, pressure, z=depths),
+        "surface_displacement": cs.surface_displacement(body, pressure),
+        "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
+        "roller_stress": cs.roller_stress(case, pressure, z=depths),
+        "summarize": cs.summarize(solved),
+        "self_affine": rough,
+        "read_height_map": cs.roughness.read_height_map(file, grid),
+        "slice_model": cs.slices.slice_model(case),
+        "open_study": opened,
+        "collect": opened.drop_dims([dim for dim in opened.dims if dim not in opened["status"].dims]),
+        "verify": checked.to_dataset(),
+        "load_between": analysis.load_between(solved, 0.0, 1e-4),
+        "peak": xr.merge([analysis.peak(solved, name) for name in ("pressure", "von_mises")]),
+        "edge_factors": analysis.edge_factors(solved, reference=solved),
+        "along_line": analysis.along_line(strip, (1e-4, 0.0, 2e-5), (1e-4, 0.0, 5e-5), variables="von_mises"),
+        "in_plane": analysis.in_plane(strip, y=0.0, variables="von_mises"),
+        "measure": analysis.measure(solved, "tresca"),
+        "positions": analysis.positions(pressure, "x"),
+        "discretisation_error": analysis.discretisation_error(solved, coarse),
+        "slices": analysis.slices(solved, 4),
+        "dang_van": criterion,
+        "crossland": fatigue.crossland(strip, limits),
+        "findley": fatigue.findley(strip.isel(x_field=[3, 4], z=[5, 6]), limits),
+        "lundberg_palmgren": risk,
+        "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
+        "relative_life": fatigue.relative_life(risk, risk),
+    }
+    for name in FUNCTIONS.keys() - values.keys():
+        values[name] = FUNCTIONS[name](strip if name == "window_remainder" else solved)  # type: ignore[assignment]
+    return {name: as_dataset(value) for name, value in values.items()}
+
+
+def test_every_public_function_is_looked_at(returned: Returned) -> None:
+    assert {"solve", "contact_results", "dang_van", "open_study", "slice_model", "verify"} <= FUNCTIONS.keys()
+    assert FUNCTIONS.keys() <= returned.keys()
+
+
+def test_every_variable_stands_in_the_table_with_its_unit(returned: Returned) -> None:
+    strangers, unlike = [], []
+    for function, dataset in returned.items():
+        for name, array in dataset.data_vars.items():
+            known = specification(str(name)) or specification(str(name), coordinate=True)
+            if known is None:
+                strangers.append((function, name))
+            elif not str(name).startswith("risk") and function not in KEEPS_WHAT_IT_GETS:
+                expected = {"units": known.units} if known.units else {}
+                if {key: array.attrs[key] for key in ("units",) if key in array.attrs} != expected:
+                    unlike.append((function, name, array.attrs))
+                if not array.attrs.get("long_name"):
+                    unlike.append((function, name, array.attrs))
+    assert strangers == []
+    assert unlike == []
+
+
+def test_every_coordinate_stands_in_a_table(returned: Returned) -> None:
+    known = {*PARAMETERS}
+    strangers = [
+        (function, name)
+        for function, dataset in returned.items()
+        for name in dataset.coords
+        if name not in known and specification(str(name), coordinate=True) is None
+    ]
+    assert strangers == []
+
+
+def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
+    """But for those of a study and of slices; of a field that was cut, fewer."""
+    unlike = []
+    for function, dataset in returned.items():
+        for name, array in dataset.data_vars.items():
+            if name not in VARIABLES:
+                continue
+            dims = {str(dim).removesuffix("_index").removesuffix("_field") for dim in array.dims}
+            further = {*PARAMETERS, "case", "slice", *({"distance"} if function == "along_line" else ())}
+            if not dims - further <= {*VARIABLES[str(name)].dims}:
+                unlike.append((function, name, array.dims))
+    assert unlike == []
+
+
+def test_every_row_of_the_table_is_returned(returned: Returned) -> None:
+    names = {str(name) for dataset in returned.values() for name in dataset.data_vars}
+    assert VARIABLES.keys() - names == set()
+    coordinates = {str(name) for dataset in returned.values() for name in dataset.coords}
+    assert COORDINATES.keys() - coordinates - {"case"} == set()
+    for pattern in RULES:
+        start, end = pattern.split("{name}")
+        made = {name for name in names | coordinates if name.startswith(start) and name.endswith(end)}
+        assert made - VARIABLES.keys(), pattern
+
+
+def test_a_study_of_listed_cases_has_the_coordinate_case() -> None:
+    from contactstudy.study.cube import cube_of_axes
+
+    assert set(cube_of_axes([], lambda name, value: value).labels) == {"case"}
+
+
+def test_no_brace_is_left_in_a_label(returned: Returned) -> None:
+    for dataset in returned.values():
+        for array in dataset.variables.values():
+            assert "{" not in str(array.attrs.get("long_name", "")) + str(array.attrs.get("units", ""))
+
+
+def test_a_name_that_nothing_explains_is_left_alone() -> None:
+    own = xr.Dataset({"luck": ("y", [1.0])}, {"y": [0.0]})
+    described = describe(own)
+    assert described["luck"].attrs == {}
+    assert described["y"].attrs["units"] == "m"
+    assert own["y"].attrs == {}
+    assert specification("peak_luck") is None
+    assert specification("peak_") is None
+
+
+def test_labels_that_an_array_carries_count_for_what_is_derived_from_it() -> None:
+    base = variable_of("luck", {"units": "K", "long_name": "fortune"})
+    assert named("peak_luck", xr.DataArray(1.0, attrs={"units": "m"}), base).attrs == {
+        "units": "K",
+        "long_name": "largest fortune",
+    }
+
+
+def test_what_a_quantity_is_derived_from_is_named_or_left_open() -> None:
+    criterion = VARIABLES["dang_van"]
+    filled = specification("utilisation", criterion)
+    assert filled is not None
+    assert filled.long_name == "Dang Van's equivalent shear stress, over its limit"
+    left_open = specification("peak_utilisation")
+    assert left_open is not None
+    assert left_open.long_name == "largest value, over its limit"
+    over_a = specification("x_field_over_a", coordinate=True)
+    assert over_a is not None
+    assert (over_a.dims, over_a.symbol) == (("x_field",), "x/a")
+
+
+@pytest.mark.parametrize(
+    ("name", "symbol", "units"),
+    [
+        ("peak_pressure", r"\max p", "Pa"),
+        ("peak_pressure_error", "", "Pa"),
+        ("peak_tau_yz_z", "", "m"),
+        ("load_error", "", "1"),
+        ("half_width_middle_error", "", "m"),
+    ],
+)
+def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
+    known = specification(name)
+    assert known is not None
+    assert (known.symbol, known.units) == (symbol, units)
