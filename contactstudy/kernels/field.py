@@ -13,12 +13,11 @@ from scipy import fft
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray, IntArray
+from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
 from contactstudy.kernels.centred import centred_field
+from contactstudy.kernels.columns_field import columns_field
 from contactstudy.kernels.images import cell_kernel
 from contactstudy.kernels.influence import Influence
-
-OFFSET_TOLERANCE = 1e-6
-"""Part of a cell by which offsets from the cell centre may differ and count as one. Accuracy."""
 
 ALIGNED_GROUPS = 2
 """Different offsets along x up to which each has a convolution; more are interpolated. Speed."""
@@ -28,37 +27,6 @@ INTERPOLATION_POINTS = 8
 
 NEAR_CELLS = 14
 """Cells on either side of a position whose influence is put right after interpolation. Accuracy."""
-
-
-@dataclass(frozen=True, eq=False)
-class Aligned:
-    """Points of one axis that share their offset from the nearest cell centre.
-
-    Attributes
-    ----------
-    offset : float
-        Distance from the cell centre, metres.
-    points : array of int
-        Which points of the axis they are.
-    cells : array of int
-        Cell of each (also outside the grid).
-    """
-
-    offset: float
-    points: IntArray
-    cells: IntArray
-
-
-def aligned_points(values: FloatArray, first_centre: float, step: float) -> list[Aligned]:
-    """Group the points of one axis by their offset from the cell centres."""
-    position = (values - first_centre) / step
-    cells = np.floor(position + 0.5 - OFFSET_TOLERANCE).astype(np.int64)
-    offset = np.round((position - cells) / OFFSET_TOLERANCE).astype(np.int64)
-    return [
-        Aligned(float(value) * OFFSET_TOLERANCE * step, members, cells[members])
-        for value in np.unique(offset)
-        for members in [np.flatnonzero(offset == value)]
-    ]
 
 
 def half_space_field(
@@ -90,6 +58,8 @@ def half_space_field(
     -------
     array (component, x, y, z)
     """
+    if not grid.uniform:
+        return columns_field(load, influence, grid, x, y, z, extent=extent)
     in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))

@@ -59,7 +59,19 @@ def mirrored_kernel(
     As `cell_kernel`; offsets along x stay within ``length`` (and half a cell). A quantity that grows with distance
     contains the constant of a load that ends at ``FAR_LIMIT * length``.
     """
-    period, spread_from, spread_to = 2 * length, (2 * NEAR_IMAGES + 1) * length, FAR_LIMIT * length
+    images = image_kernel(corner, x, y, dx, dy, length, nearest=2 * length)
+    return cell_kernel(corner, x, y, dx, dy) + images
+
+
+def image_kernel(
+    corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, *, nearest: float
+) -> FloatArray:
+    """Influence of a unit load on each of a cell's images from the distance `nearest` on, every ``2 length``.
+
+    As `mirrored_kernel`, of which it is all but the cell itself.
+    """
+    period = 2 * length
+    spread_from, spread_to = nearest + (NEAR_IMAGES - 0.5) * period, FAR_LIMIT * length
     shifts: list[float] = []
     weights: list[float] = []
 
@@ -68,8 +80,8 @@ def mirrored_kernel(
         shifts.extend((start, stop, -stop, -start))
         weights.extend((-weight, weight, -weight, weight))
 
-    for number in range(1, NEAR_IMAGES + 1):
-        add(period * number - 0.5 * dx, period * number + 0.5 * dx, 1.0)
+    for number in range(NEAR_IMAGES):
+        add(nearest + period * number - 0.5 * dx, nearest + period * number + 0.5 * dx, 1.0)
     add(spread_from, spread_to, dx / period)
     step = 0.1 * length
     for side in (-step, step):
@@ -86,9 +98,7 @@ def mirrored_kernel(
     positions = np.add.outer(shifts, at_x)[..., None]
     values = corner(positions, at_y + 0.5 * dy) - corner(positions, at_y - 0.5 * dy)
     images = np.tensordot(weights, values, axes=(0, -3))
-    kernel = cell_kernel(corner, x, y, dx, dy)
-    kernel += from_points_x @ images @ from_points_y.T
-    return kernel
+    return np.asarray(from_points_x @ images @ from_points_y.T)
 
 
 def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:

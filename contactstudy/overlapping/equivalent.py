@@ -48,7 +48,7 @@ def equivalent_loads_of(
     faces = np.zeros((2, count, z.size, y.size))
     with one_blas_thread():
         for panel in problem.panels(y, shortest, reference):
-            for columns in problem.batches(panel, {0: problem.cells}, y):
+            for columns in problem.batches(panel, {0: problem.columns[1]}, y):
                 top = np.zeros((x.size, columns.nodes.size, count, columns.parities.size))
                 sides = np.zeros((2, z.size, columns.nodes.size, count, columns.parities.size))
                 for view in views_of(problem, columns, x, shortest):

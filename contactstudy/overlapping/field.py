@@ -120,9 +120,9 @@ def _by_symmetry(task: _Task) -> FloatArray:
     """Field from its parts even and odd about mid-length, of which one half is the other's image."""
     problem, harmonics, length = task.problem, task.harmonics, task.problem.length
     if np.isinf(length):
-        return _with_corner(task, {0: problem.cells})[0]
+        return _with_corner(task, {0: problem.columns[1]})[0]
     half, where = np.unique(np.round(problem.from_end(task.x) / length, SAME_POSITION), return_inverse=True)
-    fields = _with_corner(replace(task, x=length * half), parity_parts(problem.cells))
+    fields = _with_corner(replace(task, x=length * half), parity_parts(problem.columns[1]))
     signs = np.ones((harmonics.count, 1, 1, 1))
     signs[harmonics.odd_along_x] = -1.0
     first = sum(fields.values())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -29,6 +30,9 @@ from contactstudy.overlapping.single_mirror import modes_between_ends
 CORNER_OFFSET = 1e-2
 """Part of a cell below a loaded corner where points on the corner itself are evaluated. Accuracy. H and V each have a
 logarithm there, of which only the sum is finite."""
+
+SAME_EDGE = 1e-12
+"""Part of the length by which an edge and the image of another may differ and be the same. Accuracy."""
 
 THINNEST = 0.004
 """Least length of a body over the width of the load. Accuracy: at this one the ends keep 6e-4 of the pressure, at a
@@ -94,6 +98,19 @@ class EndProblem:
                 "such a disc is in plane stress",
             )
 
+    @cached_property
+    def columns(self) -> tuple[FloatArray, FloatArray]:
+        """Edges along x, metres, and the load between them; symmetric about mid-length where there are two ends."""
+        edges = self.grid.x_edges
+        if self.grid.uniform or np.isinf(self.length):
+            return edges, self.cells
+        both = np.union1d(edges, self.length - edges)
+        both = both[np.append(True, np.diff(both) > SAME_EDGE * self.length)]
+        both[0], both[-1] = 0.0, self.length
+        both = 0.5 * (both + self.length - both[::-1])
+        own = np.clip(np.searchsorted(edges, 0.5 * (both[1:] + both[:-1])) - 1, 0, self.cells.shape[0] - 1)
+        return both, self.cells[own]
+
     def axial_modes(self, lateral: float, shortest: float) -> list[AxialModes]:
         """Axial modes for wavenumbers along y from `lateral` on, see `modes_between_ends`."""
         return modes_between_ends(self.length, lateral, shortest, self.resolution, mirrored_once=self.mirrored_once)
@@ -101,7 +118,12 @@ class EndProblem:
     @property
     def corner_offset(self) -> float:
         """Distance from the corner below which nothing is evaluated, metres."""
-        return CORNER_OFFSET * min(self.grid.dx, self.grid.dy)
+        return CORNER_OFFSET * self._finest
+
+    @property
+    def _finest(self) -> float:
+        """Size of a cell, metres; of graded cells, of which the narrow ones vary along x only, the one along y."""
+        return min(self.grid.dx, self.grid.dy) if self.grid.uniform else self.grid.dy
 
     def from_end(self, x: FloatArray) -> FloatArray:
         """Distance of positions from the nearest end."""
@@ -114,7 +136,7 @@ class EndProblem:
         reach = loaded + np.abs(y).max()
         first = (0.1 if reference is None else POLES_ALONE) / min(self.length, 4 * max(grid.x_range[1], reach))
         # Along y the load is known to the cell only; finer than half a cell there is nothing to resolve.
-        last = self.resolution.lateral_reach / max(shortest, 0.5 * min(grid.dx, grid.dy))
+        last = self.resolution.lateral_reach / max(shortest, 0.5 * self._finest)
         return lateral_panels(first, reach, last, self.resolution, reference)
 
     def batches(self, panel: LateralPanel, parts: Mapping[int, FloatArray], y: FloatArray) -> Iterator[LateralColumns]:
@@ -163,8 +185,7 @@ def views_of(problem: EndProblem, load: LateralColumns, x: FloatArray, shortest:
     Of a load that is split by parity, the field is wanted on the first half of the body only. Otherwise ends that know
     nothing of each other are two quarter spaces, the second seen from its own end.
     """
-    grid, length = problem.grid, problem.length
-    edges = np.linspace(0.0, grid.x_range[1], grid.cells_x + 1)
+    length, (edges, _) = problem.length, problem.columns
     split = bool(load.parities.all())
     views = []
     for modes in problem.axial_modes(float(load.nodes[0]), shortest):

@@ -1,0 +1,148 @@
+"""A field of the half-space under columns of cells of any width: a sum over the corners of the loaded cells.
+
+The influence of a cell is the mixed difference of a corner function over its corners. Summed over cells it becomes a
+sum over corners, each weighted with the mixed jump of the load there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy import fft
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.aligned import Aligned, aligned_points
+from contactstudy.kernels.images import image_kernel
+from contactstudy.kernels.influence import Influence
+
+IMAGE_POINTS = 16
+"""Chebyshev points along x on which the load is gathered for its farther images. Accuracy."""
+
+IMAGE_CELL = 1e-3
+"""Width of the cells that stand for these points, over the length. Accuracy."""
+
+FEW_POINTS = 4
+"""Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Columns of a load, with the image beside it in each end that mirrors it."""
+
+    edges: FloatArray
+    cells: FloatArray
+
+    def jumps(self) -> tuple[FloatArray, FloatArray]:
+        """Edges at which the load jumps, and its mixed jumps there: array (edge, edge along y)."""
+        jumps = np.diff(np.diff(np.pad(self.cells, 1), axis=0), axis=1)
+        loaded = jumps.any(axis=1)
+        return self.edges[loaded], jumps[loaded]
+
+
+def columns_field(
+    load: FloatArray,
+    influence: Influence,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    *,
+    extent: tuple[float, float],
+) -> FloatArray:
+    """Field in the half-space under a load and all its mirror images, as `half_space_field` on uniform cells."""
+    field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
+    loaded = np.flatnonzero(load.any(axis=0))
+    if not loaded.size:
+        return field
+    first, last = int(loaded[0]), int(loaded[-1]) + 1
+    load = load[:, first:last]
+    edges, jumps = _with_images(grid.x_edges, load, influence.load.sign_x, extent).jumps()
+    # Corners along y lie half a cell before the first loaded centre, and so on.
+    for column in aligned_points(y, float(grid.y[first]) - 0.5 * grid.dy, grid.dy):
+        lowest = int(column.cells.min()) - jumps.shape[1] + 1
+        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
+        for number, depth in enumerate(z.tolist()):
+            field[:, :, column.points, number] = _layer(influence, x[:, None] - edges, offsets, depth, jumps, column)
+    if np.isfinite(extent).all():
+        field += _far_images(load, influence, grid, first, x, y, z, extent)
+    return field
+
+
+def _with_images(edges: FloatArray, cells: FloatArray, image: int, extent: tuple[float, float]) -> _Columns:
+    """Columns of a load between its nearest images; each end of the body is a border between columns."""
+    low, high = extent
+    all_edges, all_cells = [edges], [cells]
+    if np.isfinite(low):
+        all_edges.insert(0, (2 * low - edges[::-1])[:-1])
+        all_cells.insert(0, image * cells[::-1])
+    if np.isfinite(high):
+        all_edges.append((2 * high - edges[::-1])[1:])
+        all_cells.append(image * cells[::-1])
+    return _Columns(np.concatenate(all_edges), np.concatenate(all_cells))
+
+
+def _layer(
+    influence: Influence, x: FloatArray, offsets: FloatArray, depth: float, jumps: FloatArray, column: Aligned
+) -> FloatArray:
+    """Field (component, x, point) at one depth; `x` are offsets (x, edge), `offsets` those along y, uniform."""
+    corner = influence.corner_at(depth)
+    count = jumps.shape[1]
+    at = column.cells - int(column.cells.min())
+    layer = np.empty((influence.components, x.shape[0], column.points.size))
+    backwards = jumps[:, ::-1]
+    few = at.size <= FEW_POINTS
+    size = fft.next_fast_len(offsets.size, real=True)
+    spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
+    for i, along in enumerate(x):
+        values = corner(along[:, None], offsets)
+        if spectrum is None:
+            for number, place in enumerate(at.tolist()):
+                layer[:, i, number] = np.einsum("cef,ef->c", values[:, :, place : place + count], backwards)
+        else:
+            summed = np.einsum("cek,ek->ck", fft.rfft(values, size, axis=2), spectrum)
+            layer[:, i] = fft.irfft(summed, size, axis=1)[:, at]
+    return layer
+
+
+def _far_images(
+    load: FloatArray,
+    influence: Influence,
+    grid: Grid,
+    first: int,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    extent: tuple[float, float],
+) -> FloatArray:
+    """Field of all images but the nearest, which vary smoothly over the body: the load is gathered on few points."""
+    low, length = extent[0], extent[1] - extent[0]
+    nodes = chebyshev.chebpts1(IMAGE_POINTS)
+    points = 0.5 * length * (nodes + 1)
+    scaled = 2 * (grid.x_edges - low) / length - 1
+    primitives = np.array([chebyshev.chebval(scaled, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])
+    shares = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_POINTS - 1)).T @ np.diff(primitives, axis=1)
+    width = IMAGE_CELL * length
+    gathered = 0.5 * length / width * shares @ load
+    field = np.zeros((influence.components, x.size, y.size, z.size))
+    level = width * grid.dy * np.array(influence.image_level)[:, None, None]
+    inside = x - low
+    patterns = (
+        (np.subtract.outer(inside, points), 2 * length, 1),
+        (np.add.outer(inside, points) - length, 3 * length, influence.load.sign_x),
+    )
+    for column in aligned_points(y, float(grid.y[first]), grid.dy):
+        lowest = int(column.cells.min()) - load.shape[1] + 1
+        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
+        at = column.cells - int(column.cells.min())
+        for number, depth in enumerate(z.tolist()):
+            corner = influence.corner_at(depth)
+            for distances, nearest, sign in patterns:
+                kernel = image_kernel(corner, distances.ravel(), offsets, width, grid.dy, length, nearest=nearest)
+                kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
+                windows = np.lib.stride_tricks.sliding_window_view(kernel, load.shape[1], axis=3)
+                part = np.einsum("cxgpf,gf->cxp", windows[:, :, :, at], gathered[:, ::-1], optimize=True)
+                field[:, :, column.points, number] += sign * part
+    return field
