@@ -1,7 +1,7 @@
 """Roller profiles: how much lower than the cylinder a roller's generatrix lies.
 
 A profile is a small object with one method ``drop(x, length)``: the material removed, in metres and not negative, at
-the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. docs/profiles.md has
+the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. docs/reference/profiles.md has
 the conventions with a sketch, and a table of all profiles with formulas and sources.
 
 ``length`` is the distance between the end faces, fillets included; formulas of the literature with an *effective*

@@ -1,4 +1,4 @@
-"""docs/profiles.md: its code runs, its table is complete, its figures can be drawn again."""
+"""docs/reference/profiles.md: its code runs, its table is complete, its figures can be drawn again."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ import numpy as np
 
 from contactstudy import profiles
 
-ROOT = Path(__file__).resolve().parents[1]
-TEXT = (ROOT / "docs" / "profiles.md").read_text()
+ROOT = Path(__file__).resolve().parents[2]
+TEXT = (ROOT / "docs" / "reference" / "profiles.md").read_text()
 
 
 def test_every_profile_is_in_the_table_with_its_parameters() -> None:
@@ -43,11 +43,11 @@ def test_the_code_runs(tmp_path: Path, monkeypatch) -> None:
 
 
 def test_the_figures_can_be_drawn_again(tmp_path: Path) -> None:
-    script = runpy.run_path(str(ROOT / "docs" / "figures.py"))
+    script = runpy.run_path(str(ROOT / "docs" / "gallery" / "figures.py"))
     for name in ("conventions", "comparison"):
         script[name].__globals__["HERE"] = tmp_path
         script[name]()
     for path in tmp_path.iterdir():
-        assert (ROOT / "docs" / path.name).exists()
-        assert f"({path.name})" in TEXT
+        assert (ROOT / "docs" / "gallery" / path.name).exists()
+        assert f"gallery/{path.name})" in TEXT
     assert len(list(tmp_path.iterdir())) == 2

@@ -1,4 +1,4 @@
-"""docs/studies.md: its study is one, its tables are complete, its code runs."""
+"""docs/how-to/run_a_study.md: its study is one, its tables are complete, its code runs."""
 
 import re
 import tomllib
@@ -13,7 +13,7 @@ from contactstudy.study.plan import LEVELS
 from tests.study.conftest import ROOT
 from tests.study.fakes import solve_fake
 
-TEXT = (ROOT / "docs" / "studies.md").read_text()
+TEXT = (ROOT / "docs" / "how-to" / "run_a_study.md").read_text()
 
 
 def blocks(language):

@@ -1,4 +1,4 @@
-"""Figures of the documentation: ``python docs/figures.py`` writes them beside this file."""
+"""Figures of the documentation: ``python docs/gallery/figures.py`` writes them beside this file."""
 
 from __future__ import annotations
 

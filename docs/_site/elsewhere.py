@@ -1,0 +1,49 @@
+"""Pages of the site whose source lies outside the folder docs: notebooks, changelog, and what pages link to."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.plugins import event_priority
+from mkdocs.structure.files import File, Files
+
+ROOT = Path(__file__).parents[2]
+NOTEBOOKS = ROOT / "studies" / "notebooks"
+ORDER = ("first_steps", "exploring_a_study", "designing_a_profile", "verification")
+LINKED = ("studies/*.toml", "studies/*.py")
+"""Files that pages link to as they lie in the repository, with ``../../`` before the name."""
+
+PAGES = {"contributing.md": "CONTRIBUTING.md", "releasing.md": "RELEASING.md", "changelog.md": "CHANGELOG.md"}
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Put the notebooks into the navigation."""
+    names = [*ORDER, *sorted(path.stem for path in NOTEBOOKS.glob("*.ipynb") if path.stem not in ORDER)]
+    for shelf in config.nav or []:
+        for entry in next(iter(shelf.values())):
+            if isinstance(entry, dict) and entry.get("Notebooks") == "notebooks":
+                entry["Notebooks"] = [f"notebooks/{name}.ipynb" for name in names]
+    return config
+
+
+@event_priority(100)  # before the notebooks are looked for
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add the pages."""
+    for path in sorted(NOTEBOOKS.glob("*.ipynb")):
+        name = f"notebooks/{path.name}"
+        files.append(File(name, str(NOTEBOOKS.parent), config.site_dir, use_directory_urls=config.use_directory_urls))
+    for pattern in LINKED:
+        for path in sorted(ROOT.glob(pattern)):
+            files.append(File.generated(config, str(path.relative_to(ROOT)), content=path.read_bytes()))
+    for page, source in PAGES.items():
+        text = (ROOT / source).read_text()
+        files.append(File.generated(config, page, content=re.sub(r"\]\(docs/", "](", text)))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Links out of the folder docs lead to the copies in the site."""
+    markdown = markdown.replace("](../../studies/notebooks/", "](../notebooks/")
+    return markdown.replace("](../../studies/", "](../studies/")
