@@ -8,12 +8,16 @@ from pathlib import Path
 from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.plugins import event_priority
 from mkdocs.structure.files import File, Files
+from mkdocs.structure.pages import Page
 
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = ROOT / "studies" / "notebooks"
 ORDER = ("first_steps", "exploring_a_study", "designing_a_profile", "verification")
 LINKED = ("studies/*.toml", "studies/*.py")
 """Files that pages link to as they lie in the repository, with ``../../`` before the name."""
+
+DIAGRAMS = re.compile(r'<script type="module">(?:(?!</script>).)*mermaid.*?</script>', re.DOTALL)
+"""A script in every notebook's page that would load diagrams, of which there are none, from another host."""
 
 PAGES = {"contributing.md": "CONTRIBUTING.md", "releasing.md": "RELEASING.md", "changelog.md": "CHANGELOG.md"}
 
@@ -38,8 +42,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
         for path in sorted(ROOT.glob(pattern)):
             files.append(File.generated(config, str(path.relative_to(ROOT)), content=path.read_bytes()))
     for page, source in PAGES.items():
-        text = (ROOT / source).read_text()
-        files.append(File.generated(config, page, content=re.sub(r"\]\(docs/", "](", text)))
+        text = (ROOT / source).read_text().replace("](docs/", "](")
+        for name, original in PAGES.items():
+            text = text.replace(f"]({original})", f"]({name})")
+        files.append(File.generated(config, page, content=text))
     return files
 
 
@@ -47,3 +53,8 @@ def on_page_markdown(markdown: str, **_: object) -> str:
     """Links out of the folder docs lead to the copies in the site."""
     markdown = markdown.replace("](../../studies/notebooks/", "](../notebooks/")
     return markdown.replace("](../../studies/", "](../studies/")
+
+
+def on_page_content(content: str, *, page: Page, **_: object) -> str:
+    """Leave out of the notebooks' pages what would be fetched from other hosts."""
+    return DIAGRAMS.sub("", content) if page.file.src_uri.endswith(".ipynb") else content

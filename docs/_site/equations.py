@@ -48,7 +48,7 @@ def _block(match: re.Match[str]) -> str:
     tag = TAG.search(source)
     shown = _mathml(TAG.sub("", source).strip(), display="block")
     number = f'<span class="number">({tag[1]})</span>' if tag else ""
-    return f'<div class="equation">{shown}{number}</div>'
+    return f'<div class="equation"><div>{shown}</div>{number}</div>'
 
 
 def _mathml(source: str, display: str = "inline") -> str:

@@ -64,8 +64,9 @@ def code(*values: object) -> str:
 
 
 def first_sentence(text: str | None) -> str:
-    """Return the first paragraph of a docstring as one line."""
-    return " ".join((text or "").strip().split("\n\n")[0].split())
+    """Return the first paragraph of a docstring as one line, without roles."""
+    paragraph = " ".join((text or "").strip().split("\n\n")[0].split())
+    return re.sub(r":\w+:`~?(?:[\w.]*\.)?(\w+)`", r"`\1`", paragraph)
 
 
 # ------------------------------------------------------------------------------------------------ studies

@@ -22,7 +22,7 @@ from matplotlib.axes import Axes
 from contactstudy import profiles
 from contactstudy.plots import plot_profiles
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 PAPER, STEEL, ROLLER = {"dpi": 110}, "0.88", "0.72"
 
 
