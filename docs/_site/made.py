@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import ast
+import html
 import importlib
 import inspect
 import pkgutil
@@ -181,7 +182,8 @@ def _arguments(parser: argparse.ArgumentParser) -> str:
             continue
         names = [f"{name} {action.metavar}" if action.metavar else name for name in action.option_strings]
         chosen = f": {code(*action.choices)}" if action.choices else ""
-        rows.append((code(*(names or [str(action.metavar)])), f"{action.help}{chosen}"))
+        meaning = html.escape(action.help or "", quote=False)
+        rows.append((code(*(names or [str(action.metavar)])), meaning + chosen))
     return table(("argument", "meaning"), rows)
 
 
