@@ -270,9 +270,20 @@ def python_pages() -> dict[str, str]:
     order = [*(name for name in FIRST if name in shown), *(name for name in shown if name not in FIRST)]
     pages = {}
     for folder in order:
-        text = (importlib.import_module(f"contactstudy.{folder}").__doc__ or "").strip()
+        text = _linked((importlib.import_module(f"contactstudy.{folder}").__doc__ or "").strip(), folder)
         pages[f"reference/api/{folder}.md"] = "\n\n".join([f"# {folder}", text, *shown[folder]]) + "\n"
     return pages
+
+
+def _linked(text: str, folder: str) -> str:
+    """Return a module's docstring with its roles as links, and its literal blocks as Markdown has them."""
+
+    def link(match: re.Match[str]) -> str:
+        name = match[1]
+        target = name if name.startswith("contactstudy.") else f"contactstudy.{folder}.{name}"
+        return f'<autoref optional identifier="{target}"><code>{name}</code></autoref>'
+
+    return re.sub(r":\w+:`~?([\w.]+)`", link, text).replace("::\n\n", ":\n\n")
 
 
 def _entry(path: str, value: object) -> str:

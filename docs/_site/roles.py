@@ -15,7 +15,8 @@ class Roles(Extension):
     def on_object(self, *, obj: Object, **_: object) -> None:
         """Replace the roles in the docstring of one object."""
         if obj.docstring is not None:
-            obj.docstring.value = ROLE.sub(lambda match: _link(obj, match[2], bool(match[1])), obj.docstring.value)
+            text = ROLE.sub(lambda match: _link(obj, match[2], bool(match[1])), obj.docstring.value)
+            obj.docstring.value = text.replace("::\n\n", ":\n\n")
 
 
 def _link(obj: Object, name: str, short: bool) -> str:
