@@ -15,7 +15,7 @@ import pkgutil
 import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import MISSING, fields
+from dataclasses import MISSING, fields, is_dataclass
 from pathlib import Path
 from types import ModuleType
 
@@ -131,7 +131,9 @@ def measures() -> str:
 
 def _specifications(entries: Mapping[str, variables.Variable]) -> str:
     """Every field that a specification has: dims as code, the rest as it stands."""
-    columns = [name for name in variables.Variable._fields if name != "dims"]
+    kind = variables.Variable
+    names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
+    columns = [name for name in names if name != "dims"]
     headings = {"long_name": "meaning", "units": "unit"}
 
     def shown(name: str, value: object) -> str:
