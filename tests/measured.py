@@ -1,4 +1,4 @@
-"""Print the README's table of accuracy and speed: checks of the verification suite, and a few seconds.
+"""Print the table of docs/explanation/accuracy.md: checks of the verification suite, and a few seconds.
 
 Run ``python -m tests.measured`` in an environment with the development extra; `contactstudy verify --level full` prints
 all checks.
@@ -21,7 +21,7 @@ from contactstudy.verification.load_cases import LINE_LOAD
 from contactstudy.verification.problems import on_cells, unit_material
 
 T = TypeVar("T")
-ROWS = {  # what the README calls it: group, part of the case, part of the quantity, unit
+ROWS = {  # what the table calls it: group, part of the case, part of the quantity, unit
     "Hertz point contact, 129 x 129 cells: peak pressure": ("half-space", "point contact", "peak pressure", ""),
     "... approach": ("half-space", "point contact", "approach", ""),
     "Hertz elliptic contact, axes 2.5 to 1: peak pressure": ("half-space", "elliptic", "peak pressure", ""),

@@ -1,8 +1,8 @@
 """Roller profiles: how much lower than the cylinder a roller's generatrix lies.
 
 A profile is a small object with one method ``drop(x, length)``: the material removed, in metres and not negative, at
-the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. docs/profiles.md has
-the conventions with a sketch, and a table of all profiles with formulas and sources.
+the distance `x` from mid-length of a roller of the given `length`. ``one + other`` adds two up. The
+conventions with a sketch, and a table of all profiles with formulas and sources, are in docs/reference/profiles.md.
 
 ``length`` is the distance between the end faces, fillets included; formulas of the literature with an *effective*
 length (without corners) take this `length` for it. A drop may be infinite at the very ends (Lundberg, ISO/TS 16281):

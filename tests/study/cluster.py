@@ -1,4 +1,4 @@
-"""A dask cluster whose scheduler and workers are separate processes, started as docs/studies.md says."""
+"""A dask cluster whose scheduler and workers are separate processes, started as docs/how-to/cluster.md says."""
 
 from __future__ import annotations
 

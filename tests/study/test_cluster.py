@@ -17,7 +17,7 @@ def opened(folder):
 
 
 def test_the_documentation_names_these_commands():
-    text = (ROOT / "docs" / "studies.md").read_text()
+    text = (ROOT / "docs" / "how-to" / "cluster.md").read_text()
     assert SCHEDULER in text
     assert WORKER in text
     for name, value in ENVIRONMENT.items():

@@ -1,68 +1,44 @@
-"""docs/studies.md: its study is one, its tables are complete, its code runs."""
+"""docs/reference/study_file.md: its study is one, and its levels are complete; files that pages name exist."""
 
 import re
 import tomllib
 
-import pytest
-
-from contactstudy.cli import main
 from contactstudy.study import Study
 from contactstudy.study.definition import KEYS
-from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS
 from tests.study.conftest import ROOT
-from tests.study.fakes import solve_fake
 
-TEXT = (ROOT / "docs" / "studies.md").read_text()
+TEXT = (ROOT / "docs" / "reference" / "study_file.md").read_text()
+TUTORIAL = (ROOT / "docs" / "tutorial" / "first_study.md").read_text()
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", TEXT, re.DOTALL)
+def blocks(text, language):
+    return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
 def test_the_example_is_a_study():
-    first, single, _ = (tomllib.loads(block) for block in blocks("toml"))
+    first, single, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
     assert {*first, *single} == set(KEYS)
     plan = Study.from_mapping(first).plan()
     assert (plan.cube.dims, len(plan.cases), plan.skipped) == (("friction", "profile", "max_pressure"), 6, ())
     assert len(Study.from_mapping(first | single).plan().unique) == 7
 
 
-def test_every_key_parameter_and_level_is_explained():
-    for name in (*PARAMETERS, *LEVELS):
-        assert f"`{name}`" in TEXT, name
+def test_every_level_is_explained():
+    for name in LEVELS:
+        assert f"| `{name}` |" in TEXT, name
 
 
-def test_defaults_are_those_of_the_code():
-    rows = dict(re.findall(r"^\| (`[^|]+`) \| ([^|]*) \|", TEXT, re.MULTILINE))
-    for names, default in rows.items():
-        for name, value in zip(re.findall(r"`(\w+)`", names), default.strip(" `").split(", "), strict=False):
-            if name in PARAMETERS and isinstance(PARAMETERS[name].default, (float, bool, str)):
-                parsed = value if isinstance(PARAMETERS[name].default, str) else tomllib.loads(f"x = {value}")["x"]
-                assert parsed == PARAMETERS[name].default, name
-
-
-def test_the_results_are_read_as_shown(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "studies").mkdir()
-    (tmp_path / "studies" / "ends.toml").write_text(blocks("toml")[0])
-    assert main(["run", "studies/ends.toml", "--workers", "0"], solver=solve_fake) == 0
-    import contactstudy as cs
-
-    names = {"cs": cs}
-    exec(blocks("python")[-1], names)
-    assert float(names["axial"].max()) > 1e9
-    assert names["axial"]["distance"].attrs["units"] == "1"
-    pytest.importorskip("h5py")
-    path = next((tmp_path / "results" / "ends" / "cases").glob("*.nc"))
-    exec(blocks("python")[-2], {"path": path})
-
-
-def test_code_that_needs_other_machines_is_python():
-    for block in blocks("python"):
-        compile(block, "studies.md", "exec")
+def test_the_tutorial_shows_one_study_as_file_and_in_python():
+    names = {}
+    source = blocks(TUTORIAL, "python")[0]
+    exec(source[: source.index("report =")], names)
+    from_file = Study.from_mapping(tomllib.loads(blocks(TUTORIAL, "toml")[0]))
+    assert [case.id for case in from_file.plan().cases] == [case.id for case in names["study"].plan().cases]
 
 
 def test_named_files_exist():
-    for name in re.findall(r"tests/[\w/]+\.py", TEXT):
-        assert (ROOT / name).exists(), name
+    for page in (ROOT / "docs").rglob("*.md"):
+        for name in re.findall(r"(?:tests|studies|contactstudy|docs)/[\w/]+\.(?:py|toml|md)", page.read_text()):
+            if name not in ("studies/ends.toml",):  # the example's name
+                assert (ROOT / name).exists(), (page.name, name)

@@ -16,7 +16,7 @@ from contactstudy.verification import Verification, report, suite, verify
 from contactstudy.verification.check import Check, Curve, compare
 from contactstudy.verification.convergence import Table
 
-MANUAL = (Path(__file__).resolve().parents[2] / "docs" / "verification.md").read_text()
+MANUAL = (Path(__file__).resolve().parents[2] / "docs" / "explanation" / "verification.md").read_text()
 
 
 @pytest.mark.parametrize("group", suite.GROUPS)
@@ -35,7 +35,7 @@ def test_every_check_of_the_full_level_passes() -> None:
     assert data["case"][~data["passed"]].values.tolist() == []
     assert set(data["group"].values) == {*suite.GROUPS, "convergence"}
     for case, quantity in zip(data["case"].values, data["quantity"].values, strict=True):
-        assert f"{case}: {quantity}".replace("|", r"\|") in MANUAL, "docs/verification.md lists every check"
+        assert f"{case}: {quantity}".replace("|", r"\|") in MANUAL, "docs/explanation/verification.md lists every check"
     assert data.sizes["entry"] > 50
 
 

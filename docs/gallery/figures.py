@@ -1,7 +1,14 @@
-"""Figures of the documentation: ``python docs/figures.py`` writes them beside this file."""
+"""Figures of the documentation: ``python docs/gallery/figures.py`` writes them beside this file.
+
+Figures of a page are drawn by the code of the page itself.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import re
+import shutil
+import tempfile
 from pathlib import Path
 
 import matplotlib
@@ -15,7 +22,7 @@ from matplotlib.axes import Axes
 from contactstudy import profiles
 from contactstudy.plots import plot_profiles
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).resolve().parent
 PAPER, STEEL, ROLLER = {"dpi": 110}, "0.88", "0.72"
 
 
@@ -128,6 +135,30 @@ def comparison() -> None:
     pyplot.close(figure)
 
 
+def of_page(page: str, *names: str) -> None:
+    """Run the Python blocks of a page, and keep the figures that it saves under these names."""
+    text = (HERE.parent / page).read_text()
+    variables: dict[str, object] = {}
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        for block in re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+            exec(compile(block, page, "exec"), variables)
+        for name in names:
+            shutil.copy(f"{name}.png", HERE)
+    pyplot.close("all")
+
+
+PAGES = {
+    "tutorial/first_roller.md": ("first_roller",),
+    "tutorial/first_study.md": ("first_study",),
+    "how-to/elastic_roller.md": ("elastic_roller",),
+    "how-to/tilt.md": ("tilt",),
+    "how-to/fatigue_life.md": ("fatigue",),
+}
+"""Figures that pages save, by page."""
+
+
 if __name__ == "__main__":
     conventions()
     comparison()
+    for page, names in PAGES.items():
+        of_page(page, *names)

@@ -1,0 +1,323 @@
+"""Pages and tables of the documentation that are made from the code, so that nothing is typed twice.
+
+A line ``<!-- made: NAME -->`` in a page is replaced by the table `NAME` of :data:`TABLES`; the pages of the Python
+reference are made whole, one for each folder of the package that has public names.
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import html
+import importlib
+import inspect
+import pkgutil
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import MISSING, fields, is_dataclass
+from pathlib import Path
+from types import ModuleType
+
+from mkdocs.config.defaults import MkDocsConfig
+from mkdocs.structure.files import File, Files
+
+import contactstudy
+from contactstudy import cli
+from contactstudy.analysis.measures import MEASURES
+from contactstudy.arrays import variables
+from contactstudy.bodies.models import MODELS
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.study.kinds import BODIES, ROLLER_BODIES
+from contactstudy.study.parameters import PARAMETERS
+from contactstudy.study.profile_kinds import PROFILES
+
+ROOT = Path(__file__).parents[2]
+MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
+WHOLE = ("analysis", "export", "fatigue", "plots", "profiles", "study", "verification")
+"""Packages of which everything in ``__all__`` is shown, also what ``contactstudy`` itself does not hand on."""
+
+FIRST = (
+    "solution",
+    "case",
+    "bodies",
+    "profiles",
+    "contact",
+    "fields",
+    "analysis",
+    "fatigue",
+    "plots",
+    "export",
+    "study",
+)
+"""The order in which a reader needs the folders; any other follows."""
+
+
+def table(head: Sequence[str], rows: Iterator[Sequence[str]] | Sequence[Sequence[str]]) -> str:
+    """Markdown of a table."""
+    lines = [head, ["---"] * len(head), *rows]
+    return "\n".join("| " + " | ".join(cell.replace("|", r"\|") for cell in line) + " |" for line in lines)
+
+
+def code(*values: object) -> str:
+    """Values as code, with commas."""
+    return ", ".join(f"`{value}`" for value in values)
+
+
+def first_sentence(text: str | None) -> str:
+    """Return the first paragraph of a docstring as one line, without roles."""
+    paragraph = " ".join((text or "").strip().split("\n\n")[0].split())
+    return re.sub(r":\w+:`~?(?:[\w.]*\.)?(\w+)`", r"`\1`", paragraph)
+
+
+# ------------------------------------------------------------------------------------------------ studies
+
+CHOICES: Mapping[str, Sequence[str]] = {
+    "body": tuple(BODIES),
+    "model": tuple(MODELS),
+    "roller_body": tuple(ROLLER_BODIES),
+}
+
+
+def study_keys() -> str:
+    """Return the parameters of a study's case."""
+
+    def default(value: object) -> str:
+        if value is None:
+            return ""
+        if isinstance(value, dict):
+            return code("{" + ", ".join(f'{key} = "{entry}"' for key, entry in value.items()) + "}")
+        return code(
+            str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else value
+        )
+
+    return table(
+        ("parameter", "default", "unit", "meaning"),
+        [
+            (
+                code(name),
+                default(entry.default),
+                entry.units,
+                entry.meaning + (f": {code(*CHOICES[name])}" if name in CHOICES else ""),
+            )
+            for name, entry in PARAMETERS.items()
+        ],
+    )
+
+
+def profile_kinds() -> str:
+    """Return the kinds of profile and their keys."""
+    rows = []
+    for name, kind in PROFILES.items():
+        keys = [
+            code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
+            for entry in fields(kind.made)
+        ]
+        if hasattr(kind.made, "for_pressure"):
+            keys.append(code("design_pressure"))
+        rows.append(
+            (code(name), f"[`{kind.made.__name__}`][contactstudy.profiles.{kind.made.__name__}]", ", ".join(keys))
+        )
+    return table(("kind", "class", "keys, with a default in brackets"), rows)
+
+
+def measures() -> str:
+    """Return the names of the stress measures."""
+    return code(*MEASURES)
+
+
+# ------------------------------------------------------------------------------------------------ variables
+
+
+def _specifications(entries: Mapping[str, variables.Variable]) -> str:
+    """Every field that a specification has: dims as code, the rest as it stands."""
+    kind = variables.Variable
+    names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
+    columns = [name for name in names if name != "dims"]
+    headings = {"long_name": "meaning", "units": "unit"}
+
+    def shown(name: str, value: object) -> str:
+        text = str(value or "")
+        return f"${text.strip('$')}$" if name == "symbol" and text else text
+
+    return table(
+        ("variable", "dimensions", *(headings.get(name, name) for name in columns)),
+        [
+            (
+                code(name),
+                ", ".join(entry.dims) or "scalar",
+                *(shown(column, getattr(entry, column)) for column in columns),
+            )
+            for name, entry in entries.items()
+        ],
+    )
+
+
+def coordinates() -> str:
+    """Return the coordinates of every Dataset."""
+    return _specifications(variables.COORDINATES)
+
+
+def dataset_variables() -> str:
+    """Return the variables of every Dataset."""
+    return _specifications(variables.VARIABLES)
+
+
+# ------------------------------------------------------------------------------------------------ command line
+
+
+def command_line() -> str:
+    """Return every command with its arguments, from the parser."""
+    parser = cli._parser()
+    commands = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
+    parts = [_arguments(parser)]
+    for name, command in commands.choices.items():
+        usage = " ".join(command.format_usage().removeprefix("usage: ").split())
+        parts.append(f"## {name}\n\n{command.description}\n\n```sh\n{usage}\n```\n\n{_arguments(command)}")
+    return "\n\n".join([*parts, f"## Exit codes\n\n{(parser.epilog or '').removeprefix('Exit codes: ').capitalize()}"])
+
+
+def _arguments(parser: argparse.ArgumentParser) -> str:
+    rows = []
+    for action in parser._actions:
+        if isinstance(action, argparse._SubParsersAction):
+            continue
+        names = [f"{name} {action.metavar}" if action.metavar else name for name in action.option_strings]
+        chosen = f": {code(*action.choices)}" if action.choices else ""
+        meaning = html.escape(action.help or "", quote=False)
+        rows.append((code(*(names or [str(action.metavar)])), meaning + chosen))
+    return table(("argument", "meaning"), rows)
+
+
+# ------------------------------------------------------------------------------------------------ the package
+
+
+def layers() -> str:
+    """Return the layers of the package from the top down, from the contract that holds them."""
+    return table(
+        ("layer", "what it does"),
+        [
+            (
+                " ".join(f"`{name}`" for name in layer),
+                " ".join(first_sentence(importlib.import_module(f"contactstudy.{name}").__doc__) for name in layer),
+            )
+            for layer in _layers()
+        ],
+    )
+
+
+def _layers() -> list[list[str]]:
+    contracts = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["importlinter"]["contracts"]
+    return [
+        layer.replace(" ", "").split("|") for layer in next(c for c in contracts if c["type"] == "layers")["layers"]
+    ]
+
+
+def quadrature() -> str:
+    """Return the settings of the quadratures."""
+    meanings = _parameters(Resolution)
+    return table(
+        ("setting", "value", "meaning"),
+        [(code(entry.name), f"{entry.default:.4g}", meanings[entry.name]) for entry in fields(Resolution)],
+    )
+
+
+def _parameters(documented: type) -> dict[str, str]:
+    """Return the meaning of each parameter in a numpy docstring."""
+    section = inspect.cleandoc(documented.__doc__ or "").split("Parameters\n----------\n")[1].split("\n\n")[0]
+    entries = re.findall(r"^(\w+) : .*\n((?:    .*\n?)+)", section, re.MULTILINE)
+    return {name: " ".join(text.split()) for name, text in entries}
+
+
+def modules() -> str:
+    """Return every module of the package with its first sentence."""
+    rows = []
+    for folder in sorted((ROOT / "contactstudy").iterdir()):
+        if folder.is_dir() and (folder / "__init__.py").exists():
+            names = [found.name for found in pkgutil.iter_modules([str(folder)])]
+            rows.append((code(folder.name + "/"), code(*names)))
+    return table(("folder", "modules"), rows)
+
+
+TABLES: dict[str, Callable[[], str]] = {
+    "study-keys": study_keys,
+    "profile-kinds": profile_kinds,
+    "measures": measures,
+    "coordinates": coordinates,
+    "variables": dataset_variables,
+    "command-line": command_line,
+    "layers": layers,
+    "quadrature": quadrature,
+    "modules": modules,
+}
+
+
+# ------------------------------------------------------------------------------------------------ Python reference
+
+
+def python_pages() -> dict[str, str]:
+    """Return the Python reference: Markdown of one page for each folder with public names, as a reader needs them."""
+    shown: dict[str, list[str]] = {}
+    for name in contactstudy.__all__:
+        value = getattr(contactstudy, name)
+        home = value.__name__ if isinstance(value, ModuleType) else value.__module__
+        folder = home.split(".")[1]
+        if not (isinstance(value, ModuleType) and folder in WHOLE):
+            shown.setdefault(folder, []).append(_entry(f"contactstudy.{name}", value))
+    for folder in WHOLE:
+        package = importlib.import_module(f"contactstudy.{folder}")
+        known = shown.setdefault(folder, [])
+        handed_on = [name for name in package.__all__ if name not in contactstudy.__all__]
+        known += [_entry(f"contactstudy.{folder}.{name}", getattr(package, name)) for name in handed_on]
+    order = [*(name for name in FIRST if name in shown), *(name for name in shown if name not in FIRST)]
+    pages = {}
+    for folder in order:
+        text = _linked((importlib.import_module(f"contactstudy.{folder}").__doc__ or "").strip(), folder)
+        pages[f"reference/api/{folder}.md"] = "\n\n".join([f"# {folder}", text, *shown[folder]]) + "\n"
+    return pages
+
+
+def _linked(text: str, folder: str) -> str:
+    """Return a module's docstring with its roles as links, and its literal blocks as Markdown has them."""
+
+    def link(match: re.Match[str]) -> str:
+        name = match[1]
+        target = name if name.startswith("contactstudy.") else f"contactstudy.{folder}.{name}"
+        return f'<autoref optional identifier="{target}"><code>{name}</code></autoref>'
+
+    return re.sub(r":\w+:`~?([\w.]+)`", link, text).replace("::\n\n", ":\n\n")
+
+
+def _entry(path: str, value: object) -> str:
+    """Return the directive that documents one public name."""
+    if not isinstance(value, ModuleType):
+        return f"::: {path}"
+    tree = ast.parse(Path(str(value.__file__)).read_text())
+    defined = [node.name for node in tree.body if isinstance(node, ast.FunctionDef | ast.ClassDef)]
+    names = [name for name in getattr(value, "__all__", defined) if not name.startswith("_")]
+    members = "".join(f"\n        - {name}" for name in names)
+    return f"::: {value.__name__}\n    options:\n      heading: {path}\n      members:{members}\n"
+
+
+# ------------------------------------------------------------------------------------------------ what MkDocs calls
+
+
+def on_config(config: MkDocsConfig) -> MkDocsConfig:
+    """Put the pages of the Python reference into the navigation."""
+    for shelf in config.nav or []:
+        for entry in next(iter(shelf.values())):
+            if isinstance(entry, dict) and entry.get("Python") == "api":
+                entry["Python"] = list(python_pages())
+    return config
+
+
+def on_files(files: Files, config: MkDocsConfig) -> Files:
+    """Add them to the site."""
+    for path, text in python_pages().items():
+        files.append(File.generated(config, path, content=text))
+    return files
+
+
+def on_page_markdown(markdown: str, **_: object) -> str:
+    """Fill in the tables."""
+    return MARKER.sub(lambda match: TABLES[match[1]](), markdown)
