@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-
 import numpy as np
 import xarray as xr
 
@@ -19,6 +17,7 @@ from contactstudy.case.roughness import heights_on
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.settled import settled_contact, settled_values
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import sliding
@@ -34,9 +33,8 @@ LEAST_CELLS = 8
 LEAST_CONTACT = 1.0
 """Length over the Hertz half-width that a tilted roller has to touch on, if it touches at its end."""
 
-WINDOWS = (2.0, 3.0, 5.0, 8.0)
-"""Half-widths of the window over that of the Hertz contact, tried in turn where no grid is given: a short or a tilted
-contact is wider than the line contact of the same load."""
+ACCURACIES = (1e-3, 0.1)
+"""Accuracies that the refinement reaches and that mean something."""
 
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 """Depths at which `end_traction_residual` looks at the ends, over the Hertz half-width."""
@@ -49,6 +47,7 @@ def solve(
     case: Case,
     grid: Grid | None = None,
     *,
+    accuracy: float = 0.01,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions | None = None,
@@ -64,7 +63,11 @@ def solve(
     case : Case
         Body, roller, load and friction.
     grid : Grid, optional
-        Cells of pressure and gap; default: chosen from the case by `choose_grid`, wider where the contact asks for it.
+        Cells of pressure and gap. Default: columns of different widths, refined along the axis until `accuracy` is
+        reached; for rough surfaces, the uniform cells of `choose_grid`.
+    accuracy : float
+        Error, over the peak pressure, to which the peak and the pressures at the roller's ends are settled: from 0.001
+        to 0.1. Where a sharp end makes the pressure singular, its law is stated instead.
     x, y : sequence of float, optional
         Positions of the stresses, metres; default: the cell centres.
     z : sequence of float, optional
@@ -75,8 +78,8 @@ def solve(
         Heights of the surfaces in metres, positive out of them, as from `contactstudy.roughness`: they are taken off
         the gap, interpolated linearly to the cell centres, which they must cover, if they lie on other cells.
     error_estimate : bool
-        Whether to solve the contact on half the cells as well, and state peak and end pressure and half-width with
-        their discretisation error, see `contactstudy.analysis.discretisation.discretisation_error`.
+        Whether to solve a contact on given cells on half of them as well, and state peak and end pressure and
+        half-width with their discretisation error, see `contactstudy.analysis.discretisation.discretisation_error`.
     tolerance : float
         Tolerance of the contact, see `solve_contact`.
 
@@ -85,7 +88,10 @@ def solve(
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
         `end_traction_residual`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
-        instead of ``(x, y, z)``.
+        instead of ``(x, y, z)``. On refined columns also `peak_pressure`, `end_pressure_first` and
+        `end_pressure_last`, each with its error ``<name>_error``. At a singular end both are infinite, and
+        `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
+        or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end.
 
     Raises
     ------
@@ -101,18 +107,22 @@ def solve(
     >>> body = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9)
     >>> result = solve(case, stresses=False)
-    >>> bool(result.converged), round(float(result.pressure.max() / result.hertz_max_pressure), 3)
-    (True, 1.024)
+    >>> bool(result.converged), round(float(result.peak_pressure / result.hertz_max_pressure), 2)
+    (True, 1.02)
     """
     checks.instance("case", case, Case, "a Case")
-    if grid is None:
-        contact = _with_room(case, roughness, tolerance)
-        grid = contact.shape.grid
+    known = xr.Dataset()
+    if grid is None and roughness is None:
+        settled = settled_contact(case, _accuracy(accuracy), checks.positive("tolerance", tolerance))
+        contact, known = _checked(case, settled.contact), settled_values(settled)
+    elif grid is None:
+        contact = _contact(case, choose_grid(case), roughness, tolerance)
     else:
         checks.instance("grid", grid, Grid, "a Grid")
         contact = _contact(case, grid, roughness, tolerance)
-    result = _labelled(case, contact)
-    if error_estimate:
+    grid = contact.shape.grid
+    result = _labelled(case, contact).assign(known.data_vars)
+    if error_estimate and not known:
         if min(grid.shape) < LEAST_CELLS:
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
         if roughness is not None:
@@ -136,20 +146,13 @@ def solve(
     return describe(result, "roller on an elastic body: contact and stresses")
 
 
-def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> Contact:
-    """Contact of a case on the first of some wider and wider windows that holds it.
-
-    Rough surfaces are known where they were measured or made: their window is the first.
-    """
-
-    def within(window: float) -> Contact:
-        return _contact(case, choose_grid(case, window=window, margin=2 * window), roughness, tolerance)
-
-    *narrower, widest = WINDOWS if roughness is None else WINDOWS[:1]
-    for window in narrower:
-        with contextlib.suppress(WindowError):
-            return within(window)
-    return within(widest)
+def _accuracy(value: object) -> float:
+    """Return an accuracy that the refinement can reach, or raise."""
+    accuracy = checks.positive("accuracy", value)
+    least, most = ACCURACIES
+    if not least <= accuracy <= most:
+        raise InvalidInputError("accuracy", accuracy, f"from {least:g} to {most:g} of the peak pressure")
+    return accuracy
 
 
 def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> FloatArray:
@@ -183,8 +186,13 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
         raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
+    return _checked(case, contact)
+
+
+def _checked(case: Case, contact: Contact) -> Contact:
+    """Return a contact that does not stand on the roller's end; warn unless it converged."""
     _check_on_its_length(case, contact)
-    contact.warn_unless_converged(stacklevel=3)
+    contact.warn_unless_converged(stacklevel=4)
     return contact
 
 
@@ -211,7 +219,7 @@ def _check_on_its_length(case: Case, contact: Contact) -> None:
     facing = np.flatnonzero(np.isfinite(contact.shape.gap.values).any(axis=1))
     touching = np.flatnonzero(contact.pressure.any(axis=1))
     at_end = touching[0] == facing[0] or touching[-1] == facing[-1]
-    length = touching.size * case.contact_length / facing.size
+    length = float(contact.shape.grid.widths[touching].sum())
     if at_end and length < LEAST_CONTACT * case.hertz_half_width < case.contact_length:
         name = "tilt" if case.load_position is None else "load_position"
         raise InvalidInputError(

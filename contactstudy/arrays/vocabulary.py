@@ -57,6 +57,8 @@ COORDINATES = {
     "z": Variable(("z",), "m", "z", "depth below the loaded surface"),
     "x_field": Variable(("x_field",), "m", "x", "position of the stresses along the roller's axis, from end I"),
     "y_field": Variable(("y_field",), "m", "y", "position of the stresses along rolling and sliding"),
+    "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells along the roller's axis"),
+    "x_width": Variable(X, "m", "w", "width of the cells along the roller's axis"),
     "distance": Variable(("distance",), "m", "s", "distance along the line"),
     "slice": Variable(SLICE, "1", "k", "number of the slice, from end I"),
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
@@ -97,6 +99,12 @@ CONTACT = {
     ),
     "end_pressure_first": Variable(SCALAR, "Pa", r"p_\mathrm{I}", "largest pressure at the end nearer to end I"),
     "end_pressure_last": Variable(SCALAR, "Pa", r"p_\mathrm{II}", "largest pressure at the end nearer to end II"),
+    "end_intensity": Variable(SCALAR, "Pa m0.5", "K", "intensity of the pressure at the sharper singular end"),
+    "end_intensity_first": Variable(SCALAR, "Pa m0.5", r"K_\mathrm{I}", "intensity at a singular end nearer to end I"),
+    "end_intensity_last": Variable(SCALAR, "Pa m0.5", r"K_\mathrm{II}", "intensity at a singular end nearer to end II"),
+    "end_exponent": Variable(SCALAR, "1", "m", "exponent of the pressure at the sharper singular end"),
+    "end_exponent_first": Variable(SCALAR, "1", r"m_\mathrm{I}", "exponent at a singular end nearer to end I"),
+    "end_exponent_last": Variable(SCALAR, "1", r"m_\mathrm{II}", "exponent at a singular end nearer to end II"),
     "half_width_middle": Variable(SCALAR, "m", r"b_\mathrm{m}", "half-width of the contact at mid-length"),
 }
 """The contact: of a case, of a shape with a body, and of a rough surface."""

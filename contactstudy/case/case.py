@@ -19,6 +19,9 @@ from contactstudy.errors import InvalidInputError
 LARGEST_TILT = 0.1
 """Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
 
+GAP_NODES = 6
+"""Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
+
 LARGEST_HALF_WIDTH = 0.5
 """Hertz half-width over the roller's radius beyond which a unit is wrong rather than the load high."""
 
@@ -185,12 +188,28 @@ class Case:
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:
-        """Return the gap before deformation at the cell centres of `grid`, metres; infinite beyond the roller.
+        """Return the gap before deformation on the cells of `grid`, metres; infinite beyond the roller.
 
-        A tilted roller turns about its mid-length, where its clearance stays as it is.
+        It is that at the centres of uniform cells, and the mean along x over others. A tilted roller turns about its
+        mid-length, where its clearance stays as it is.
         """
         from_middle = grid.x - (self.roller_start + 0.5 * self.roller.length)
-        clearance = self.roller.clearance(from_middle, grid.y)
+        gap = self._clearance(from_middle, grid.y)
+        if grid.uniform:
+            return gap
+        nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
+        within = from_middle[:, None] + 0.5 * grid.widths[:, None] * nodes
+        along = self._clearance(within.ravel(), np.zeros(1)).reshape(within.shape)
+        under = np.isfinite(along)
+        shares = np.maximum(under @ weights, weights.min())
+        mean = np.where(under, along, 0.0) @ weights / shares
+        at_centre = self._clearance(from_middle, np.zeros(1))[:, 0]
+        moved = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
+        return np.asarray(gap + moved[:, None])
+
+    def _clearance(self, from_middle: FloatArray, y: FloatArray) -> FloatArray:
+        """Height of the roller at distances from its mid-length."""
+        clearance = self.roller.clearance(from_middle, y)
         return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
 

@@ -145,8 +145,8 @@ def contact_of(shape: Shape, settings: Settings) -> Contact:
         pressure = iterate.pressure.copy()
         loads, own = shape.loads(pressure), _body_operator(shape)
         displacement = own(loads)
-        approached = displacement if shape.counterbody is None else _operator(shape)(loads)
-    _check_window(shape.body, pressure)
+        approached = displacement if shape.counterbody is None else contact_operator(shape)(loads)
+    check_window(shape.body, pressure)
     prescribed = shape.prescribed
     height = clearance + approached
     tilt = 0.0
@@ -214,10 +214,10 @@ def _iterate(request: _ContactRequest) -> ContactIterate:
         settings.max_iterations,
     )
     solve = solve_coupled if shape.coupled_friction else solve_normal
-    return solve(_operator(shape), problem)
+    return solve(contact_operator(shape), problem)
 
 
-def _operator(shape: Shape) -> ContactOperator:
+def contact_operator(shape: Shape) -> ContactOperator:
     """Operator from the loads on the body to how far the surfaces move apart."""
     if shape.counterbody is None:
         return _body_operator(shape)
@@ -229,7 +229,7 @@ def _body_operator(shape: Shape) -> SurfaceOperator:
     return surface_operator(OperatorRequest(shape.body, shape.grid, shape.directions))
 
 
-def _check_window(body: Body, pressure: FloatArray) -> None:
+def check_window(body: Body, pressure: FloatArray) -> None:
     """Raise if the contact reaches an edge of the grid that is not an end of the body."""
     low, high = body.extent
     edges = {"y_min": pressure[:, 0], "y_max": pressure[:, -1]}

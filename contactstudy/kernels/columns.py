@@ -8,8 +8,8 @@ collocation along y). With forces ``f = w p`` per length of y (w: width of a col
 the same for (i, j) and (j, i) to the last bit. The integrals are mixed differences over the columns' edges of a double
 primitive ``F'' = k`` of the kernel ``k`` of a strip of load, differenced over the cell along y as well:
 
-    pressure:           k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y R / 2
-    traction along y:   k = ln R,            F = (X**2 - Y**2) / 2 ln R + X Y atan(X / Y)
+    pressure:           k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y X**2 / (2 R + 2 |Y|)
+    traction along y:   k = ln R,            F = X**2 / 2 ln R + X Y atan(X / Y) - Y**2 / 4 ln(1 + X**2 / Y**2)
 
 with ``R**2 = X**2 + Y**2`` (Love's rectangle integrated once more; terms that cancel in the differences are left out).
 Both are even in X, so only distances between edges count. A mirrored column is one at the sum of the distances from the
@@ -82,7 +82,9 @@ STRIPS = {
         slope=lambda x, y: -y / (x * np.hypot(x, y)),
         primitive=lambda x, y: x * np.arcsinh(y / x) + y * np.arcsinh(x / y),
         double_primitive=lambda x, y: (
-            0.5 * x * x * np.arcsinh(y / np.maximum(x, TINY)) + x * y * np.arcsinh(x / y) - 0.5 * y * np.hypot(x, y)
+            0.5 * x * x * np.arcsinh(y / np.maximum(x, TINY))
+            + x * y * np.arcsinh(x / y)
+            - 0.5 * y * x * x / (np.hypot(x, y) + y)
         ),
     ),
     Load.ALONG_Y: Strip(
@@ -90,7 +92,9 @@ STRIPS = {
         curvature=lambda x, y: (y * y - x * x) / _squared(x, y) ** 2,
         slope=lambda x, y: x / _squared(x, y),
         primitive=lambda x, y: x * _log(x, y) + y * np.arctan2(x, y),
-        double_primitive=lambda x, y: 0.5 * (x * x - y * y) * _log(x, y) + x * y * np.arctan2(x, y),
+        double_primitive=lambda x, y: (
+            0.5 * x * x * _log(x, y) + x * y * np.arctan2(x, y) - 0.25 * y * y * np.log1p((x / y) ** 2)
+        ),
     ),
 }
 """Normal displacement of the top from a strip, without the factors of `columns_kernel`."""

@@ -13,8 +13,8 @@ from numpy.polynomial import chebyshev
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import FloatArray
-from contactstudy.kernels.aligned import Aligned, aligned_points
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
 from contactstudy.kernels.images import image_kernel
 from contactstudy.kernels.influence import Influence
 
@@ -62,7 +62,7 @@ def columns_field(
     edges, jumps = _with_images(grid.x_edges, load, influence.load.sign_x, extent).jumps()
     # Corners along y lie half a cell before the first loaded centre, and so on.
     for column in aligned_points(y, float(grid.y[first]) - 0.5 * grid.dy, grid.dy):
-        lowest = int(column.cells.min()) - jumps.shape[1] + 1
+        lowest = int(column.cells.min()) - load.shape[1]
         offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
         for number, depth in enumerate(z.tolist()):
             field[:, :, column.points, number] = _layer(influence, x[:, None] - edges, offsets, depth, jumps, column)
@@ -88,7 +88,7 @@ def _layer(
     influence: Influence, x: FloatArray, offsets: FloatArray, depth: float, jumps: FloatArray, column: Aligned
 ) -> FloatArray:
     """Field (component, x, point) at one depth; `x` are offsets (x, edge), `offsets` those along y, uniform."""
-    corner = influence.corner_at(depth)
+    corner = _EvenCorner(influence, offsets, depth)
     count = jumps.shape[1]
     at = column.cells - int(column.cells.min())
     layer = np.empty((influence.components, x.shape[0], column.points.size))
@@ -97,7 +97,7 @@ def _layer(
     size = fft.next_fast_len(offsets.size, real=True)
     spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
     for i, along in enumerate(x):
-        values = corner(along[:, None], offsets)
+        values = corner(along)
         if spectrum is None:
             for number, place in enumerate(at.tolist()):
                 layer[:, i, number] = np.einsum("cef,ef->c", values[:, :, place : place + count], backwards)
@@ -105,6 +105,32 @@ def _layer(
             summed = np.einsum("cek,ek->ck", fft.rfft(values, size, axis=2), spectrum)
             layer[:, i] = fft.irfft(summed, size, axis=1)[:, at]
     return layer
+
+
+class _EvenCorner:
+    """Corner functions at uniform offsets along y, evaluated on one side of 0 if the other is its image."""
+
+    def __init__(self, influence: Influence, offsets: FloatArray, depth: float) -> None:
+        self._corner = influence.corner_at(depth)
+        self._at = offsets
+        self._index: IntArray | None = None
+        self._signs: FloatArray = np.ones(1)
+        if offsets.size > 1:
+            step = offsets[1] - offsets[0]
+            twice = np.round(2 * offsets / step).astype(np.int64)
+            if np.abs(2 * offsets / step - twice).max() < OFFSET_TOLERANCE:
+                distances, self._index = np.unique(np.abs(twice), return_inverse=True)
+                self._at = 0.5 * step * distances
+                # A primitive is even where its kernel is odd, and odd where it is even.
+                odd = np.array(influence.sign_along_y)[:, None] > 0
+                self._signs = np.where(odd & (twice < 0), -1.0, 1.0)[:, None, :]
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Values (component, edge, offset) at the distances `x` of the edges."""
+        values = self._corner(x[:, None], self._at)
+        if self._index is None:
+            return values
+        return np.asarray(values[:, :, self._index] * self._signs)
 
 
 def _far_images(

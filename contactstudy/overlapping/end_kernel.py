@@ -37,6 +37,11 @@ MORE_NODES = 3
 """Wavenumbers along y per panel beyond those for a field: an operator is built once for every load. Accuracy."""
 
 
+FINER = 8
+"""Cells along y over the distance from an end down to which the kernel is resolved if cells along x are narrow there.
+Accuracy."""
+
+
 class EndRequest(NamedTuple):
     """What decides the kernel of the ends.
 
@@ -80,11 +85,12 @@ class EndRequest(NamedTuple):
         reference: float,
         resolution: Resolution,
     ) -> EndRequest:
-        """Request of a grid that begins at ``x = 0``; graded cells share it with others about as fine at the ends."""
+        """Request of a grid that begins at ``x = 0``; cells of any width along x share it."""
         finest = grid.dx
         if not grid.uniform:
+            # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
             at_ends = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
-            finest = float(2.0 ** np.floor(np.log2(at_ends / grid.dy)) * grid.dy)
+            finest = grid.dy / FINER if at_ends <= 2 * grid.dy else grid.dy
         return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, loads, reference, resolution)
 
     @property

@@ -1,0 +1,133 @@
+"""The law of a singular end: how the pressure grows towards it, and its intensity.
+
+A sharp end inside the face of a body is pressed like a flat punch: at the distance d from it ``p = K / sqrt(d)``. The
+pressure has no peak, only an intensity K. An edge of small radius ``r0`` bounds it to
+
+    p_max = 1.0734 (K**2 E* / r0)**(1/3),
+
+the limit for ``r0`` much smaller than the half-width.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.checks import FloatArray
+
+LEAST_GROWTH = 0.2
+"""Exponent of the growth between two halvings from which on an end counts as a power law. Accuracy."""
+
+LASTING_STEPS = 0.5
+"""Sum of the last two steps over that of the two before from which on a growth counts as a logarithm. Accuracy."""
+
+NEAREST, FARTHEST = 3.0, 64.0
+"""Distances, over the outermost column's width, between which the intensity is fitted. Accuracy."""
+
+STEP_ERROR = 3e-3
+"""Part of the intensity that steps of pressure leave. Accuracy: measured as the residual of every fit."""
+
+EDGE_FACTOR = 1.0734
+"""Factor of the peak at an edge of small radius, computed for a half-space."""
+
+
+class Sample(NamedTuple):
+    """Width of the outermost column and the largest pressure on it."""
+
+    width: float
+    pressure: float
+
+
+@dataclass(frozen=True)
+class EndLaw:
+    """How the pressure grows towards a singular end.
+
+    Attributes
+    ----------
+    kind : str
+        "power" or "logarithm".
+    exponent : float
+        ``m`` of ``p = K d**-m``: 0.5 for a power law, 0 for a logarithm.
+    intensity, intensity_error : float
+        ``K`` and its estimated error, Pa m**m; NaN for a logarithm.
+    """
+
+    kind: str
+    exponent: float
+    intensity: float = np.nan
+    intensity_error: float = np.nan
+
+    def with_intensity(self, edges: FloatArray, pressure: FloatArray) -> EndLaw:
+        """Return the law with the intensity fitted to the pressure (column, y), at distances from the end."""
+        if self.kind != "power":
+            return self
+        row = pressure[:, int(pressure.max(axis=0).argmax())]
+        width = edges[1]
+        fits = [_fit(edges, row, width * factor, self.exponent) for factor in (1.0, 2.0)]
+        error = abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
+        return replace(self, intensity=fits[0], intensity_error=error)
+
+
+def law_of(samples: list[Sample]) -> EndLaw | None:
+    """Decide on the law of an end from its outermost column between splittings; None if it settles."""
+    if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure or samples[-3].pressure <= 0:
+        return None
+    growth = [
+        np.log(after.pressure / before.pressure) / np.log(before.width / after.width)
+        for before, after in pairwise(samples[-3:])
+    ]
+    if min(growth) > LEAST_GROWTH:
+        return EndLaw("power", 0.5)
+    steps = [
+        (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
+    ]
+    if len(steps) >= 4 and sum(steps[-2:]) > LASTING_STEPS * sum(steps[-4:-2]) > 0:
+        return EndLaw("logarithm", 0.0)
+    return None
+
+
+def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> float:
+    """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each."""
+    low, high = edges[:-1], edges[1:]
+    used = (low >= 0.999 * NEAREST * width) & (high <= 1.001 * FARTHEST * width) & (row > 0)
+    low, high, values = low[used], high[used], row[used]
+    powers = [1 - exponent, 2 - exponent]
+    means = [(high**power - low**power) / (power * (high - low)) for power in powers]
+    matrix = np.stack(means, axis=1) / values[:, None]
+    return float(np.linalg.lstsq(matrix, np.ones(values.size))[0][0])
+
+
+def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
+    """Peak pressure at an edge of small radius on an end that would be singular if it were sharp.
+
+    Parameters
+    ----------
+    intensity : float
+        ``K`` of the sharp end, ``p = K / sqrt(d)``, Pa m**0.5.
+    modulus : float
+        Contact modulus ``E*``, Pa.
+    edge_radius : float
+        Radius ``r0`` of the edge, metres; much smaller than the half-width.
+
+    Returns
+    -------
+    float
+        Pa.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not positive.
+
+    Examples
+    --------
+    >>> round(edge_peak(1e7, 231e9, 1e-5) / 1e9, 3)
+    14.189
+    """
+    k = checks.positive("intensity", intensity, "Pa m**0.5")
+    modulus = checks.positive("modulus", modulus, "Pa")
+    return float(EDGE_FACTOR * (k**2 * modulus / checks.positive("edge_radius", edge_radius, "metres")) ** (1 / 3))

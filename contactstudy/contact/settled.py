@@ -1,0 +1,159 @@
+"""Contact of a case on columns that settle its peak and end pressures."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
+from contactstudy.cache import ArrayKey
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import columns_of
+from contactstudy.checks import FloatArray
+from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
+from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.problem import ContactProblem, solve_normal
+from contactstudy.contact.refinement import AxialShape, Refined, refined_contact
+from contactstudy.errors import WindowError
+from contactstudy.threads import one_blas_thread
+
+WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
+"""Half-widths of the window over that of the Hertz contact, tried in turn. Speed."""
+
+ROOM = 1.2
+"""Window over the extent of the contact along y. Speed; what lies outside is not pressed."""
+
+CELLS_Y, MORE_CELLS_Y, CLOSE = 32, 64, 0.005
+"""Cells along y, and the number for accuracies below the last one. Accuracy."""
+
+
+@dataclass(frozen=True, eq=False)
+class SettledContact:
+    """A contact and what is known of its accuracy."""
+
+    contact: Contact
+    refined: Refined
+
+
+def settled_contact(case: Case, accuracy: float, tolerance: float) -> SettledContact:
+    """Contact of a case, its columns refined until its peak and end pressures are settled.
+
+    Raises
+    ------
+    WindowError
+        If the contact is wider than the widest window.
+    """
+    cells_y = CELLS_Y if accuracy >= CLOSE else MORE_CELLS_Y
+    *narrower, widest = WINDOWS
+    for window in narrower:
+        with contextlib.suppress(WindowError):
+            return _within(case, window * case.hertz_half_width, cells_y, accuracy, tolerance)
+    return _within(case, widest * case.hertz_half_width, cells_y, accuracy, tolerance)
+
+
+def _within(case: Case, half_window: float, cells_y: int, accuracy: float, tolerance: float) -> SettledContact:
+    """Contact in a window that is first fitted to it."""
+    shape = _axial_shape(case)
+    with one_blas_thread():
+        rough = refined_contact(_Solver(case, half_window, cells_y // 2), shape, 10 * max(accuracy, 0.01))
+        touched = np.flatnonzero(rough.pressure.any(axis=0))
+        cells = _Solver(case, half_window, cells_y // 2).grid(rough.edges)
+        reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
+        solver = _Solver(case, min(ROOM * reach, half_window), cells_y)
+        refined = refined_contact(solver, shape, accuracy)
+    contact = contact_of(solver.shape(refined.edges), Settings(tolerance))
+    return SettledContact(contact, refined)
+
+
+def settled_values(settled: SettledContact) -> xr.Dataset:
+    """Label what is settled, each value with its error; the law of a singular end instead of its pressure."""
+    refined = settled.refined
+    values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
+    for name, value, error, law in zip(("first", "last"), refined.ends, refined.end_errors, refined.laws, strict=True):
+        values |= {f"end_pressure_{name}": value, f"end_pressure_{name}_error": error}
+        if law is not None:
+            values |= {
+                f"end_exponent_{name}": law.exponent,
+                f"end_intensity_{name}": law.intensity,
+                f"end_intensity_{name}_error": law.intensity_error,
+            }
+    sharper = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
+    if sharper is not None:
+        values |= {
+            "end_exponent": sharper.exponent,
+            "end_intensity": sharper.intensity,
+            "end_intensity_error": sharper.intensity_error,
+        }
+    result = xr.Dataset(values)
+    if not refined.settled:
+        result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
+    return describe(result)
+
+
+@dataclass(frozen=True)
+class _Solver:
+    """Contact of a case on given columns."""
+
+    case: Case
+    half_window: float
+    cells_y: int
+
+    def grid(self, edges: FloatArray) -> Grid:
+        """Cells of the whole body, with these columns under the roller."""
+        return columns_of(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
+
+    def shape(self, edges: FloatArray) -> Shape:
+        """Return what is pressed on what."""
+        case, grid = self.case, self.grid(edges)
+        gap = case.gap(grid)
+        prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, grid)
+        coupled = case.friction if case.coupled else 0.0
+        return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled)
+
+    def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+        """Pressure (column, y) without the displacement from friction, which hardly moves what is refined."""
+        # The pressure alone decides where columns are needed.
+        shape = self.shape(edges)._replace(coupled_friction=0.0)
+        grid, gap = shape.grid, shape.gap.values
+        under = _under(grid, edges)
+        guess = None
+        if start is not None and start.any():
+            guess = np.zeros(grid.shape)
+            guess[under] = start
+        problem = ContactProblem(grid, gap, shape.prescribed.resultants(grid), 0.0, tolerance, 500)
+        pressure = solve_normal(contact_operator(shape), problem, guess).pressure
+        check_window(shape.body, pressure)
+        return np.asarray(pressure[under])
+
+
+def _under(grid: Grid, edges: FloatArray) -> slice:
+    """Cells of a grid that are the columns between `edges`."""
+    first = int(np.abs(grid.x_edges - edges[0]).argmin())
+    return slice(first, first + edges.size - 1)
+
+
+def _axial_shape(case: Case) -> AxialShape:
+    """Return what the refinement knows of a case."""
+    start, stop = case.contact_range
+    middle = case.roller_start + 0.5 * case.roller.length
+    low, high = case.body.extent
+    half_width = case.hertz_half_width
+    near = 1e-9 * (stop - start)
+    end = case.roller_start + case.roller.length
+
+    def height(x: FloatArray) -> FloatArray:
+        from_middle = np.clip(x - middle, -0.5 * case.roller.length, 0.5 * case.roller.length)
+        return case.roller.clearance(from_middle, np.zeros(1))[:, 0] - case.tilt * from_middle
+
+    return AxialShape(
+        start,
+        stop,
+        half_width,
+        half_width**2 / (2 * case.roller.radius),
+        height,
+        (bool(case.roller_start > low + near), bool(end < high - near)),
+    )
