@@ -16,6 +16,9 @@ SPACING_TOLERANCE = 1e-4
 STEEPEST_GRADING = 4.0
 """Largest ratio of the widths of neighbouring cells: beyond it an estimated error means nothing. Accuracy."""
 
+GROWTH = 3.0
+"""Ratio of neighbouring cells where nothing is pressed. Speed."""
+
 LEAST_WIDTH = 1e-12
 """Least width of a cell over the grid's length: narrower ones are lost in rounding. Accuracy."""
 
@@ -177,6 +180,23 @@ class Grid:
             return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)
         edges = self.x_edges
         return Grid.from_edges(np.append(edges[:-1:2], edges[-1]), self.y_range, self.cells_y // 2)
+
+
+def growing_edges(distance: float, width: float) -> FloatArray:
+    """Distances from 0 of the edges of few cells that grow from about `width` up to `distance`; one cell if infinite.
+
+    Examples
+    --------
+    >>> growing_edges(13.0, 1.0).tolist()
+    [1.0, 4.0, 13.0]
+    """
+    if np.isinf(distance):
+        return np.array([width])
+    if distance <= 1e-9 * width:
+        return np.zeros(0)
+    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / width) / np.log(GROWTH) - 1e-9)))
+    sizes = GROWTH ** np.arange(count)
+    return np.asarray(np.cumsum(sizes) * (distance / sizes.sum()))
 
 
 def uniform_range(name: str, values: object) -> tuple[tuple[float, float], int]:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import Grid, growing_edges
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -36,28 +36,56 @@ class Counterbody:
             raise InvalidInputError("counterbody", self.body, "a HalfSpace or a FiniteLengthSpace")
 
     def own_grid(self, grid: Grid) -> Grid:
-        """Cells about as large as those of `grid`, in the counterbody's own coordinate, that span it if it has ends."""
+        """Cells in the counterbody's own coordinate that span it if it has ends.
+
+        On uniform cells they are about as large as those of `grid`; else they are those of `grid`, which then has
+        borders at the ends of both bodies, and few more where the counterbody overhangs.
+        """
         if not isinstance(self.body, FiniteLengthSpace):
-            return Grid((grid.x_range[0] - self.start, grid.x_range[1] - self.start), grid.y_range, *grid.shape)
-        cells = max(4, round(self.body.length / grid.dx))
-        return Grid((0.0, self.body.length), grid.y_range, cells, grid.cells_y)
+            return _moved(grid, -self.start)
+        if grid.uniform:
+            cells = max(4, round(self.body.length / grid.dx))
+            return Grid((0.0, self.body.length), grid.y_range, cells, grid.cells_y)
+        edges, stop = grid.x_edges - self.start, self.body.length
+        tolerance = ALIGNED * grid.widths.min()
+        for end in (0.0, stop):
+            if edges[0] < end < edges[-1] and np.abs(edges - end).min() > tolerance:
+                raise InvalidInputError(
+                    "grid",
+                    f"cells without a border at x = {self.start + end:g} m",
+                    "cells that meet the ends of both bodies where their widths differ",
+                )
+        inside = edges[(edges > tolerance) & (edges < stop - tolerance)]
+        widths = grid.widths
+        before = -growing_edges(edges[0], widths[0])[::-1] + edges[0] if edges[0] > tolerance else np.zeros(1)
+        after = growing_edges(stop - edges[-1], widths[-1]) + edges[-1] if stop - edges[-1] > tolerance else [stop]
+        own = np.concatenate([before, inside, after])
+        own[0], own[-1] = 0.0, stop
+        return Grid.from_edges(own, grid.y_range, grid.cells_y)
 
     def overlap(self, grid: Grid) -> FloatArray:
         """Return the length that each own cell shares with each cell of `grid`, metres: array (own cell, cell).
 
-        A cell that the counterbody's end cuts belongs to it whole if its centre does: the part beyond is counted to
-        the last own cell, so that no load is lost.
+        A uniform cell that the counterbody's end cuts belongs to it whole if its centre does: the part beyond is
+        counted to the last own cell, so that no load is lost.
         """
-        own = self.own_grid(grid)
-        own_edges = self.start + np.linspace(*own.x_range, own.cells_x + 1)
-        edges = np.linspace(*grid.x_range, grid.cells_x + 1)
-        tolerance = ALIGNED * grid.dx
+        own_edges, edges = self.start + self.own_grid(grid).x_edges, grid.x_edges
+        tolerance = ALIGNED * grid.widths.min()
         inside = (grid.x > own_edges[0] - tolerance) & (grid.x < own_edges[-1] + tolerance)
         own_edges[0], own_edges[-1] = min(own_edges[0], edges[0]), max(own_edges[-1], edges[-1])
         low = np.maximum(own_edges[:-1, None], edges[None, :-1])
         high = np.minimum(own_edges[1:, None], edges[None, 1:])
-        return np.asarray(np.maximum(high - low, 0.0) * inside)
+        shared = np.maximum(high - low, 0.0)
+        shared[shared < tolerance] = 0.0
+        return np.asarray(shared * inside)
 
     def load_on(self, grid: Grid, load: FloatArray) -> FloatArray:
         """Load on the own cells from one on the cells of `grid`; its resultant stays the same."""
-        return np.asarray(self.overlap(grid) @ load / self.own_grid(grid).dx)
+        return np.asarray(self.overlap(grid) @ load / self.own_grid(grid).widths[:, None])
+
+
+def _moved(grid: Grid, shift: float) -> Grid:
+    """Return the same cells elsewhere along x."""
+    if grid.uniform:
+        return Grid((grid.x_range[0] + shift, grid.x_range[1] + shift), grid.y_range, *grid.shape)
+    return Grid.from_edges(grid.x_edges + shift, grid.y_range, grid.cells_y)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.grid import Grid, growing_edges
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
@@ -18,29 +18,13 @@ MOST_EXTRA = 1.25
 """How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
 
 
-GROWTH = 3.0
-"""Ratio of neighbouring cells beyond the roller, where nothing is pressed. Speed."""
-
-
 def columns_of(case: Case, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
     """Grid that has columns between `edges` under the roller, and few cells where the body goes on."""
     low, high = case.body.extent
     first, last = edges[1] - edges[0], edges[-1] - edges[-2]
-    before = _beyond(edges[0] - low, first)
-    after = _beyond(high - edges[-1], last)
+    before = growing_edges(edges[0] - low, first)
+    after = growing_edges(high - edges[-1], last)
     return Grid.from_edges(np.concatenate([edges[0] - before[::-1], edges, edges[-1] + after]), y_range, cells_y)
-
-
-def _beyond(distance: float, width: float) -> FloatArray:
-    """Distances of edges beyond the roller: cells that grow from `width` up to the body's end, or one cell."""
-    if np.isinf(distance):
-        return np.array([width])
-    if distance <= 1e-9 * width:
-        return np.zeros(0)
-    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / (GROWTH * width)) / np.log(GROWTH))))
-    sizes = GROWTH ** np.arange(count)
-    found: FloatArray = np.cumsum(sizes) * (distance / sizes.sum())
-    return found
 
 
 def choose_grid(

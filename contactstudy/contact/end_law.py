@@ -1,7 +1,8 @@
 """The law of a singular end: how the pressure grows towards it, and its intensity.
 
-A sharp end inside the face of a body is pressed like a flat punch: at the distance d from it ``p = K / sqrt(d)``. The
-pressure has no peak, only an intensity K. An edge of small radius ``r0`` bounds it to
+A sharp rigid end inside the face of a body is pressed like a flat punch: at the distance d from it ``p = K / sqrt(d)``.
+At a sharp elastic end the pressure grows with a smaller power, which depends on the two materials and is fitted here.
+The pressure has no peak, only an intensity K. An edge of small radius ``r0`` bounds it to
 
     p_max = 1.0734 (K**2 E* / r0)**(1/3),
 
@@ -15,11 +16,12 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from scipy import optimize
 
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 
-LEAST_GROWTH = 0.2
+LEAST_GROWTH = 0.12
 """Exponent of the growth between two halvings from which on an end counts as a power law. Accuracy."""
 
 LASTING_STEPS = 0.5
@@ -51,7 +53,7 @@ class EndLaw:
     kind : str
         "power" or "logarithm".
     exponent : float
-        ``m`` of ``p = K d**-m``: 0.5 for a power law, 0 for a logarithm.
+        ``m`` of ``p = K d**-m``: 0.5 at a rigid end, fitted at an elastic one (NaN until then), 0 for a logarithm.
     intensity, intensity_error : float
         ``K`` and its estimated error, Pa m**m; NaN for a logarithm.
     """
@@ -66,13 +68,17 @@ class EndLaw:
         if self.kind != "power":
             return self
         row = pressure[:, int(pressure.max(axis=0).argmax())]
-        width = edges[1]
-        fits = [_fit(edges, row, width * factor, self.exponent) for factor in (1.0, 2.0)]
+        width, exponent = edges[1], self.exponent
+        if np.isnan(exponent):
+            bounds = (LEAST_GROWTH, 0.5)
+            found = optimize.minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
+            exponent = float(found.x)
+        fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         error = abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
-        return replace(self, intensity=fits[0], intensity_error=error)
+        return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error)
 
 
-def law_of(samples: list[Sample]) -> EndLaw | None:
+def law_of(samples: list[Sample], *, rigid: bool) -> EndLaw | None:
     """Decide on the law of an end from its outermost column between splittings; None if it settles."""
     if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure or samples[-3].pressure <= 0:
         return None
@@ -81,7 +87,7 @@ def law_of(samples: list[Sample]) -> EndLaw | None:
         for before, after in pairwise(samples[-3:])
     ]
     if min(growth) > LEAST_GROWTH:
-        return EndLaw("power", 0.5)
+        return EndLaw("power", 0.5 if rigid else np.nan)
     steps = [
         (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
     ]
@@ -90,15 +96,16 @@ def law_of(samples: list[Sample]) -> EndLaw | None:
     return None
 
 
-def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> float:
-    """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each."""
+def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
+    """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each, and the residual."""
     low, high = edges[:-1], edges[1:]
     used = (low >= 0.999 * NEAREST * width) & (high <= 1.001 * FARTHEST * width) & (row > 0)
     low, high, values = low[used], high[used], row[used]
     powers = [1 - exponent, 2 - exponent]
     means = [(high**power - low**power) / (power * (high - low)) for power in powers]
     matrix = np.stack(means, axis=1) / values[:, None]
-    return float(np.linalg.lstsq(matrix, np.ones(values.size))[0][0])
+    found = np.linalg.lstsq(matrix, np.ones(values.size))[0]
+    return float(found[0]), float(np.sqrt(np.mean((matrix @ found - 1) ** 2)))
 
 
 def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:

@@ -26,10 +26,11 @@ class Shares:
     @classmethod
     def of(cls, counterbody: Counterbody, grid: Grid) -> Shares | None:
         """Shares of the counterbody's cells in those of `grid`; None if they are the same cells."""
-        overlap = counterbody.overlap(grid)
-        if overlap.shape[0] == overlap.shape[1] and np.allclose(overlap, grid.dx * np.eye(len(overlap))):
+        overlap, widths = counterbody.overlap(grid), grid.widths
+        square = overlap.shape[0] == overlap.shape[1]
+        if square and np.allclose(overlap, np.diag(widths), atol=1e-9 * widths.min()):
             return None
-        return cls(overlap / counterbody.own_grid(grid).dx, overlap.T / grid.dx)
+        return cls(overlap / counterbody.own_grid(grid).widths[:, None], overlap.T / widths[:, None])
 
     def joined(self) -> Shares:
         """Shares of cells of twice the size in each other."""

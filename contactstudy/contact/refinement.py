@@ -82,6 +82,8 @@ class AxialShape:
         Height along the axis over the plane that the shape touches, metres.
     ends_inside : tuple of bool
         Whether it ends inside the face of the body, at either end.
+    rigid : bool
+        Whether it is rigid.
     """
 
     start: float
@@ -90,6 +92,7 @@ class AxialShape:
     depth: float
     height: Callable[[FloatArray], FloatArray]
     ends_inside: tuple[bool, bool]
+    rigid: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -181,7 +184,7 @@ class _State:
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
                 if self.laws[side] is None and width <= SHARPEST * self.shape.half_width:
-                    self.laws[side] = law_of(samples)
+                    self.laws[side] = law_of(samples, rigid=self.shape.rigid)
 
     def _marks(self, theta: float) -> BoolArray:
         """Columns to split."""

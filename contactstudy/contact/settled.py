@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
+from contactstudy.bodies.models import EndedBody
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
@@ -26,6 +27,9 @@ WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
 
 ROOM = 1.2
 """Window over the extent of the contact along y. Speed; what lies outside is not pressed."""
+
+ROUGHLY = 0.1
+"""Accuracy of the contact to which the window is fitted. Speed."""
 
 CELLS_Y, MORE_CELLS_Y, CLOSE = 32, 64, 0.005
 """Cells along y, and the number for accuracies below the last one. Accuracy."""
@@ -59,9 +63,13 @@ def _within(case: Case, half_window: float, cells_y: int, accuracy: float, toler
     """Contact in a window that is first fitted to it."""
     shape = _axial_shape(case)
     with one_blas_thread():
-        rough = refined_contact(_Solver(case, half_window, cells_y // 2), shape, 10 * max(accuracy, 0.01))
+        # How wide the contact is depends on what frees the ends by little, and that is what takes longest to prepare.
+        body = case.body
+        mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
+        first = _Solver(replace(case, body=mirrored), half_window, cells_y // 2)
+        rough = refined_contact(first, shape, ROUGHLY)
         touched = np.flatnonzero(rough.pressure.any(axis=0))
-        cells = _Solver(case, half_window, cells_y // 2).grid(rough.edges)
+        cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
         solver = _Solver(case, min(ROOM * reach, half_window), cells_y)
         refined = refined_contact(solver, shape, accuracy)
@@ -156,4 +164,5 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width**2 / (2 * case.roller.radius),
         height,
         (bool(case.roller_start > low + near), bool(end < high - near)),
+        rigid=case.roller.material is None,
     )

@@ -143,32 +143,36 @@ def _far_images(
     z: FloatArray,
     extent: tuple[float, float],
 ) -> FloatArray:
-    """Field of all images but the nearest, which vary smoothly over the body: the load is gathered on few points."""
+    """Field of all images but the nearest: they vary smoothly over the body, so few points along x tell it."""
     low, length = extent[0], extent[1] - extent[0]
     nodes = chebyshev.chebpts1(IMAGE_POINTS)
-    points = 0.5 * length * (nodes + 1)
-    scaled = 2 * (grid.x_edges - low) / length - 1
-    primitives = np.array([chebyshev.chebval(scaled, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])
-    shares = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_POINTS - 1)).T @ np.diff(primitives, axis=1)
+    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_POINTS - 1))
+    to_x = chebyshev.chebvander(2 * (x - low) / length - 1, IMAGE_POINTS - 1) @ coefficients
+    edges = 2 * (grid.x_edges - low) / length - 1
+    primitives = np.array([chebyshev.chebval(edges, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])
     width = IMAGE_CELL * length
-    gathered = 0.5 * length / width * shares @ load
-    field = np.zeros((influence.components, x.size, y.size, z.size))
-    level = width * grid.dy * np.array(influence.image_level)[:, None, None]
-    inside = x - low
+    gathered = 0.5 * length / width * (coefficients.T @ np.diff(primitives, axis=1)) @ load
+    points = 0.5 * length * (nodes + 1)
     patterns = (
-        (np.subtract.outer(inside, points), 2 * length, 1),
-        (np.add.outer(inside, points) - length, 3 * length, influence.load.sign_x),
+        (np.subtract.outer(points, points), 2 * length, 1),
+        (np.add.outer(points, points) - length, 3 * length, influence.load.sign_x),
     )
+    level = width * grid.dy * np.array(influence.image_level)[:, None, None]
+    field = np.zeros((influence.components, x.size, y.size, z.size))
     for column in aligned_points(y, float(grid.y[first]), grid.dy):
         lowest = int(column.cells.min()) - load.shape[1] + 1
         offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
+        size = fft.next_fast_len(offsets.size, real=True)
         at = column.cells - int(column.cells.min())
+        spectrum = fft.rfft(gathered[:, ::-1], size, axis=1).conj()
         for number, depth in enumerate(z.tolist()):
-            corner = influence.corner_at(depth)
+            total = np.zeros((influence.components, points.size, at.size))
             for distances, nearest, sign in patterns:
-                kernel = image_kernel(corner, distances.ravel(), offsets, width, grid.dy, length, nearest=nearest)
+                kernel = image_kernel(
+                    influence.corner_at(depth), distances.ravel(), offsets, width, grid.dy, length, nearest=nearest
+                )
                 kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
-                windows = np.lib.stride_tricks.sliding_window_view(kernel, load.shape[1], axis=3)
-                part = np.einsum("cxgpf,gf->cxp", windows[:, :, :, at], gathered[:, ::-1], optimize=True)
-                field[:, :, column.points, number] += sign * part
+                summed = np.einsum("cpgk,gk->cpk", fft.rfft(kernel, size, axis=3), spectrum)
+                total += sign * fft.irfft(summed, size, axis=2)[:, :, at]
+            field[:, :, column.points, number] = to_x @ total
     return field
