@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from contactstudy.cli import main
-from tests.study.conftest import ROOT, as_toml, small_study
-from tests.study.fakes import FAILS, IS_WRONG, solve_fake
+from tests.small_study import as_toml, small_study
+from tests.stand_in_solver import FAILS, IS_WRONG, solve_fake
+from tests.study.conftest import ROOT
 
 
 @pytest.fixture

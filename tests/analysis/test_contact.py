@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
 from contactstudy.analysis.border import contact_borders
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 def contact(values: list[list[float]]) -> xr.Dataset:

@@ -10,8 +10,8 @@ from contactstudy.study import Study
 from contactstudy.study.definition import KEYS
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS
+from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
-from tests.study.fakes import solve_fake
 
 TEXT = (ROOT / "docs" / "studies.md").read_text()
 

@@ -14,8 +14,8 @@ import pytest
 from contactstudy.cli import main
 from contactstudy.study import run_study
 from contactstudy.study.store import load_case
-from tests.study.conftest import small_study
-from tests.study.fakes import solve_fake
+from tests.small_study import small_study
+from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture(scope="module")

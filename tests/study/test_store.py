@@ -11,8 +11,8 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup
 from contactstudy.study.store import load_case, process_name, read_header, remove_dead_parts, write_text
-from tests.study.conftest import BASE, identity, small_study
-from tests.study.fakes import solve_fake
+from tests.small_study import BASE, identity, small_study
+from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture
