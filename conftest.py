@@ -1,17 +1,12 @@
-"""How tests are run: hypothesis' profiles, and no silent skip in CI."""
+"""How tests are run: plugins, hypothesis' profiles, and what the environment must not change."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Generator
 
-import pytest
 from hypothesis import settings
-from sybil.integration.pytest import SybilItem
 
-pytest_plugins = ("tests.documentation.blocks", "tests.documentation.notebooks")
-
-IN_CI = bool(os.environ.get("CI"))
+pytest_plugins = ("tests.no_silent_skip", "tests.documentation.blocks", "tests.documentation.notebooks")
 
 # Figures are drawn to files, with and without a screen.
 os.environ.setdefault("MPLBACKEND", "Agg")
@@ -20,33 +15,6 @@ os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 
 # Times depend on the machine, so no example has a deadline. What lands must not hang on chance: the examples of the
 # short profile are always the same in CI, the search of `thorough` (`--hypothesis-profile=thorough`) is never.
-settings.register_profile("short", max_examples=20, deadline=None, derandomize=IN_CI)
+settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.register_profile("thorough", max_examples=200, deadline=None)
 settings.load_profile("short")
-
-
-def _refuse_skip(report: pytest.TestReport | pytest.CollectReport) -> None:
-    """Turn a skip into a failure."""
-    reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
-    report.outcome = "failed"
-    report.longrepr = (
-        f"{reason}\nNothing may be skipped where the environment variable CI is set: install what is missing."
-    )
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_runtest_makereport(item: pytest.Item) -> Generator[None, pytest.TestReport, pytest.TestReport]:
-    """Let no test be skipped in CI; blocks of the documentation say in the page itself why they are."""
-    report = yield
-    if IN_CI and report.skipped and not hasattr(report, "wasxfail") and not isinstance(item, SybilItem):
-        _refuse_skip(report)
-    return report
-
-
-@pytest.hookimpl(wrapper=True)
-def pytest_make_collect_report() -> Generator[None, pytest.CollectReport, pytest.CollectReport]:
-    """Let no file be skipped in CI."""
-    report = yield
-    if IN_CI and report.skipped:
-        _refuse_skip(report)
-    return report

@@ -145,6 +145,7 @@ def test_version(capsys):
     assert capsys.readouterr().out.startswith("contactstudy ")
 
 
+@pytest.mark.system
 def test_help_imports_nothing_heavy():
     code = (
         "import sys; sys.argv = ['contactstudy', '--help']\n"

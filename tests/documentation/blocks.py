@@ -33,10 +33,10 @@ from sybil.parsers.markdown import SkipParser
 from sybil.parsers.markdown.lexers import DirectiveInHTMLCommentLexer, RawFencedCodeBlockLexer
 
 from contactstudy.study import Study, run_study
+from tests.documentation.pages import ROOT
 from tests.solved_case import solved_case
 from tests.stand_in_solver import solve_fake
 
-ROOT = Path(__file__).resolve().parents[2]
 WHOLE_STUDY = {"name", "base", "sweep"}
 """Keys by which a TOML block is known to be a study rather than a part of one."""
 

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
-import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 from contactstudy import HalfSpace, Study, open_study, run_study
+
+pytestmark = pytest.mark.system
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 
@@ -30,12 +33,9 @@ def script(name: str) -> ModuleType:
 
 
 @pytest.fixture(autouse=True)
-def without_screen():
-    previous = matplotlib.get_backend()
-    matplotlib.use("Agg")
+def _closed_figures() -> Iterator[None]:
     yield
-    matplotlib.pyplot.close("all")
-    matplotlib.use(previous)
+    pyplot.close("all")
 
 
 def test_every_study_file_can_be_planned():
@@ -61,6 +61,7 @@ def regime_errors(tmp_path_factory):
     return module.errors(module.evaluated(open_study(folder)))
 
 
+@pytest.mark.xdist_group("regime map")
 def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
     module = script("regime_map")
     assert np.isfinite(regime_errors["peak_pressure"]).all()

@@ -4,10 +4,10 @@ import pytest
 
 from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
+from tests.documentation.pages import page
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import DIES, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
-from tests.study.conftest import ROOT
 
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
@@ -18,7 +18,7 @@ def opened(folder):
 
 
 def test_the_documentation_names_these_commands():
-    text = (ROOT / "docs" / "studies.md").read_text()
+    text = page("studies").read_text()
     assert SCHEDULER in text
     assert WORKER in text
     for name, value in ENVIRONMENT.items():

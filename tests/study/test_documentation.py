@@ -3,17 +3,14 @@
 import re
 import tomllib
 
-import pytest
-
-from contactstudy.cli import main
 from contactstudy.study import Study
 from contactstudy.study.definition import KEYS
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS
-from tests.stand_in_solver import solve_fake
+from tests.documentation.pages import page
 from tests.study.conftest import ROOT
 
-TEXT = (ROOT / "docs" / "studies.md").read_text()
+TEXT = page("studies").read_text()
 
 
 def blocks(language):
@@ -40,27 +37,6 @@ def test_defaults_are_those_of_the_code():
             if name in PARAMETERS and isinstance(PARAMETERS[name].default, (float, bool, str)):
                 parsed = value if isinstance(PARAMETERS[name].default, str) else tomllib.loads(f"x = {value}")["x"]
                 assert parsed == PARAMETERS[name].default, name
-
-
-def test_the_results_are_read_as_shown(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "studies").mkdir()
-    (tmp_path / "studies" / "ends.toml").write_text(blocks("toml")[0])
-    assert main(["run", "studies/ends.toml", "--workers", "0"], solver=solve_fake) == 0
-    import contactstudy as cs
-
-    names = {"cs": cs}
-    exec(blocks("python")[-1], names)
-    assert float(names["axial"].max()) > 1e9
-    assert names["axial"]["distance"].attrs["units"] == "1"
-    pytest.importorskip("h5py")
-    path = next((tmp_path / "results" / "ends" / "cases").glob("*.nc"))
-    exec(blocks("python")[-2], {"path": path})
-
-
-def test_code_that_needs_other_machines_is_python():
-    for block in blocks("python"):
-        compile(block, "studies.md", "exec")
 
 
 def test_named_files_exist():

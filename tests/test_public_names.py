@@ -1,0 +1,34 @@
+"""The package's public names, and what importing it costs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import contactstudy
+
+
+@pytest.mark.system
+def test_import_is_fast_because_it_imports_nothing_heavy() -> None:
+    code = (
+        "import contactstudy, sys; print(sorted({'numpy', 'xarray', 'scipy', 'matplotlib', 'dask'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_every_public_name_can_be_imported() -> None:
+    for name in contactstudy.__all__:
+        assert getattr(contactstudy, name) is not None
+    assert sorted(contactstudy.__all__) == contactstudy.__all__
+
+
+def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
+    """Importing a submodule sets it as an attribute of the package, over a function of the same name."""
+    modules = {path.stem for path in Path(contactstudy.__file__).parent.iterdir()}
+    assert modules & set(contactstudy.__all__) == {
+        *("analysis", "export", "fatigue", "plots", "profiles", "roughness", "slices")
+    }
