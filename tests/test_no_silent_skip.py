@@ -23,10 +23,11 @@ def test_a_skip_fails_in_ci(tmp_path: Path, content: str, ci: str, fails: bool) 
     command = [sys.executable, "-m", "pytest", "-p", "tests.no_silent_skip", "--rootdir", tmp_path, tmp_path]
     path = os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")])
     environment = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST_")}
+    environment |= {"CI": ci, "PYTHONPATH": path}
     done = subprocess.run(
         command,
         cwd=tmp_path,
-        env=environment | {"CI": ci, "PYTHONPATH": path},
+        env=environment,
         capture_output=True,
         text=True,
         check=False,
