@@ -8,6 +8,9 @@ from hypothesis import settings
 
 pytest_plugins = ("tests.no_silent_skip", "tests.documentation.blocks", "tests.documentation.notebooks")
 
+# Tests run side by side, one on each core: a second thread of BLAS would only wait for a core.
+for library in ("OMP", "OPENBLAS", "MKL", "PYFFTW"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 # Figures are drawn to files, with and without a screen.
 os.environ.setdefault("MPLBACKEND", "Agg")
 # dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which threads undo for one another.

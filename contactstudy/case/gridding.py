@@ -53,7 +53,7 @@ def choose_grid(
 
     Examples
     --------
-    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> from contactstudy import FiniteLengthSpace, Material, Roller
     >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
     >>> choose_grid(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)).shape
     (125, 64)

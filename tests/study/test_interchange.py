@@ -35,7 +35,7 @@ def test_a_reader_without_the_hdf5_library_finds_header_and_values(files):
     """Pyfive reads the bytes in pure Python: what it finds does not hang on the library that wrote them."""
     for path in files:
         with pyfive.File(path) as file:
-            assert file["peak_pressure"].attrs["units"] == "Pa"
+            assert file["peak_pressure"].attrs["units"] in ("Pa", b"Pa")
             assert any(name.startswith("contactstudy_") for name in file.attrs)
     with pyfive.File(files[2]) as file:
         np.testing.assert_array_equal(file["pressure"][...], load_case(files[2])["pressure"].values)
