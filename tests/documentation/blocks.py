@@ -119,10 +119,8 @@ pytest_collect_file = Sybil(
 ).pytest()
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Put pages into the system tier, each on one worker."""
-    for item in items:
-        if isinstance(item, SybilItem):
-            item.add_marker(pytest.mark.system)
-            item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT))))
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Put a page into the system tier, on one worker; xdist looks for groups before other hooks see the items."""
+    if isinstance(item, SybilItem):
+        item.add_marker(pytest.mark.system)
+        item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT))))

@@ -13,8 +13,6 @@ from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import give_tickets, solve_fake
 from tests.study.conftest import start_run, tickets_of
 
-pytestmark = pytest.mark.system
-
 SECONDS = 300.0
 """Longest wait for another process, on a machine however busy: no test depends on how fast it is."""
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
@@ -44,6 +42,7 @@ def large(tmp_path):
     return path
 
 
+@pytest.mark.system
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, code):
     folder = tmp_path / "out"
@@ -64,6 +63,7 @@ def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, 
     assert (report.solved, report.counts) == (17, {"ok": 20})
 
 
+@pytest.mark.system
 def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
     folder = tmp_path / "out"
     first = start_run(large, folder, "--workers", "1", tickets=1)
@@ -78,6 +78,7 @@ def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
     assert "20 ok" in output
 
 
+@pytest.mark.system
 def test_killed_run_is_taken_over(large, tmp_path):
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", tickets=3)
