@@ -120,7 +120,7 @@ pytest_collect_file = Sybil(
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Put a page into the system tier, on one worker; xdist looks for groups before other hooks see the items."""
+    """Put a page into the system tier, on one worker."""
     if isinstance(item, SybilItem):
         item.add_marker(pytest.mark.system)
         item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT))))
