@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 
-import pytest
 from hypothesis import settings
 
 pytest_plugins = ("tests.no_silent_skip", "tests.documentation.blocks", "tests.documentation.notebooks")
@@ -22,12 +21,3 @@ os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.register_profile("thorough", max_examples=200, deadline=None)
 settings.load_profile("short")
-
-
-@pytest.hookimpl(trylast=True)
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Write the group of a test behind its name, by which xdist's schedule keeps groups on one worker."""
-    for item in items if hasattr(config, "workerinput") else ():
-        group = item.get_closest_marker("xdist_group")
-        if group is not None and not item.nodeid.endswith(f"@{group.args[0]}"):
-            item._nodeid = f"{item.nodeid}@{group.args[0]}"

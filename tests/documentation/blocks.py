@@ -120,7 +120,6 @@ pytest_collect_file = Sybil(
 
 
 def pytest_itemcollected(item: pytest.Item) -> None:
-    """Put a page into the system tier, on one worker."""
+    """Put pages into the system tier."""
     if isinstance(item, SybilItem):
         item.add_marker(pytest.mark.system)
-        item.add_marker(pytest.mark.xdist_group(str(item.path.relative_to(ROOT))))

@@ -61,7 +61,6 @@ def regime_errors(tmp_path_factory):
     return module.errors(module.evaluated(open_study(folder)))
 
 
-@pytest.mark.xdist_group("regime map")
 def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
     module = script("regime_map")
     assert np.isfinite(regime_errors["peak_pressure"]).all()

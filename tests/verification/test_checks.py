@@ -45,12 +45,8 @@ def verdict(check: Check) -> None:
 
 
 def parameters(level: str) -> list[object]:
-    """Checks of a level under their names; those of a group are made together, by one worker."""
-    return [
-        pytest.param(entry, id=entry.name, marks=pytest.mark.xdist_group(entry.group if level == "quick" else "full"))
-        for entry in LISTED
-        if entry.level == level
-    ]
+    """Checks of a level under their names."""
+    return [pytest.param(entry, id=entry.name) for entry in LISTED if entry.level == level]
 
 
 @pytest.mark.parametrize("entry", parameters("quick"))
@@ -65,7 +61,7 @@ def test_check_of_the_full_level(entry: listed.Listed) -> None:
     verdict(check)
 
 
-@pytest.mark.parametrize("group", [pytest.param(g, marks=pytest.mark.xdist_group(g)) for g in suite.GROUPS])
+@pytest.mark.parametrize("group", suite.GROUPS)
 def test_the_list_is_complete(group: str) -> None:
     entries = [(entry.case, entry.quantity) for entry in LISTED if (entry.level, entry.group) == ("quick", group)]
     assert entries
@@ -73,7 +69,6 @@ def test_the_list_is_complete(group: str) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.xdist_group("full")
 def test_the_list_of_the_full_level_is_complete() -> None:
     assert sorted(entry[1:] for entry in LISTED) == sorted(listed.names(full()))
     data = full().to_dataset()
