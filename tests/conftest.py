@@ -8,9 +8,13 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, Roller, choose_grid, solve, von_mises
-from contactstudy.profiles import Cylinder
+from contactstudy import FiniteLengthSpace, HalfSpace, Material, von_mises
+from contactstudy.study import open_study, run_study
+from contactstudy.verification import closed_forms as ref
 from contactstudy.verification import problems
+from tests.small_study import BASE, small_study
+from tests.solved_case import solved_case
+from tests.stand_in_solver import FAILS, solve_fake
 
 
 @pytest.fixture(scope="session")
@@ -66,7 +70,6 @@ def strip_result() -> Callable[..., xr.Dataset]:
 
     The body goes on for 1a beyond either end of the roller.
     """
-    from contactstudy.verification import closed_forms as ref
 
     def build(
         half_width: float = 1.0, max_pressure: float = 1.0, friction: float = 0.0, window: float = 3.0
@@ -99,30 +102,12 @@ def strip_result() -> Callable[..., xr.Dataset]:
 @pytest.fixture(scope="session")
 def solved() -> xr.Dataset:
     """Steel with two free ends, a roller that begins one half-width inside, friction: the real solver."""
-    material = Material(young=210e9, poisson=0.3)
-    half_width = 65e-6
-    case = Case(
-        body=FiniteLengthSpace(length=0.52e-3, material=material),
-        roller=Roller(radius=5e-3, length=0.39e-3, profile=Cylinder(fillet_radius=0.1e-3)),
-        max_pressure=1.5e9,
-        friction=0.1,
-    )
-    return solve(
-        case,
-        choose_grid(case, cells_x=6, cells_y=12),
-        x=np.linspace(0, 0.52e-3, 13),
-        y=half_width * np.linspace(-2, 2, 17),
-        z=half_width * np.array([0.0, 0.25, 0.5, 0.75, 1.0, 1.5]),
-    )
+    return solved_case()
 
 
 @pytest.fixture(scope="session")
 def opened(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
     """A study opened: e/a, a friction that fails, two bodies of which one for e = 0 only; made-up fields."""
-    from contactstudy.study import open_study, run_study
-    from tests.study.conftest import BASE, small_study
-    from tests.study.fakes import FAILS, solve_fake
-
     folder = tmp_path_factory.mktemp("results")
     study = small_study(
         sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.1, FAILS], "body": ["finite-length", "half-space"]},

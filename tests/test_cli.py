@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from contactstudy.cli import main
-from tests.study.conftest import ROOT, as_toml, small_study
-from tests.study.fakes import FAILS, IS_WRONG, solve_fake
+from tests.small_study import as_toml, small_study
+from tests.stand_in_solver import FAILS, IS_WRONG, solve_fake
+from tests.study.conftest import ROOT
 
 
 @pytest.fixture
@@ -144,6 +145,7 @@ def test_version(capsys):
     assert capsys.readouterr().out.startswith("contactstudy ")
 
 
+@pytest.mark.system
 def test_help_imports_nothing_heavy():
     code = (
         "import sys; sys.argv = ['contactstudy', '--help']\n"

@@ -98,7 +98,13 @@ def test_grid_beside_the_roller_is_refused() -> None:
         solve(1)  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("body", [FiniteLengthSpace(length=4e-3, material=STEEL), HalfSpace(material=STEEL)])
+@pytest.mark.parametrize(
+    "body",
+    [
+        pytest.param(FiniteLengthSpace(length=4e-3, material=STEEL), marks=pytest.mark.slow, id="finite"),
+        pytest.param(HalfSpace(material=STEEL), id="half-space"),
+    ],
+)
 def test_a_short_contact_gets_the_room_it_asks_for(body) -> None:
     strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
     case = Case(body=body, roller=strongly_crowned, load=400.0)

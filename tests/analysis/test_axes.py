@@ -8,7 +8,7 @@ import xarray as xr
 
 from contactstudy import InvalidInputError, analysis
 from contactstudy.analysis.axes import axis_dimensions, cell_size
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 @pytest.mark.parametrize("dims", [("y", "z"), ("x", "x_field")])

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
 from contactstudy.analysis.border import contact_borders
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 def contact(values: list[list[float]]) -> xr.Dataset:
@@ -59,7 +59,6 @@ def test_scalars_by_hand() -> None:
     assert all(value.attrs["units"] for value in result.values())
 
 
-@settings(deadline=None)
 @given(about=st.floats(-10, 10))
 def test_moment_about_another_point_differs_by_the_load_times_the_distance(about: float) -> None:
     result = analysis.contact_results(contact(VALUES), about)
@@ -74,7 +73,6 @@ def test_length_that_carries_nothing(strip_result) -> None:
     assert float(analysis.contact_results(lifted)["moment"]) > 0
 
 
-@settings(deadline=None)
 @given(half_width=st.floats(0.4, 1.9), middle=st.floats(-0.3, 0.3))
 def test_border_of_a_hertz_pressure_is_found_between_the_cells(half_width: float, middle: float) -> None:
     place = (np.arange(80) - 39.5) / 16

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
@@ -21,11 +21,9 @@ def linear() -> xr.Dataset:
     return xr.Dataset({"von_mises": field, "pressure": surface})
 
 
-@settings(deadline=None)
 @given(start=point, end=point)
 def test_a_linear_field_is_followed_exactly(start, end) -> None:
-    if np.allclose(start, end):
-        return
+    assume(not np.allclose(start, end))
     cut = analysis.along_line(linear(), start, end, points=7)
     assert cut["von_mises"].values == pytest.approx((2 * cut["x"] - 3 * cut["y"] + cut["z"]).values, abs=1e-12)
     assert float(cut["distance"][-1]) == pytest.approx(np.linalg.norm(np.subtract(end, start)))

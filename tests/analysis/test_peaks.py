@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import InvalidInputError, analysis
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 @pytest.mark.parametrize(

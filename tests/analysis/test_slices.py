@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
 
 
-@settings(deadline=None)
 @given(count=st.integers(1, 16))
 def test_slices_carry_the_whole_load_however_many(strip_result, count: int) -> None:
     result = strip_result()

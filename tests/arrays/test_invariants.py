@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError
@@ -89,7 +89,6 @@ def test_directions_of_a_plane_state_are_those_of_mohrs_circle() -> None:
     assert abs(float(result["principal_direction"].sel(principal=2, axis="z"))) == pytest.approx(1, abs=1e-12)
 
 
-@settings(max_examples=60, deadline=None)
 @given(tensor=tensors(), rotation=rotations())
 def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) -> None:
     scale = np.abs(tensor).max() + 1e-300
@@ -102,7 +101,6 @@ def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) ->
     assert np.abs(values[0] - values[1]).max() <= 1e-12 * scale
 
 
-@settings(max_examples=60, deadline=None)
 @given(tensor=tensors())
 def test_tresca_and_von_mises_bound_each_other_and_the_trace_is_kept(tensor: Array) -> None:
     stress, scale = state(tensor), np.abs(tensor).max() + 1e-300

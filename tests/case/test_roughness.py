@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Grid, InvalidInputError
@@ -23,7 +23,6 @@ def spectrum(height: xr.DataArray, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     return np.hypot(x[:, None], y), np.abs(np.fft.fft2(height.values)) ** 2
 
 
-@settings(deadline=None, max_examples=20)
 @given(rms=st.floats(1e-9, 1e-5), hurst=st.floats(0.0, 1.0), seed=st.integers(0, 10**6))
 def test_height_has_the_rms_and_the_band_asked_for(rms: float, hurst: float, seed: int) -> None:
     height = self_affine(GRID, **VALUES | {"rms_height": rms, "hurst": hurst, "seed": seed})

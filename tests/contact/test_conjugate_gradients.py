@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy import optimize
 
@@ -43,7 +43,6 @@ def bad_guess(rng: np.random.Generator, gap: np.ndarray) -> np.ndarray:
 
 
 @given(rng=random, sharp=st.booleans())
-@settings(deadline=None, max_examples=30)
 def test_a_prescribed_approach_against_non_negative_least_squares(rng: np.random.Generator, sharp: bool):
     gap = rough_gap(rng, sharp) - 0.5
     found = solve_complementarity(
@@ -63,7 +62,6 @@ def test_a_prescribed_approach_against_non_negative_least_squares(rng: np.random
 
 
 @given(rng=random, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), TILTING]))
-@settings(deadline=None, max_examples=30)
 def test_a_prescribed_load_meets_the_conditions_of_contact(
     rng: np.random.Generator, sharp: bool, resultants: Resultants
 ):

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, solve
@@ -25,7 +25,6 @@ def total(result) -> float:
     return float(result["load_per_length"].sum()) * step
 
 
-@settings(deadline=None)
 @given(
     load=st.floats(1.0, 1e5),
     tilt=st.floats(-5e-3, 5e-3),

@@ -1,11 +1,11 @@
-"""Contact against closed forms, symmetry, equilibrium, and what only a free end does."""
+"""Contact: what only a free end does, friction, bad input; `verification/test_checks` has closed forms."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import (
@@ -28,30 +28,17 @@ def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
     )
 
 
-@pytest.mark.parametrize("cells", [64, 65, 128])
-def test_sphere_has_hertz_peak_pressure_radius_and_approach(half_space: HalfSpace, cells: int) -> None:
-    radius, peak, approach = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
+def test_sphere_on_an_even_number_of_cells_has_hertz_pressure_and_radius(half_space: HalfSpace) -> None:
+    """No cell lies in the middle; the suite's checks have one there."""
+    cells = 64
+    radius, peak, _ = ref.hertz_point(load=4 / 3, radius=1.0, modulus=1.0)
     contact = solve_contact(half_space, sphere_gap(cells), load=4 / 3)
-    assert float(contact["pressure"].max()) == pytest.approx(peak, rel=5e-3)
-    assert float(contact["approach"]) == pytest.approx(approach, rel=1e-3)
     area = float((contact["pressure"] > 0).sum()) * (3 / cells) ** 2
     assert np.sqrt(area / np.pi) == pytest.approx(radius, rel=2e-2)
     x, y = contact["x"].values[:, None], contact["y"].values
     exact = peak * np.sqrt(np.maximum(1 - x**2 - y**2, 0))
     inside = x**2 + y**2 < 0.9**2
     assert np.abs(contact["pressure"].values - exact)[inside].max() < 1e-2 * peak
-
-
-def test_long_cylinder_on_a_half_space_is_a_line_contact_at_mid_length(half_space: HalfSpace, cylinder_gap) -> None:
-    """Away from its ends each section of a long roller is the line contact of the load that it carries."""
-    gap = cylinder_gap(60.0, (240, 128))
-    contact = solve_contact(half_space, gap.where(np.abs(gap.x - 30) < 28, np.inf), load=56 * LINE_LOAD)
-    middle = contact["pressure"].sel(x=30, method="nearest")
-    half_width, peak = ref.hertz_line(float(middle.sum()) * 4 / 128, 0.5, 1.0)
-    assert float(middle.max()) == pytest.approx(peak, rel=5e-3)
-    assert float((middle > 0).sum()) * 4 / 128 / 2 == pytest.approx(half_width, abs=4 / 128)
-    exact = peak * np.sqrt(np.maximum(1 - (middle.y / half_width) ** 2, 0))
-    assert float(np.abs(middle - exact).max()) < 3e-2 * peak
 
 
 def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, cylinder_gap) -> None:
@@ -62,12 +49,6 @@ def test_load_is_exact_and_the_certificate_holds(short_body: FiniteLengthSpace, 
     assert abs(float(contact["load_error"])) < 1e-10
     assert float(contact["penetration_error"]) < 3e-6
     assert float(contact["open_pressure_error"]) == 0.0
-
-
-def test_pressure_is_symmetric_along_x_and_y(short_body: FiniteLengthSpace, cylinder_gap) -> None:
-    pressure = solve_contact(short_body, cylinder_gap(8.0, (64, 48)), load=8 * LINE_LOAD)["pressure"].values
-    assert np.abs(pressure - pressure[::-1]).max() < 1e-5
-    assert np.abs(pressure - pressure[:, ::-1]).max() < 1e-5
 
 
 def test_pressure_falls_towards_a_free_end_where_a_half_space_makes_it_rise(
@@ -94,7 +75,6 @@ def _island(gap: xr.DataArray) -> xr.DataArray:
     return gap.reindex(x=x, fill_value=np.inf)
 
 
-@settings(max_examples=12, deadline=None)
 @given(length=st.floats(1.5, 12.0), poisson=st.floats(0.05, 0.5), factor=st.floats(0.3, 2.0))
 def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
     length: float, poisson: float, factor: float

@@ -8,8 +8,8 @@ import xarray as xr
 
 from contactstudy.cli import main
 from tests.export.vtk_reader import read
-from tests.study.conftest import small_study
-from tests.study.fakes import solve_fake
+from tests.small_study import small_study
+from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture(scope="module")

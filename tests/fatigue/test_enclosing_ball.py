@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -50,7 +50,6 @@ def test_point_and_line() -> None:
     assert radius == pytest.approx([0.0, 2.5])
 
 
-@settings(deadline=None, max_examples=150)
 @given(points=arrays(float, (12, 3), elements=st.integers(-4, 4).map(float)))
 def test_any_points(points: Array) -> None:
     """Integers: many points coincide, lie on lines, in planes or on spheres."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis, fatigue
@@ -25,7 +25,6 @@ def test_line_contact(strip_result) -> None:
     assert float(result["risk"]) == pytest.approx(expected, rel=2e-2)
 
 
-@settings(deadline=None, max_examples=10)
 @given(factor=st.floats(0.5, 3.0))
 def test_life_falls_with_the_fourth_power_of_the_load(strip_result, factor: float) -> None:
     """The load of a line contact goes with the square of p0, and a with p0; the roller's length stays."""

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, fatigue
 from contactstudy.fatigue import FatigueLimits
 
 
-@settings(deadline=None, max_examples=20)
 @given(ratio=st.floats(0.58, 0.95), bending=st.floats(1e8, 1e9))
 @pytest.mark.parametrize("criterion", [fatigue.dang_van, fatigue.crossland, fatigue.findley])
 def test_both_limits_are_on_the_limit(cycle, wave, criterion, ratio: float, bending: float) -> None:

@@ -1,4 +1,4 @@
-"""Stresses against closed forms, finite elements, equilibrium and symmetry."""
+"""Stresses on and near the top, equilibrium, symmetry and bad input; `verification/test_checks` has closed forms."""
 
 from __future__ import annotations
 
@@ -10,9 +10,9 @@ from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Materi
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
-from contactstudy.fields.stress import end_traction_residual, stress_under
+from contactstudy.fields.stress import stress_under
 from contactstudy.verification import closed_forms as ref
-from contactstudy.verification.load_cases import LOAD_CASES
+from contactstudy.verification.finite_elements import pressure_of
 from contactstudy.verification.stored import load_stress
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
@@ -21,26 +21,6 @@ Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
 @pytest.fixture(scope="module")
 def circle(on_cells) -> xr.DataArray:
     return on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
-
-
-def test_axis_below_a_circular_hertz_pressure(circle: xr.DataArray, half_space: HalfSpace) -> None:
-    z = np.array([0.0, 0.1, 0.25, 0.48, 1.0, 2.0, 5.0])
-    stress = stress_field(half_space, circle, x=[0.0], y=[0.0], z=z).isel(x=0, y=0)
-    axial, radial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
-    assert np.abs(stress["sigma_zz"] - axial).max() < 5e-3
-    assert np.abs(stress["sigma_xx"] - radial).max() < 5e-3
-    assert np.abs(stress["sigma_yy"] - radial).max() < 5e-3
-
-
-@pytest.mark.parametrize("friction", [0.0, 0.25])
-def test_sliding_circle_is_hamiltons(circle: xr.DataArray, half_space: HalfSpace, friction: float) -> None:
-    x, y, z = np.array([0.0, 0.5, 1.3]), np.array(Y), np.array([0.1, 0.5, 1.5])
-    stress = stress_field(half_space, circle, friction, x=x, y=y, z=z)
-    exact = ref.hertz_circle(
-        *np.meshgrid(x, y, z, indexing="ij"), radius=1.0, max_pressure=1.0, friction=friction, poisson=0.3
-    )
-    for name in STRESSES:
-        assert np.abs(stress[name].values - exact[name]).max() < 5e-3, name
 
 
 def test_surface_of_a_sliding_circle(circle: xr.DataArray, half_space: HalfSpace) -> None:
@@ -53,46 +33,17 @@ def test_surface_of_a_sliding_circle(circle: xr.DataArray, half_space: HalfSpace
     assert np.abs(stress["sigma_xx"].values[inside] - hoop - traction["sigma_xx"]).max() < 2e-2
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-def test_middle_of_a_long_strip_is_plane_strain(half_space: HalfSpace, strip_pressure, friction: float) -> None:
-    z = np.array([0.1, 0.5, 0.78, 2.0])
-    stress = stress_field(half_space, strip_pressure(400.0, (50, 256), 1.25), friction, x=[200.0], y=Y, z=z)
-    exact = ref.hertz_strip(np.array(Y)[:, None], z, 1.0, 1.0, 0.3, friction)
-    for name in STRESSES:
-        assert np.abs(stress[name].values[0] - exact[name]).max() < 5e-3, name
-
-
-@pytest.mark.parametrize("name", sorted(LOAD_CASES))
-def test_free_ends_against_independent_finite_elements(name: str, on_cells) -> None:
+@pytest.mark.parametrize("name", ["eccentric_sliding", "wedge_sliding"])
+def test_stresses_near_the_top_against_finite_elements(name: str) -> None:
+    """Nearer than 0.1a, where the suite's checks begin."""
     reference = load_stress(name)
-    case = reference.case
-    pressure = on_cells(
-        lambda x, y: case.pressure(x[:, 0], y[0]), (0.0, case.length), (-1.0, 1.0), (int(32 * case.length), 128)
-    )
-    body = FiniteLengthSpace(length=case.length, material=Material(1.0, case.poisson))
-    points = {axis: reference.stress[axis].values for axis in "xyz"}
-    stress = stress_field(body, pressure, case.friction, **points)
-    difference = np.stack([np.abs(stress[n] - reference.stress[n].transpose("x", "y", "z").values) for n in STRESSES])
-    assert difference.max() < 1e-3
-    assert np.median(difference) < 3e-6
-    # The check can fail: the mirrored half-space alone is wrong by ten times as much and more.
-    grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-    bare = stress_under(HalfSpace(material=body.material), sliding(pressure.values, case.friction), grid, **points)
-    assert np.abs(bare[0] - reference.stress["sigma_xx"].transpose("x", "y", "z").values).max() > 1e-2
-
-
-@pytest.mark.parametrize("length", [2.5, 8.0])
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-def test_ends_are_free_at_every_depth(strip_pressure, length: float, friction: float) -> None:
-    pressure = strip_pressure(length, (round(16 * length), 64))
-    body = FiniteLengthSpace(length=length, material=Material(1.0, 0.3))
-    grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-    y = pressure.y.values[::5]
-    loads = sliding(pressure.values, friction)
-    shallow = end_traction_residual(body, loads, grid, y, np.array([0.02, 0.05]))
-    deep = end_traction_residual(body, loads, grid, y, np.array([0.1, 0.3, 1.0, 5.0]))
-    assert shallow < 1e-4
-    assert deep < 1e-5
+    near = reference.stress.sel(z=slice(0, 0.0999)).transpose("x", "y", "z")
+    assert near["z"].size > 0
+    body = FiniteLengthSpace(length=reference.case.length, material=Material(1.0, reference.case.poisson))
+    points = {axis: near[axis].values for axis in "xyz"}
+    stress = stress_field(body, pressure_of(reference.case), reference.case.friction, **points)
+    for component in STRESSES:
+        assert np.abs(stress[component].values - near[component].values).max() < 1e-3, component
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -116,18 +67,6 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
             assert abs(sum(slope(term, axis) for axis, term in enumerate(terms))) < 5e-3
 
 
-def test_force_on_any_deep_plane_is_the_load(short_body: FiniteLengthSpace, strip_pressure) -> None:
-    pressure = strip_pressure(8.0, (64, 32))
-    x = np.linspace(0, 8, 41)
-    y = np.sinh(np.linspace(-8.0, 8.0, 161))
-    stress = stress_field(short_body, pressure, 0.2, x=x, y=y, z=[0.7])
-    force = -stress["sigma_zz"].isel(z=0).integrate("y").integrate("x")
-    along = stress["tau_yz"].isel(z=0).integrate("y").integrate("x")
-    load = float(pressure.sum()) * (8 / 64) * (4 / 32)
-    assert float(force) == pytest.approx(load, rel=3e-3)
-    assert float(-along) == pytest.approx(0.2 * load, rel=3e-3)
-
-
 def test_symmetries(short_body: FiniteLengthSpace, strip_pressure) -> None:
     x, y = [0.0, 0.7, 4.0, 7.3, 8.0], [-0.6, 0.0, 0.6]
     stress = stress_field(short_body, strip_pressure(8.0, (48, 32)), x=x, y=y, z=[0.2, 1.0])
@@ -137,23 +76,6 @@ def test_symmetries(short_body: FiniteLengthSpace, strip_pressure) -> None:
         along_y = -1 if name in ("tau_xy", "tau_yz") else 1
         assert np.abs(values - along_x * values[::-1]).max() < 1e-7, name
         assert np.abs(values - along_y * values[:, ::-1]).max() < 1e-7, name
-
-
-def test_long_body_loaded_in_the_middle_is_a_half_space(on_cells, unit_material: Material) -> None:
-    def bump(middle: float, length: float) -> xr.DataArray:
-        cells = round(8 * length)
-        return on_cells(
-            lambda x, y: np.maximum(1 - (x - middle) ** 2 - y**2, 0.0), (0.0, length), (-1.5, 1.5), (cells, 24)
-        )
-
-    points = {"x": np.array([-1.0, 0.0, 0.5]), "y": [0.0, 0.5], "z": [0.3, 1.0]}
-    pressure = bump(20.0, 40.0)
-    finite = stress_field(
-        FiniteLengthSpace(length=40.0, material=unit_material), pressure, 0.2, **(points | {"x": points["x"] + 20})
-    )
-    half = stress_field(HalfSpace(material=unit_material), pressure, 0.2, **(points | {"x": points["x"] + 20}))
-    for name in STRESSES:
-        assert np.abs(finite[name].values - half[name].values).max() < 2e-3, name
 
 
 def test_corner_under_pressure_carries_exactly_what_theory_says(short_body: FiniteLengthSpace, strip_pressure) -> None:

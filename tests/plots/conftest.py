@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
-import matplotlib
+import matplotlib.figure
 import numpy as np
 import pytest
 import xarray as xr
-
-matplotlib.use("Agg")
 
 
 @pytest.fixture

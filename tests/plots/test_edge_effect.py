@@ -2,7 +2,7 @@ import pytest
 
 from contactstudy import plots
 from contactstudy.errors import InvalidInputError
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 def test_study_figure(opened):

@@ -4,7 +4,7 @@ from matplotlib import pyplot
 
 from contactstudy import analysis, plots
 from contactstudy.errors import InvalidInputError
-from tests.study.fakes import FAILS
+from tests.stand_in_solver import FAILS
 
 
 def test_map_of_a_study(opened, assert_nothing_clipped):

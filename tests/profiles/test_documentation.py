@@ -7,9 +7,11 @@ import re
 import runpy
 from pathlib import Path
 
-from contactstudy import profiles
+import pytest
 
-ROOT = Path(__file__).resolve().parents[2]
+from contactstudy import profiles
+from tests.documentation.pages import ROOT
+
 TEXT = (ROOT / "docs" / "reference" / "profiles.md").read_text()
 
 
@@ -23,6 +25,7 @@ def test_every_profile_is_in_the_table_with_its_parameters() -> None:
             assert f"`{entry.name}`" in row, (name, entry.name)
 
 
+@pytest.mark.system
 def test_the_figures_can_be_drawn_again(tmp_path: Path) -> None:
     script = runpy.run_path(str(ROOT / "docs" / "gallery" / "figures.py"))
     for name in ("conventions", "comparison"):

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import importlib.util
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from types import ModuleType
 
-import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 from contactstudy import HalfSpace, Study, open_study, run_study
+
+pytestmark = pytest.mark.system
 
 STUDIES = Path(__file__).resolve().parents[2] / "studies"
 
@@ -30,12 +33,9 @@ def script(name: str) -> ModuleType:
 
 
 @pytest.fixture(autouse=True)
-def without_screen():
-    previous = matplotlib.get_backend()
-    matplotlib.use("Agg")
+def _closed_figures() -> Iterator[None]:
     yield
-    matplotlib.pyplot.close("all")
-    matplotlib.use(previous)
+    pyplot.close("all")
 
 
 def test_every_study_file_can_be_planned():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,47 +10,21 @@ from pathlib import Path
 import pytest
 
 from contactstudy.study import Study
-from contactstudy.study.identity import case_id
+from tests.small_study import as_toml, small_study
+from tests.stand_in_solver import HELD, give_tickets
 
-BASE = {
-    "young": 210e9,
-    "poisson": 0.3,
-    "radius": 5e-3,
-    "roller_length": 0.5e-3,
-    "max_pressure": 1.5e9,
-    "cells_x": 4,
-    "cells_y": 8,
-    "field_y_over_a": [0.0],
-    "field_x_over_a": [0.0, 1.0, 2.0],
-    "field_z_over_a": [0.0, 0.5, 1.0],
-}
 ROOT = Path(__file__).parents[2]
 
 
-def small_study(name: str = "small", **changes) -> Study:
-    """Four cases, or what `changes` make of it."""
-    content = {"base": BASE, "sweep": {"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]}} | changes
-    return Study(name=name, **content)
+def tickets_of(folder: Path) -> Path:
+    """Folder of the tickets of a run that writes to `folder`."""
+    return folder.with_name(f"{folder.name}-tickets")
 
 
-def identity(**changes) -> str:
-    """Identity of a case of the small study."""
-    return case_id(BASE | changes)
-
-
-def as_toml(study: Study) -> str:
-    """A study as a TOML file; JSON's numbers, texts and lists are TOML as well."""
-    lines = [f"name = {json.dumps(study.name)}", f"level = {json.dumps(study.level)}"]
-    for part in ("base", "sweep"):
-        lines.append(f"[{part}]")
-        lines += [f"{key} = {json.dumps(value)}" for key, value in getattr(study, part).items()]
-    return "\n".join(lines) + "\n"
-
-
-def start_run(study: Path, folder: Path, *more: str, seconds: float = 0.2) -> subprocess.Popen[str]:
-    """Start the command with the stand-in solver as a process group of its own."""
-    import os
-
+def start_run(study: Path, folder: Path, *more: str, tickets: int) -> subprocess.Popen[str]:
+    """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others."""
+    held = tickets_of(folder)
+    give_tickets(held, tickets)
     return subprocess.Popen(
         [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure", *more],
         cwd=ROOT,
@@ -58,7 +32,7 @@ def start_run(study: Path, folder: Path, *more: str, seconds: float = 0.2) -> su
         text=True,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
-        env=os.environ | {"CONTACTSTUDY_TEST_SECONDS": str(seconds)},
+        env=os.environ | {HELD: str(held)},
     )
 
 

@@ -3,7 +3,7 @@
 import sys
 
 from contactstudy.cli import main
-from tests.study.fakes import solve_slowly
+from tests.stand_in_solver import solve_held
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:], solver=solve_slowly))
+    sys.exit(main(sys.argv[1:], solver=solve_held))

@@ -1,12 +1,14 @@
+from pathlib import Path
+
 """Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
 
 import pytest
 
 from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
+from tests.small_study import identity, small_study
+from tests.stand_in_solver import DIES, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
-from tests.study.conftest import ROOT, identity, small_study
-from tests.study.fakes import DIES, solve_fake
 
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
@@ -14,6 +16,9 @@ LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2
 def opened(folder):
     """All that a study holds except how long it took."""
     return open_study(folder).drop_vars("seconds").load()
+
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_the_documentation_names_these_commands():
@@ -24,7 +29,7 @@ def test_the_documentation_names_these_commands():
         assert f"{name}={value}" in text
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_a_cluster_of_separate_processes(tmp_path):
     study = small_study("large", sweep=LARGE)
     with cluster(tmp_path) as address:
@@ -34,7 +39,7 @@ def test_a_cluster_of_separate_processes(tmp_path):
     assert opened(tmp_path / "cluster").identical(opened(tmp_path / "calm"))
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": 0, "friction": DIES}]
@@ -45,7 +50,7 @@ def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
     assert all(entry.reason.startswith("WorkerDied") for _, entry in report.failures)
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_the_solvers_results_are_the_same_wherever_cases_are_solved(tmp_path):
     """Bit for bit: in this process, with one and two workers, and on a cluster."""
     study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1], "max_pressure": [1.0e9, 1.5e9]})
@@ -59,7 +64,7 @@ def test_the_solvers_results_are_the_same_wherever_cases_are_solved(tmp_path):
         assert opened(tmp_path / name).identical(first), name
 
 
-@pytest.mark.slow
+@pytest.mark.system
 def test_a_case_solved_alone_is_the_same_as_in_a_study(tmp_path):
     """What a worker keeps of one case for the next does not change a bit."""
     run_study(small_study(), tmp_path / "all", workers=1)

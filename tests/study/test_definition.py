@@ -6,7 +6,7 @@ import pytest
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, StudyFileError
 from contactstudy.study.identity import case_id
-from tests.study.conftest import BASE, as_toml, small_study
+from tests.small_study import BASE, as_toml, small_study
 
 
 def ids(study):

@@ -5,8 +5,8 @@ import pytest
 from contactstudy.study import StudyFileError, collect, open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.store import load_case
-from tests.study.conftest import BASE, identity, small_study
-from tests.study.fakes import FAILS, solve_fake
+from tests.small_study import BASE, identity, small_study
+from tests.stand_in_solver import FAILS, solve_fake
 
 PROFILES = [{"name": "sharp", "kind": "cylinder"}, {"name": "crowned", "kind": "lundberg", "amplitude": 2e-7}]
 

@@ -15,8 +15,9 @@ from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.identity import case_id
 from contactstudy.study.profile_kinds import PROFILES, profile_label, profile_table
 from contactstudy.study.setup import build_setup
-from tests.study.conftest import BASE, ROOT, as_toml, small_study
-from tests.study.fakes import solve_fake
+from tests.small_study import BASE, as_toml, small_study
+from tests.stand_in_solver import solve_fake
+from tests.study.conftest import ROOT
 
 LENGTH = BASE["roller_length"]
 EXAMPLES = {

@@ -13,8 +13,8 @@ from contactstudy.study import StoreError, StudyFileError, open_study, rerun_stu
 from contactstudy.study.folder import Folder
 from contactstudy.study.progress import Progress
 from contactstudy.study.store import load_case, read_header
-from tests.study.conftest import identity, small_study
-from tests.study.fakes import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
+from tests.small_study import identity, small_study
+from tests.stand_in_solver import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
 
 NOBODY = 65534
 
@@ -74,7 +74,7 @@ def test_rerun_repairs(tmp_path):
     assert not list((tmp_path / "cases").glob("*.failed"))
 
 
-@pytest.mark.parametrize("workers", [0, 1])
+@pytest.mark.parametrize("workers", [0, pytest.param(1, marks=pytest.mark.system)])
 def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [0.1, IS_WRONG]})
     with pytest.raises(ZeroDivisionError) as caught:
@@ -210,6 +210,7 @@ def small_disk(tmp_path):
     subprocess.run(["umount", "-l", str(place)], check=True)
 
 
+@pytest.mark.system
 @pytest.mark.parametrize("workers", [0, 1])
 def test_a_full_disk(small_disk, study, workers):
     rest = small_disk / "other.bin"
@@ -226,6 +227,7 @@ def test_a_full_disk(small_disk, study, workers):
     assert (report.counts, report.solved) == ({"ok": 4}, 4 - len(done))
 
 
+@pytest.mark.system
 def test_results_do_not_depend_on_workers(study, tmp_path):
     for workers in (0, 1, 2):
         assert run(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
@@ -235,6 +237,7 @@ def test_results_do_not_depend_on_workers(study, tmp_path):
         assert other.load().identical(first.load())
 
 
+@pytest.mark.system
 def test_a_worker_that_dies_costs_its_case_only(tmp_path):
     sweep = {"e_over_a": [0, 1, 2], "friction": [0, DIES]}
     study = small_study(sweep=sweep, exclude=[{"e_over_a": [0, 2], "friction": DIES}])

@@ -5,7 +5,7 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.setup import build_setup
-from tests.study.conftest import BASE
+from tests.small_study import BASE
 
 
 def test_roller_length_fixes_the_roller():

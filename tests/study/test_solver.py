@@ -9,7 +9,7 @@ from contactstudy.study import open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup
 from contactstudy.study.store import load_case
-from tests.study.conftest import BASE, small_study
+from tests.small_study import BASE, small_study
 
 
 def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):

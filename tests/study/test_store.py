@@ -2,6 +2,7 @@ import json
 import subprocess
 import sys
 
+import h5netcdf
 import numpy as np
 import pytest
 import xarray as xr
@@ -11,8 +12,8 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup
 from contactstudy.study.store import load_case, process_name, read_header, remove_dead_parts, write_text
-from tests.study.conftest import BASE, identity, small_study
-from tests.study.fakes import solve_fake
+from tests.small_study import BASE, identity, small_study
+from tests.stand_in_solver import solve_fake
 
 
 @pytest.fixture
@@ -43,8 +44,6 @@ def test_a_file_alone_repeats_the_case(case_file):
 
 
 def test_other_readers_open_it(case_file):
-    pytest.importorskip("h5py")
-    h5netcdf = pytest.importorskip("h5netcdf")
     with h5netcdf.File(case_file, "r") as file:
         values = file.variables["pressure"][...]
     np.testing.assert_array_equal(values, expected()["pressure"])

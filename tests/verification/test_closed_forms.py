@@ -49,7 +49,7 @@ def difference(field: Field, points: np.ndarray, step: float = 1e-2) -> np.ndarr
 def test_equilibrium_and_compatibility(name: str) -> None:
     """No body force, and a harmonic mean stress: together with Beltrami's cross terms this is elasticity."""
     field = FIELDS[name]
-    points = np.random.default_rng(1).uniform(-2, 2, (3, 20))
+    points = np.random.default_rng(1).uniform(-2, 2, (3, 6))
     points[2] = 0.3 + np.abs(points[2])
     gradient = difference(field, points)
     assert np.abs(np.einsum("kkjn->jn", gradient)).max() < 1e-7

@@ -164,7 +164,8 @@ SLOW = ("limits", "quarter space", "consistency")
 
 
 @pytest.mark.parametrize(
-    "group", [pytest.param(group, marks=[pytest.mark.slow] * (group in SLOW)) for group in EVERY_WAY]
+    "group",
+    [pytest.param(group, marks=pytest.mark.slow if group in SLOW else pytest.mark.system) for group in EVERY_WAY],
 )
 def test_every_check_of_a_group_fails_in_one_way_or_another(group: str) -> None:
     caught: dict[tuple[str, str], bool] = {}
@@ -189,6 +190,7 @@ def test_checks_of_the_quadratures_fail_when_they_are_coarse() -> None:
         assert all(failed(convergence.quadrature_checks()).values())
 
 
+@pytest.mark.system
 def test_checks_of_convergence_fail_when_refinement_does_nothing() -> None:
     with switched_off(grid_without_effect):
         assert all(failed(convergence.stress_grid().checks()).values())

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import InvalidInputError
+from contactstudy.verification import closed_forms as ref
 from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES
 from contactstudy.verification.stored import CONTACT_FILE, STRESS_FILE, data_file, load_contact, load_stress
 
@@ -30,16 +31,37 @@ def test_stored_contacts(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", LOAD_CASES)
-def test_stored_stresses_belong_to_the_cases(name: str) -> None:
+def test_stored_case(name: str) -> None:
+    """Free ends, symmetry, and an error estimate that is worth comparing with."""
     reference = load_stress(name)
-    case, stated = reference.case, reference.stress.attrs
-    assert [stated[key] for key in ("length", "poisson", "friction", "g")] == [
-        case.length,
-        case.poisson,
-        case.friction,
-        str(case.g),
-    ]
-    assert reference.median_error < reference.error < 5e-4
+    stress, case = reference.stress, reference.case
+    assert reference.error < 5e-4
+    assert reference.median_error < 1e-5
+    stored = [stress.attrs[name] for name in ("length", "poisson", "friction", "g")]
+    assert stored == [case.length, case.poisson, case.friction, str(case.g)]
+    for component in ("sigma_xx", "tau_xy", "tau_xz"):
+        for x in (0, case.length):
+            assert np.abs(stress[component].sel(x=x)).max() < 2 * reference.error, (component, x)
+    if case.friction == 0:
+        assert np.abs(stress[["tau_xy", "tau_yz"]].sel(y=0).to_array()).max() < 1e-6
+    if case.symmetric:
+        for component in ref.COMPONENTS:
+            sign = -1 if component in ("tau_xy", "tau_xz") else 1
+            ends = stress[component].sel(x=case.length) - sign * stress[component].sel(x=0)
+            assert np.abs(ends).max() < reference.error, component
+    top = stress.sigma_zz.sel(z=0.05) + case.pressure(stress.x.values, stress.y.values)
+    assert np.abs(top).max() < 0.03
+
+
+def test_stored_friction_is_a_superposition() -> None:
+    """What is even in y of the sliding case is the frictionless one (and odd, of `tau_xy` and `tau_yz`)."""
+    plain, sliding = load_stress("full").stress, load_stress("full_sliding").stress
+    mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
+    for component in ref.COMPONENTS:
+        sign = -1 if component in ("tau_xy", "tau_yz") else 1
+        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=plain.y)
+        assert np.abs(even - plain[component]).max() < 1e-5, component
+    assert np.abs(sliding.tau_xy).max() > 0.05
 
 
 @pytest.mark.parametrize("load", [load_stress, load_contact])

@@ -1,4 +1,4 @@
-"""The finite-element reference checked where exact solutions exist, and the stored stresses for their sense."""
+"""The finite-element reference checked where exact solutions exist."""
 
 from __future__ import annotations
 
@@ -9,10 +9,7 @@ import pytest
 
 from contactstudy.verification import closed_forms as ref
 from contactstudy.verification import load_cases as fe
-from contactstudy.verification.stored import STRESS_FILE, data_file, load_stress
-
-pytest.importorskip("skfem")
-superpose = pytest.importorskip("tests.finite_elements.superpose")
+from tests.finite_elements import contact, superpose
 
 COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
 BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
@@ -29,9 +26,8 @@ def test_meshes_contain_the_points_where_loads_begin() -> None:
             assert np.abs(edges - mark).min() < 1e-12
 
 
-@pytest.mark.parametrize(
-    ("length", "poisson", "tolerance"), [(2.5, 0.0, 2e-4), pytest.param(0.05, 0.3, 5e-4, marks=pytest.mark.slow)]
-)
+@pytest.mark.slow
+@pytest.mark.parametrize(("length", "poisson", "tolerance"), [(2.5, 0.0, 2e-4), (0.05, 0.3, 5e-4)])
 def test_plane_problems(length: float, poisson: float, tolerance: float) -> None:
     """Uniform from end to end: a body without lateral contraction is in plane strain, a thin plate in plane stress.
 
@@ -76,47 +72,9 @@ def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
         assert found[name] - exact == pytest.approx(0, abs=1e-3 if shear else 5e-3), name
 
 
-@pytest.mark.parametrize("name", fe.LOAD_CASES)
-def test_stored_case(name: str) -> None:
-    """Free ends, symmetry, and an error estimate that is worth comparing with."""
-    reference = load_stress(name)
-    stress, case = reference.stress, reference.case
-    assert reference.error < 5e-4
-    assert reference.median_error < 1e-5
-    stored = [stress.attrs[name] for name in ("length", "poisson", "friction", "g")]
-    assert stored == [case.length, case.poisson, case.friction, str(case.g)]
-    for component in ("sigma_xx", "tau_xy", "tau_xz"):
-        for x in (0, case.length):
-            assert np.abs(stress[component].sel(x=x)).max() < 2 * reference.error, (component, x)
-    if case.friction == 0:
-        assert np.abs(stress[["tau_xy", "tau_yz"]].sel(y=0).to_array()).max() < 1e-6
-    if case.symmetric:
-        for component in ref.COMPONENTS:
-            sign = -1 if component in ("tau_xy", "tau_xz") else 1
-            ends = stress[component].sel(x=case.length) - sign * stress[component].sel(x=0)
-            assert np.abs(ends).max() < reference.error, component
-    top = stress.sigma_zz.sel(z=0.05) + case.pressure(stress.x.values, stress.y.values)
-    assert np.abs(top).max() < 0.03
-
-
-def test_stored_friction_is_a_superposition() -> None:
-    """What is even in y of the sliding case is the frictionless one (and odd, of `tau_xy` and `tau_yz`)."""
-    plain, sliding = load_stress("full").stress, load_stress("full_sliding").stress
-    mirrored = sliding.assign_coords(y=-sliding.y).sortby("y")
-    for component in ref.COMPONENTS:
-        sign = -1 if component in ("tau_xy", "tau_yz") else 1
-        even = 0.5 * (sliding[component] + sign * mirrored[component]).sel(y=plain.y)
-        assert np.abs(even - plain[component]).max() < 1e-5, component
-    assert np.abs(sliding.tau_xy).max() > 0.05
-
-
-def test_stored_file_is_small() -> None:
-    assert data_file(STRESS_FILE).stat().st_size < 300_000
-
-
+@pytest.mark.slow
 def test_contact_of_a_body_without_lateral_contraction_is_the_line_contact() -> None:
     """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
-    contact = pytest.importorskip("tests.finite_elements.contact")
     case = fe.ContactCase(2.0, 0.0, poisson=0.0)
     flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))
     found = contact.solve(case, flexible, 1 / 12, 1.25)

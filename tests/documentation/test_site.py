@@ -6,27 +6,13 @@ import re
 import runpy
 from pathlib import Path
 
-import pytest
-from matplotlib import pyplot
-
 from tests.measured import ROWS
 
-ROOT = Path(__file__).resolve().parents[1]
-PAGES = sorted(path for path in (ROOT / "docs").rglob("*.md") if "```python\n" in path.read_text())
+ROOT = Path(__file__).resolve().parents[2]
 
 
 def blocks(path: Path) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```", path.read_text(), re.DOTALL | re.MULTILINE)
-
-
-@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
-def test_the_code_of_a_page_runs_from_top_to_bottom(page: Path, tmp_path: Path, monkeypatch) -> None:
-    pyplot.switch_backend("Agg")
-    monkeypatch.chdir(tmp_path)
-    names: dict[str, object] = {}
-    for block in blocks(page):
-        exec(compile(block, page.name, "exec"), names)
-    pyplot.close("all")
 
 
 def test_the_accuracy_table_is_what_the_command_prints() -> None:

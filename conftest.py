@@ -1,0 +1,23 @@
+"""How tests are run: plugins, hypothesis' profiles, and what the environment must not change."""
+
+from __future__ import annotations
+
+import os
+
+from hypothesis import settings
+
+pytest_plugins = ("tests.no_silent_skip", "tests.documentation.blocks", "tests.documentation.notebooks")
+
+# Tests run side by side, one on each core: a second thread of BLAS would only wait for a core.
+for library in ("OMP", "OPENBLAS", "MKL", "PYFFTW"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+# Figures are drawn to files, with and without a screen.
+os.environ.setdefault("MPLBACKEND", "Agg")
+# dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which threads undo for one another.
+os.environ.setdefault("DASK_SCHEDULER", "synchronous")
+
+# Times depend on the machine, so no example has a deadline. What lands must not hang on chance: the examples of the
+# short profile are always the same in CI, the search of `thorough` (`--hypothesis-profile=thorough`) is never.
+settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
+settings.register_profile("thorough", max_examples=200, deadline=None)
+settings.load_profile("short")

@@ -1,0 +1,125 @@
+"""Python and TOML blocks of README.md and of every page in docs as tests.
+
+The blocks of a page run in their order and share their names. They find
+
+* an empty working folder, with the study files of `studies` and a measured profile, `roller_7.csv`;
+* `result`, a small solved case;
+* after a TOML block that is a whole study: its file, its results in `results/NAME`, by the stand-in solver, and the
+  `path` of one of its cases. Other TOML blocks are parsed.
+
+A block that cannot run here has the reason in the page, on the line before it::
+
+    <!-- skip: next "needs a SLURM cluster" -->
+"""
+
+from __future__ import annotations
+
+import functools
+import os
+import re
+import shutil
+import tempfile
+import tomllib
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from sybil import Document, Example, Region, Sybil
+from sybil.evaluators.python import PythonEvaluator
+from sybil.integration.pytest import SybilItem
+from sybil.parsers.markdown import SkipParser
+from sybil.parsers.markdown.lexers import DirectiveInHTMLCommentLexer, RawFencedCodeBlockLexer
+
+from contactstudy.study import Study, run_study
+from tests.documentation.pages import ROOT
+from tests.solved_case import solved_case
+from tests.stand_in_solver import solve_fake
+
+WHOLE_STUDY = {"name", "base", "sweep"}
+"""Keys by which a TOML block is known to be a study rather than a part of one."""
+
+
+class Fences:
+    """Parser of fenced blocks of one language, whatever else their first line says (`title="..."`, `{.python ...}`)."""
+
+    def __init__(self, language: str, evaluator: Any) -> None:
+        first_line = rf"[ \t]*\{{?[ \t]*\.?{language}\b[^\n]*$\n"
+        self._lexer = RawFencedCodeBlockLexer(re.compile(first_line, re.MULTILINE))
+        self._evaluator = evaluator
+
+    def __call__(self, document: Document) -> Iterable[Region]:
+        for region in self._lexer(document):
+            region.parsed = region.lexemes["source"]
+            region.evaluator = self._evaluator
+            yield region
+
+
+class ReasonedSkips(SkipParser):
+    """Skips that say why: one without a reason would count as passed."""
+
+    def __call__(self, document: Document) -> Iterable[Region]:
+        for lexed in DirectiveInHTMLCommentLexer(self.directive)(document):
+            if not re.fullmatch(r'next ".+"\s*', lexed.lexemes["arguments"] or ""):
+                line, _ = document.line_column(lexed.start).removeprefix("line ").split(",", 1)
+                raise ValueError(f'{document.path}:{line}: write <!-- skip: next "reason" -->')
+        yield from super().__call__(document)
+
+
+def run_toml(example: Example) -> None:
+    """Parse a block, and run it if it is a whole study."""
+    content = tomllib.loads(example.parsed)
+    if not content.keys() >= WHOLE_STUDY:
+        return
+    study = Study.from_mapping(content)
+    Path("studies", f"{study.name}.toml").write_text(example.parsed)
+    report = run_study(study, Path("results", study.name), workers=0, solver=solve_fake, progress=False)
+    assert set(report.counts) == {"ok"}, report
+    example.namespace["path"] = report.files[0]
+
+
+@functools.cache
+def furnished() -> Path:
+    """Folder whose content every page finds."""
+    folder = Path(tempfile.mkdtemp(prefix="contactstudy-page-"))
+    (folder / "studies").mkdir()
+    for study in (ROOT / "studies").glob("*.toml"):
+        shutil.copy(study, folder / "studies")
+    x = np.linspace(0, 10, 201)
+    rows = (f"{at:.3f}, {0.2 * (at - 4.9) ** 2:.5f}" for at in x)
+    (folder / "roller_7.csv").write_text("\n".join(["x [mm], drop [um]", *rows]))
+    return folder
+
+
+def begin_page(names: dict[str, Any]) -> None:
+    """Go to a copy of the furnished folder."""
+    folder = tempfile.mkdtemp(prefix="contactstudy-page-")
+    shutil.copytree(furnished(), folder, dirs_exist_ok=True)
+    names |= {"result": solved_case(), "_before": os.getcwd(), "_folder": folder}
+    os.chdir(folder)
+
+
+def end_page(names: dict[str, Any]) -> None:
+    """Leave it and clean up."""
+    from matplotlib import pyplot
+
+    pyplot.close("all")
+    os.chdir(names["_before"])
+    shutil.rmtree(names["_folder"])
+
+
+pytest_collect_file = Sybil(
+    parsers=[Fences("python", PythonEvaluator()), Fences("toml", run_toml), ReasonedSkips()],
+    path=str(ROOT),
+    patterns=["docs/*.md", "docs/**/*.md"],
+    filenames=["README.md"],
+    setup=begin_page,
+    teardown=end_page,
+).pytest()
+
+
+def pytest_itemcollected(item: pytest.Item) -> None:
+    """Put pages into the system tier."""
+    if isinstance(item, SybilItem):
+        item.add_marker(pytest.mark.system)

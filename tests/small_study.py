@@ -1,0 +1,41 @@
+"""A study of four small cases, for every test that needs one."""
+
+from __future__ import annotations
+
+import json
+
+from contactstudy.study import Study
+from contactstudy.study.identity import case_id
+
+BASE = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 0.5e-3,
+    "max_pressure": 1.5e9,
+    "cells_x": 4,
+    "cells_y": 8,
+    "field_y_over_a": [0.0],
+    "field_x_over_a": [0.0, 1.0, 2.0],
+    "field_z_over_a": [0.0, 0.5, 1.0],
+}
+
+
+def small_study(name: str = "small", **changes) -> Study:
+    """Four cases, or what `changes` make of it."""
+    content = {"base": BASE, "sweep": {"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]}} | changes
+    return Study(name=name, **content)
+
+
+def identity(**changes) -> str:
+    """Identity of a case of the small study."""
+    return case_id(BASE | changes)
+
+
+def as_toml(study: Study) -> str:
+    """A study as a TOML file; JSON's numbers, texts and lists are TOML as well."""
+    lines = [f"name = {json.dumps(study.name)}", f"level = {json.dumps(study.level)}"]
+    for part in ("base", "sweep"):
+        lines.append(f"[{part}]")
+        lines += [f"{key} = {json.dumps(value)}" for key, value in getattr(study, part).items()]
+    return "\n".join(lines) + "\n"

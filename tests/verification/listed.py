@@ -1,0 +1,51 @@
+"""The list of the suite's checks, by which tests know their names before any is made.
+
+After checks were added or renamed, ``python -m tests.verification.listed`` writes it anew.
+"""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import NamedTuple
+
+from contactstudy.verification import Verification, suite
+
+LIST = Path(__file__).with_name("checks.csv")
+
+
+class Listed(NamedTuple):
+    """One check: the first level that has it, its group, and its name."""
+
+    level: str
+    group: str
+    case: str
+    quantity: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.case}: {self.quantity}"
+
+
+def names(verification: Verification) -> list[tuple[str, str, str]]:
+    """Group, case and quantity of every check."""
+    return [(group, check.case, check.quantity) for group, found in verification.groups.items() for check in found]
+
+
+def read() -> list[Listed]:
+    """All listed checks."""
+    with LIST.open(newline="") as file:
+        return [Listed(**row) for row in csv.DictReader(file)]
+
+
+def write() -> None:
+    """Run the suite and list its checks."""
+    quick, full = (names(suite.run(level)) for level in suite.LEVELS)
+    with LIST.open("w", newline="") as file:
+        writer = csv.writer(file, lineterminator="\n")
+        writer.writerow(Listed._fields)
+        writer.writerows(("quick" if key in quick else "full", *key) for key in full)
+
+
+if __name__ == "__main__":
+    write()

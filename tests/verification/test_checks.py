@@ -1,0 +1,82 @@
+"""The physics: every check of `contactstudy verify` is a test under its own name."""
+
+from __future__ import annotations
+
+import functools
+from pathlib import Path
+
+import pytest
+
+from contactstudy.verification import Verification, report, suite
+from contactstudy.verification.check import Check
+from tests.verification import listed
+
+LISTED = listed.read()
+DOCUMENTATION = Path(__file__).resolve().parents[2] / "docs"
+TIGHTER = {
+    "six stresses / p0, z >= 0.1a, largest difference": 1e-3,
+    "six stresses / p0, z >= 0.1a, median difference": 3e-6,
+    "traction on the ends / p0, z = 0.02a, 0.05a": 1e-5,
+    "traction on the ends / p0, z >= 0.1a": 1e-6,
+}
+"""Bounds near what is reached, where the suite states what is promised."""
+
+
+@functools.cache
+def quick(group: str) -> dict[tuple[str, str], Check]:
+    """Checks of a group at the quick level."""
+    checks = list(suite.GROUPS[group](False))
+    found = {(check.case, check.quantity): check for check in checks}
+    assert len(found) == len(checks), "two checks have one name"
+    return found
+
+
+@functools.cache
+def full() -> Verification:
+    """The full level."""
+    return suite.run("full")
+
+
+def verdict(check: Check) -> None:
+    """Fail with the line that the command prints."""
+    assert check.passed, report.line(check)
+    assert check.source
+    assert abs(check.difference) <= TIGHTER.get(check.quantity, check.tolerance), report.line(check)
+
+
+def parameters(level: str) -> list[object]:
+    """Checks of a level under their names."""
+    return [pytest.param(entry, id=entry.name) for entry in LISTED if entry.level == level]
+
+
+@pytest.mark.parametrize("entry", parameters("quick"))
+def test_check(entry: listed.Listed) -> None:
+    verdict(quick(entry.group)[entry.case, entry.quantity])
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("entry", parameters("full"))
+def test_check_of_the_full_level(entry: listed.Listed) -> None:
+    (check,) = [c for c in full().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)]
+    verdict(check)
+
+
+@pytest.mark.parametrize("group", suite.GROUPS)
+def test_the_list_is_complete(group: str) -> None:
+    entries = [(entry.case, entry.quantity) for entry in LISTED if (entry.level, entry.group) == ("quick", group)]
+    assert entries
+    assert sorted(entries) == sorted(quick(group))
+
+
+@pytest.mark.slow
+def test_the_list_of_the_full_level_is_complete() -> None:
+    assert sorted(entry[1:] for entry in LISTED) == sorted(listed.names(full()))
+    data = full().to_dataset()
+    assert bool(data["passed"].all())
+    assert data.sizes["check"] == len(LISTED)
+    assert data.sizes["entry"] > 50
+
+
+def test_the_documentation_lists_every_check() -> None:
+    pages = "\n".join(page.read_text() for page in DOCUMENTATION.rglob("*.md"))
+    assert [entry.name for entry in LISTED if entry.name.replace("|", r"\|") not in pages] == []
