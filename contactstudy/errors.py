@@ -52,5 +52,9 @@ class WindowError(ContactStudyError):
     """The contact reaches the edge of the window in y, so the window is too narrow for the load."""
 
 
+class Terminated(KeyboardInterrupt):
+    """A run was asked to end by SIGTERM; everything that Ctrl-C does happens as well."""
+
+
 class ConvergenceWarning(UserWarning):
     """The contact iteration stopped before its tolerance; the result says ``converged = False``."""

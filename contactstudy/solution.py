@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
-
 import numpy as np
 import xarray as xr
 
@@ -13,7 +11,7 @@ from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import choose_grid
+from contactstudy.case.gridding import choose_grid, first_that_holds, widening_grids
 from contactstudy.case.roughness import heights_on
 from contactstudy.contact.solve import solve_contact
 from contactstudy.errors import InvalidInputError, WindowError
@@ -28,10 +26,6 @@ LEAST_CELLS = 8
 
 LEAST_CONTACT = 1.0
 """Length over the Hertz half-width that a tilted roller has to touch on, if it touches at its end."""
-
-WINDOWS = (2.0, 3.0, 5.0, 8.0)
-"""Half-widths of the window over that of the Hertz contact, tried in turn where no grid is given: a short or a tilted
-contact is wider than the line contact of the same load."""
 
 RESIDUAL_DEPTHS = (0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 RESIDUAL_POSITIONS = (0.0, 0.5, 0.9, 1.1)
@@ -138,16 +132,11 @@ def _with_room(case: Case, roughness: xr.DataArray | None, tolerance: float) -> 
     Rough surfaces are known where they were measured or made: their window is the first.
     """
 
-    def within(window: float) -> tuple[Grid, xr.DataArray, xr.Dataset]:
-        grid = choose_grid(case, window=window, margin=2 * window)
+    def within(grid: Grid) -> tuple[Grid, xr.DataArray, xr.Dataset]:
         gap = _initial_gap(case, grid, roughness)
         return grid, gap, _contact(case, gap, tolerance)
 
-    *narrower, widest = WINDOWS if roughness is None else WINDOWS[:1]
-    for window in narrower:
-        with contextlib.suppress(WindowError):
-            return within(window)
-    return within(widest)
+    return first_that_holds(widening_grids(case) if roughness is None else [choose_grid(case)], within)
 
 
 def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> xr.DataArray:

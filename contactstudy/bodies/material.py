@@ -51,3 +51,17 @@ class Material:
     def plane_strain_modulus(self) -> float:
         """Plane-strain modulus ``E* = E / (1 - nu**2)``, Pa: the contact modulus against a rigid roller."""
         return self.young / (1 - self.poisson**2)
+
+
+def contact_modulus(body: Material, roller: Material | None) -> float:
+    """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``; None stands for a rigid roller.
+
+    Examples
+    --------
+    >>> steel = Material(young=210e9, poisson=0.3)
+    >>> contact_modulus(steel, None) / contact_modulus(steel, steel)
+    2.0
+    """
+    if roller is None:
+        return body.plane_strain_modulus
+    return 1 / (1 / body.plane_strain_modulus + 1 / roller.plane_strain_modulus)

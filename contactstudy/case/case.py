@@ -10,6 +10,7 @@ from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -151,10 +152,7 @@ class Case:
     @property
     def modulus(self) -> float:
         """Contact modulus ``E*``, Pa: ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, the roller's 0 if rigid."""
-        own = self.body.material.plane_strain_modulus
-        if self.roller.material is None:
-            return own
-        return 1 / (1 / own + 1 / self.roller.material.plane_strain_modulus)
+        return contact_modulus(self.body.material, self.roller.material)
 
     @property
     def counterbody(self) -> Counterbody | None:
