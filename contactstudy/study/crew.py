@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from distributed import Client, Future
 
 # After how long without a worker to say that this is why nothing happens.
-SILENT_SECONDS = 3.0
+SILENT_SECONDS = 10.0
 
 INTRODUCTION = f"{__name__}:introduce"
 

@@ -21,7 +21,8 @@ from contactstudy.study.errors import StudyFileError
 from contactstudy.study.work import Job, Record, Solver, perform
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, LocalCluster, WorkerPlugin
+    from distributed import Client, Future, LocalCluster
+    from tornado.ioloop import IOLoop
 
 # How often to look for workers that came or went while no case finishes.
 POLL_SECONDS = 0.5
@@ -129,9 +130,8 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
             yield client
         return
     import dask
-    from distributed import Client, LocalCluster
+    from distributed import Client
 
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     settings = {
         **SHORT_LOGS,
         "distributed.scheduler.allowed-failures": 0,
@@ -139,27 +139,50 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         "distributed.worker.daemon": True,
         "distributed.nanny.pre-spawn-environ": WORKER_ENVIRONMENT,
     }
-    # A dying worker is a failed case with a reason of its own; the libraries' pages of log would bury it.
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     with (
         dask.config.set(settings),
-        LocalCluster(
-            n_workers=min(workers or cores, jobs),
+        _deaf_loop() as loop,
+        _started(min(workers or cores, jobs), loop) as cluster,
+        Client(cluster) as client,
+    ):
+        try:
+            yield client
+        except BaseException:
+            _kill(cluster)
+            raise
+
+
+def _started(workers: int, loop: IOLoop) -> LocalCluster:
+    """Return a cluster of local processes."""
+    from distributed import LocalCluster
+
+    older = set(_clusters())
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            loop=loop,
             processes=True,
             threads_per_worker=1,
             dashboard_address=None,
             # Without an address of its own the scheduler insists on one port, and two studies at once collide.
             scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             memory_limit=0,
+            # A dying worker is a failed case with a reason of its own; pages of log would bury it.
             silence_logs=logging.CRITICAL,
-        ) as cluster,
-        Client(cluster) as client,
-    ):
-        client.register_plugin(_interrupt_plugin())
-        try:
-            yield client
-        except BaseException:
-            _kill(cluster)
-            raise
+        )
+    except BaseException:
+        # At the end of the process dask would close the cluster that has only begun to start, and fail.
+        for cluster in set(_clusters()) - older:
+            cluster.shutdown_on_close = False
+        raise
+
+
+def _clusters() -> list[Any]:
+    """Clusters of this process that dask knows."""
+    from distributed import SpecCluster
+
+    return list(getattr(SpecCluster, "_instances", ()))
 
 
 @contextlib.contextmanager
@@ -197,15 +220,30 @@ def _kill(cluster: LocalCluster) -> None:
             os.kill(nanny.pid, signal.SIGKILL)
 
 
-def _interrupt_plugin() -> WorkerPlugin:
-    """Leave Ctrl-C, which a terminal sends to the workers as well, to the process that started them."""
-    from distributed import WorkerPlugin
+@contextlib.contextmanager
+def _deaf_loop() -> Iterator[IOLoop]:
+    """Event loop in a thread that Ctrl-C does not reach, nor the processes that are started from it.
 
-    class LeaveInterrupts(WorkerPlugin):
-        def setup(self, worker: Any) -> None:
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
+    A terminal sends Ctrl-C to all of them; only the process that was called is to deal with it.
+    """
+    from multiprocessing import resource_tracker
 
-    return LeaveInterrupts()
+    from distributed.utils import LoopRunner
+
+    resource_tracker.ensure_running()  # otherwise started with the first process, which it would make hear again
+    runner = LoopRunner()
+    if not hasattr(signal, "pthread_sigmask"):  # not on Windows
+        runner.start()
+    else:
+        former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            runner.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, former)
+    try:
+        yield runner.loop
+    finally:
+        runner.stop()
 
 
 def _drive(client: Client, crew: Crew, jobs: list[Job], solver: Solver | None) -> Generator[Record, None, None]:

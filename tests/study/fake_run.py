@@ -6,4 +6,4 @@ from contactstudy.cli import main
 from tests.study.fakes import solve_slowly
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:], solver=solve_slowly))
+    sys.exit(main(solver=solve_slowly))
