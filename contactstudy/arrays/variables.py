@@ -95,6 +95,9 @@ def describe(dataset: xr.Dataset, title: str) -> xr.Dataset:
                 "long_name": specification.long_name,
                 **variable.attrs,
             }
+    for name in described.coords:
+        # By CF a coordinate has no missing values, and so no mark for them.
+        described[name].encoding["_FillValue"] = None
     described.attrs = {
         "Conventions": "CF-1.11",
         "title": title,

@@ -79,20 +79,20 @@ def choose_grid(
         min(high, stop + margin_x) if np.isinf(high) else high,
     )
     least = [
-        max(4, int(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
+        max(4.0, float(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
         for name, span, cells in (
             ("cells_x", x_range[1] - x_range[0], cells_x),
             ("cells_y", 2 * half_window, cells_y),
         )
     ]
-    if least[0] * least[1] > MOST_CELLS:
+    if not least[0] * least[1] <= MOST_CELLS:
         raise InvalidInputError(
             "cells_x, cells_y",
             (cells_x, cells_y),
             f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
             f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
         )
-    counts = [next_fast_len(count, real=True) for count in least]
+    counts = [next_fast_len(int(count), real=True) for count in least]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
         while candidates[-1] < MOST_EXTRA * counts[0]:

@@ -21,10 +21,8 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
 from contactstudy.errors import InvalidInputError
 from contactstudy.solution import solve
+from contactstudy.study.numbers import number, rounded
 from contactstudy.study.profile_kinds import profile_table
-
-# Significant digits of a number in a study: more would tell apart values that are the same.
-DIGITS = 12
 
 # Most points that a table {start, stop, count} may ask for: a wrong digit asks for many more.
 MOST_POINTS = 100_000
@@ -35,22 +33,6 @@ BODIES = ("finite-length", "quarter-space", "half-space")
 ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
 
 Check = Callable[[str, object], Any]
-
-
-def rounded(value: float) -> float:
-    """Return `value` to :data:`DIGITS` significant digits, with one zero instead of two.
-
-    Examples
-    --------
-    >>> rounded(0.1 + 0.2), rounded(-0.0)
-    (0.3, 0.0)
-    """
-    return float(f"{value:.{DIGITS}g}") + 0.0
-
-
-def number(name: str, value: object) -> float:
-    """Return a finite number, rounded."""
-    return rounded(checks.finite(name, value))
 
 
 def flag(name: str, value: object) -> bool:
@@ -101,7 +83,7 @@ def points(name: str, value: object) -> list[float]:
         listed = np.linspace(start, stop, count)
     else:
         listed = checks.coordinates(name, value, "half-widths a")
-    return [rounded(float(point)) for point in listed]
+    return [number(name, point) for point in listed.tolist()]
 
 
 @dataclass(frozen=True)

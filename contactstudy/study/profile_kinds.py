@@ -16,6 +16,7 @@ from typing import Any, Protocol
 from contactstudy import checks, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
+from contactstudy.study.numbers import number
 
 Table = dict[str, Any]
 
@@ -90,7 +91,7 @@ class Numbers:
         """Check that the keys are fields and the values numbers."""
         defaults = {**self._defaults, "design_pressure": None} if self.designed else self._defaults
         _only(table, list(defaults))
-        given = {key: checks.finite(f"profile.{key}", value) for key, value in table.items() if value is not None}
+        given = {key: number(f"profile.{key}", value) for key, value in table.items() if value is not None}
         return {key: value for key, value in given.items() if value != defaults[key]}
 
     def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
@@ -143,7 +144,7 @@ class MeasuredPoints:
                 "thin the points out: cells of the contact are micrometres wide",
             )
         if values.get("largest_spike") is not None:
-            result["largest_spike"] = checks.finite("profile.largest_spike", values["largest_spike"])
+            result["largest_spike"] = number("profile.largest_spike", values["largest_spike"])
         return result
 
     def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
