@@ -48,6 +48,7 @@ Dask's own setting returns it to the system at once, which made cases twice as s
 
 GONE = "the dask scheduler has gone away or was restarted; finished cases are kept, run again to go on"
 CLOSE_SECONDS = 2.0
+NOISY = ("distributed", "tornado", "asyncio")
 
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
 """Dask keeps its last thousands of messages, jobs and records in them, for its developers: 20 kB for every case."""
@@ -187,15 +188,12 @@ def _clusters() -> list[Any]:
 
 @contextlib.contextmanager
 def _client_of(scheduler: str) -> Iterator[Client]:
-    """Client of a scheduler that runs already; its going away is an error with a reason instead of dask's log."""
+    """Client of a scheduler that runs already."""
     import dask
     from distributed import Client
     from distributed.comm.core import CommClosedError
 
-    log = logging.getLogger("distributed")
-    former = log.level
-    log.setLevel(logging.CRITICAL)
-    try:
+    with _silence():
         try:
             with dask.config.set(SHORT_LOGS):
                 client = Client(scheduler, timeout=START_SECONDS)
@@ -208,8 +206,20 @@ def _client_of(scheduler: str) -> Iterator[Client]:
         finally:
             with contextlib.suppress(Exception):
                 client.close(timeout=CLOSE_SECONDS)
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep the libraries' logs from the screen: what goes wrong is an error with a reason here."""
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] in NOISY]
+    former = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    try:
+        yield
     finally:
-        log.setLevel(former)
+        for name, level in former.items():
+            logging.getLogger(name).setLevel(level)
 
 
 def _kill(cluster: LocalCluster) -> None:
