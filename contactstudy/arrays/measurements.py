@@ -44,7 +44,7 @@ COMMENT = "#"
 # Of a file with measurements; a height map of ten million points has as many.
 MOST_BYTES = 500_000_000
 
-NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+\.?\d*|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
+NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
 
 # What a message quotes of a file, which may be a foreign one: names of columns, and little else.
 NAME = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)

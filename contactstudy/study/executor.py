@@ -142,6 +142,7 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
     }
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     with (
+        _silence(),
         dask.config.set(settings),
         _deaf_loop() as loop,
         _started(min(workers or cores, jobs), loop) as cluster,

@@ -1,5 +1,6 @@
 """Runs that are really killed."""
 
+import contextlib
 import os
 import random
 import signal
@@ -58,6 +59,25 @@ def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, 
     assert 2 <= done < 20
     report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (20 - done, {"ok": 20})
+
+
+@pytest.mark.parametrize("begun", [True, False])
+def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
+    """Cases of a minute, and eight times Ctrl-C, which a terminal sends to the workers as well; also while they start."""
+    folder = tmp_path / "out"
+    process = start_run(large, folder, "--workers", "2", seconds=0.5 if begun else 60.0)
+    wait_for(lambda: finished(folder) >= 1 if begun else (folder / "run.log").exists())
+    began = time.monotonic()
+    for _ in range(8):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGINT)
+        time.sleep(0.1)
+    _, errors = process.communicate(timeout=60)
+    assert process.returncode == 130, errors
+    assert time.monotonic() - began < 10  # a second; dask's own way takes twelve
+    assert "Traceback" not in errors
+    assert "interrupted: ending the workers ..." in errors
+    assert not (folder / "run.lock").exists()
 
 
 def test_a_second_run_is_refused_while_the_first_goes_on(large, tmp_path):
