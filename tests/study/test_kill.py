@@ -63,7 +63,7 @@ def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, 
 
 @pytest.mark.parametrize("begun", [True, False])
 def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
-    """Cases of a minute, and eight times Ctrl-C, which a terminal sends to the workers as well; also while they start."""
+    """Eight times Ctrl-C, which a terminal sends to the workers as well: while they solve, and while they start."""
     folder = tmp_path / "out"
     process = start_run(large, folder, "--workers", "2", seconds=0.5 if begun else 60.0)
     wait_for(lambda: finished(folder) >= 1 if begun else (folder / "run.log").exists())
