@@ -106,6 +106,8 @@ class Parameter:
         Default of a parameter without a taker; None: there is none, or it may be left out.
     absent : str
         For the documentation: what it is to leave out a parameter without a default.
+    note : str
+        For the documentation: what to know beside the meaning.
     """
 
     name: str
@@ -115,6 +117,7 @@ class Parameter:
     taker: Callable[..., Any] | None = None
     fallback: Any = None
     absent: str = ""
+    note: str = ""
 
     @cached_property
     def default(self) -> Any:
@@ -126,8 +129,23 @@ class Parameter:
 
 
 _WITH_CASE = (
-    Parameter("body", one_of(BODIES), "", "kind of elastic body", fallback=BODIES[0]),
-    Parameter("model", one_of(MODELS), "", "how free ends are treated: exactly, or by a quick fix", fallback=MODELS[0]),
+    Parameter(
+        "body",
+        one_of(BODIES),
+        "",
+        "kind of elastic body",
+        fallback=BODIES[0],
+        note="`finite-length`, `quarter-space` (one free end, at x = 0) or `half-space`",
+    ),
+    Parameter(
+        "model",
+        one_of(MODELS),
+        "",
+        "how free ends are treated",
+        fallback=MODELS[0],
+        note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
+        "only), the published scheme with one pair of images",
+    ),
     Parameter("young", number, "Pa", "Young's modulus of the body", absent="required"),
     Parameter("poisson", number, "1", "Poisson's ratio of the body", absent="required"),
     Parameter("radius", number, "m", "roller radius", absent="required"),
@@ -143,8 +161,9 @@ _WITH_CASE = (
         "e_over_a",
         number,
         "1",
-        "distance e of roller end and free end over Hertz half-width a; negative: the roller overhangs",
+        "distance e of roller end and free end over Hertz half-width a",
         absent="or `end_distance`",
+        note="negative: the roller overhangs",
     ),
     Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
     Parameter("max_pressure", number, "Pa", "peak pressure p0 of the Hertz line contact", Case, absent="or `load`"),
@@ -152,7 +171,12 @@ _WITH_CASE = (
     Parameter("friction", number, "1", "coefficient of friction", Case),
     Parameter("profile", profile, "", "roller profile", fallback={"kind": "cylinder"}),
     Parameter(
-        "roller_body", one_of(ROLLER_BODIES), "", "roller as a rigid shape or as an elastic body", fallback="rigid"
+        "roller_body",
+        one_of(ROLLER_BODIES),
+        "",
+        "roller as a rigid shape or as an elastic body",
+        fallback="rigid",
+        note="`rigid`; `finite-length`, with free ends; or `half-space`",
     ),
     Parameter("roller_young", number, "Pa", "Young's modulus of an elastic roller", absent="the body's"),
     Parameter("roller_poisson", number, "1", "Poisson's ratio of an elastic roller", absent="the body's"),
@@ -161,8 +185,9 @@ _WITH_CASE = (
         "load_offset",
         number,
         "m",
-        "where the load acts, from mid-length; the roller tilts until it balances",
+        "where the load acts, from mid-length",
         absent="the tilt is held",
+        note="the roller tilts until it balances",
     ),
     Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
 )
@@ -173,14 +198,22 @@ _WITH_SOLVER = (
         "window",
         number,
         "1",
-        "half-width of the window in y over a; the default grows where the contact needs more",
+        "half-width of the window in y over a",
         choose_grid,
+        note="the default is widened where the contact needs more; any other value is kept",
     ),
     Parameter("margin", number, "1", "distance from roller to grid edge over a, where the body goes on", choose_grid),
     Parameter("tolerance", number, "1", "tolerance of the contact iteration", solve),
     Parameter("error_estimate", flag, "1", "whether a contact on half the cells gives the discretisation error", solve),
     Parameter("stresses", flag, "1", "whether stresses are calculated", solve),
-    Parameter("field_x_over_a", points, "1", "stress points: x from the free end over a", absent="cell centres"),
+    Parameter(
+        "field_x_over_a",
+        points,
+        "1",
+        "stress points: x from the free end over a",
+        absent="cell centres",
+        note="a list, or `{start, stop, count}`",
+    ),
     Parameter("field_y_over_a", points, "1", "stress points: y over a", absent="cell centres"),
     Parameter("field_z_over_a", points, "1", "stress points: depth over a", absent="19 depths"),
 )
@@ -267,5 +300,6 @@ def documented() -> str:
     rows = ["| parameter | default | unit | meaning |", "|---|---|---|---|"]
     for name, entry in PARAMETERS.items():
         default = entry.absent if entry.default is None else f"`{_written(entry.default)}`"
-        rows.append(f"| `{name}` | {default} | {entry.units if entry.units != '1' else ''} | {entry.meaning} |")
+        meaning = f"{entry.meaning}; {entry.note}" if entry.note else entry.meaning
+        rows.append(f"| `{name}` | {default} | {entry.units if entry.units != '1' else ''} | {meaning} |")
     return "\n".join(rows)
