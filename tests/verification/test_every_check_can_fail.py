@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from contactstudy.contact import solve as contact
+from contactstudy.fields import stress, surface
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
 from contactstudy.cache import BoundedCache
-from contactstudy.contact import solve as contact
-from contactstudy.fields import stress, surface
 from contactstudy.kernels import centred
 from contactstudy.overlapping import problem
 from contactstudy.overlapping.equations import EquationSet
