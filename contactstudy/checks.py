@@ -26,10 +26,18 @@ def store(checked: object, **values: object) -> None:
         object.__setattr__(checked, name, value)
 
 
+def _float(value: Real) -> float:
+    """Return a real number as a float; one beyond the range of floats is infinite."""
+    try:
+        return float(value)
+    except OverflowError:
+        return np.inf
+
+
 def finite(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite real number."""
     suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(float(value)):
+    if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(_float(value)):
         raise InvalidInputError(name, value, f"a finite number{suffix}")
     return float(value)
 
@@ -37,7 +45,7 @@ def finite(name: str, value: object, unit: str = "") -> float:
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a positive finite number."""
     suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < float(value) < np.inf:
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < _float(value) < np.inf:
         raise InvalidInputError(name, value, f"a positive finite number{suffix}")
     return float(value)
 
@@ -45,7 +53,7 @@ def positive(name: str, value: object, unit: str = "") -> float:
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite number >= 0."""
     suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not 0 <= float(value) < np.inf:
+    if isinstance(value, bool) or not isinstance(value, Real) or not 0 <= _float(value) < np.inf:
         raise InvalidInputError(name, value, f"a finite number not below zero{suffix}")
     return float(value)
 
@@ -87,7 +95,7 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
     try:
         array = np.atleast_1d(np.asarray(values, dtype=np.float64))
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InvalidInputError(name, values, f"numbers ({unit})") from None
     if array.ndim != 1 or array.size == 0:
         raise InvalidInputError(name, values, f"a non-empty one-dimensional sequence ({unit})")

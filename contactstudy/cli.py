@@ -3,22 +3,24 @@
 from __future__ import annotations
 
 import argparse
+import os
 import signal
 import sys
-from collections import Counter
-from collections.abc import Sequence
+import threading
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
+
+from contactstudy.errors import ContactStudyError, Terminated
 
 if TYPE_CHECKING:
-    from contactstudy.study.folder import Entry
-    from contactstudy.study.plan import Plan
-    from contactstudy.study.run import RunReport
+    from contactstudy.study import RunReport, Study
     from contactstudy.study.work import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
-SHOWN = 20
-"""Longest list of cases on the screen; ``--all`` shows every one."""
+
+# Combinations from which on a study is planned only after a question, or with --yes.
+MANY_CASES = 100_000
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -26,7 +28,7 @@ def _parser() -> argparse.ArgumentParser:
         prog="contactstudy",
         description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
         epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
-        "130 after Ctrl-C, 143 after SIGTERM.",
+        "130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
     parser.add_argument("--version", action="store_true", help="show the version and end")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
@@ -43,10 +45,16 @@ def _parser() -> argparse.ArgumentParser:
     def parallel(added: argparse.ArgumentParser) -> None:
         added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
         added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        added.add_argument(
+            "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
+        )
         added.add_argument("--no-figure", action="store_true", help="draw no figure")
 
-    parallel(command("run", "Solve the cases of a study that are not solved yet.", takes_study=True))
+    run = command("run", "Solve the cases of a study that are not solved yet.", takes_study=True)
+    parallel(run)
     plan = command("plan", "Say what a run would do; solve nothing.", takes_study=True)
+    for added in (run, plan):
+        added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
     status = command("status", "Say what is done, failed, stale or missing.", takes_study=False)
     for added in (plan, status):
         added.add_argument("--all", action="store_true", help="list every case")
@@ -86,99 +94,95 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     """
     parser = _parser()
     options = parser.parse_args(arguments)
-    if options.version:
-        from contactstudy.arrays.variables import package_version
-
-        print(f"contactstudy {package_version()}")
-        return ALL_OK
-    if options.command is None:
-        parser.print_help()
-        return USAGE
-    from contactstudy.errors import ContactStudyError
-
+    actions = {
+        "run": _run,
+        "rerun": _rerun,
+        "plan": _plan,
+        "status": _status,
+        "collect": _collect,
+        "export": _export,
+        "verify": _verify,
+    }
     try:
-        actions = {
-            "run": _run,
-            "rerun": _rerun,
-            "plan": _plan,
-            "status": _status,
-            "collect": _collect,
-            "export": _export,
-            "verify": _verify,
-        }
-        return actions[options.command](options, solver)
+        if options.version:
+            from contactstudy.arrays.variables import package_version
+
+            print(f"contactstudy {package_version()}")
+            return ALL_OK
+        if options.command is None:
+            parser.print_help()
+            return USAGE
+        code = actions[options.command](options, solver)
+        sys.stdout.flush()
     except ContactStudyError as error:
         print(f"contactstudy: {error}", file=sys.stderr)
         return USAGE
     except KeyboardInterrupt as interrupt:
+        if arguments is None and threading.current_thread() is threading.main_thread():
+            signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
         print("contactstudy: interrupted; finished cases are kept, the same command goes on", file=sys.stderr)
-        terminated = type(interrupt).__name__ == "Terminated"
-        return 128 + (signal.SIGTERM if terminated else signal.SIGINT)
+        return 128 + (signal.SIGTERM if isinstance(interrupt, Terminated) else signal.SIGINT)
+    except BrokenPipeError:
+        # Python flushes the output once more at its end, and would complain.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 128 + signal.SIGPIPE
+    return code
+
+
+def _say(lines: Iterable[str]) -> None:
+    for line in lines:
+        print(line)
+
+
+def _study(options: argparse.Namespace) -> Study:
+    """Read a study, say how many cases it has, and make sure that so many are meant."""
+    from contactstudy.errors import InvalidInputError
+    from contactstudy.study import Study
+
+    study = Study.from_toml(options.study)
+    if study.size < MANY_CASES or options.yes:
+        return study
+    print(f"study {study.name}: {study.size} combinations", flush=True)
+    if not sys.stdin.isatty():
+        raise InvalidInputError("study", f"{study.size} combinations", f"fewer than {MANY_CASES}", "or say --yes")
+    if input("That many files will be made. Go on? [y/N] ").strip().lower() not in ("y", "yes"):
+        raise ContactStudyError("nothing done")
+    return study
+
+
+def _parallel(options: argparse.Namespace) -> dict[str, Any]:
+    """Where cases are to be solved, as arguments of `run_study`."""
+    given = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
+    return {name: value for name, value in given.items() if value is not None}
 
 
 def _run(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study import Study, run_study
+    from contactstudy.study import run_study
 
-    study = Study.from_toml(options.study)
-    report = run_study(study, options.out, workers=options.workers, scheduler=options.scheduler, solver=solver)
+    report = run_study(_study(options), options.out, solver=solver, **_parallel(options))
     return _report(report, figure=not options.no_figure)
 
 
 def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import rerun_study
 
-    report = rerun_study(options.folder, workers=options.workers, scheduler=options.scheduler, solver=solver)
+    report = rerun_study(options.folder, solver=solver, **_parallel(options))
     return _report(report, figure=not options.no_figure)
 
 
 def _report(report: RunReport, *, figure: bool) -> int:
-    """Say what a run did and wrote."""
-    from contactstudy.errors import ContactStudyError
+    """Write summary and figures, and say what a run did; all is written even if nobody reads what is said."""
+    from contactstudy.study.report import run_lines, shown, stale_lines
 
-    counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
-    print(f"{len(report.plan.cases)} cases: {counts}; {report.solved} solved now")
-    reasons: dict[str, list[str]] = {}
-    for case, entry in report.failures:
-        reasons.setdefault(entry.reason, []).append(case.name)
-    for reason, names in list(reasons.items())[:SHOWN]:
-        print(f"  failed: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}")
-    if report.failures:
-        print(f"  details in {_shown(report.folder / 'run.log')}")
-        print(f"  again with: contactstudy rerun {_shown(report.folder)}")
-    for case in report.plan.skipped[:SHOWN]:
-        print(f"  skipped: {case.name}: {case.reason}")
-    for case in report.not_converged[:SHOWN]:
-        print(f"  not converged, do not rely on it: {case.name}")
-    files = report.files
-    if files:
-        size = sum(path.stat().st_size for path in files)
-        print(f"wrote {len(files)} netCDF files, {_bytes(size)}, in {_shown(files[0].parent)}")
-        print(f"wrote {_shown(_write_summary(report.folder))}")
+    written: list[str] = []
+    if report.files:
+        written.append(f"wrote {shown(_write_summary(report.folder))}")
         try:
-            for drawn in _draw(report.folder) if figure else []:
-                print(f"wrote {_shown(drawn)}")
+            written += [f"wrote {shown(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
-            print(f"  no figure: {error}")
-    stale = [entry for entry in report.entries if entry.status == "stale"]
-    if stale:
-        print(f"{len(stale)} stale ({stale[0].reason}); again with: contactstudy rerun {_shown(report.folder)}")
+            written.append(f"  no figure: {error}")
+    _say([*run_lines(report), *written, *stale_lines(report)])
     return ALL_OK if not report.failures else SOME_FAILED
-
-
-def _shown(path: Path) -> str:
-    """Path relative to the current folder where that is shorter."""
-    try:
-        return str(path.relative_to(Path.cwd()))
-    except ValueError:
-        return str(path)
-
-
-def _bytes(size: float) -> str:
-    for unit in ("bytes", "kB", "MB"):
-        if size < 1000:
-            return f"{size:.3g} {unit}"
-        size /= 1000
-    return f"{size:.3g} GB"
 
 
 def _write_summary(folder: Path, target: Path | None = None) -> Path:
@@ -212,78 +216,52 @@ def _draw(folder: Path) -> list[Path]:
         matplotlib.use(previous)
 
 
-def _list(plan: Plan, entries: list[Entry], *, everything: bool) -> None:
-    """Print counts, and the cases that need attention."""
-    for status, count in Counter(entry.status for entry in entries).items():
-        print(f"  {count} {status}")
-    listed = [(case, entry) for case, entry in zip(plan.cases, entries, strict=True) if everything or entry.reason]
-    for case, entry in listed if everything else listed[:SHOWN]:
-        print(f"  {entry.status}: {case.id[:16]} {case.name}" + (f": {entry.reason}" if entry.reason else ""))
-    if not everything and len(listed) > SHOWN:
-        print(f"  ... and {len(listed) - SHOWN} more (--all)")
-
-
-def _forecast(plan: Plan, entries: list[Entry]) -> None:
-    """Bytes and time that the cases to come will take."""
-    from contactstudy.study.progress import duration
-
-    pairs = list(zip(plan.cases, entries, strict=True))
-    done = {case.id: (case.cost, entry.scalars["seconds"]) for case, entry in pairs if "seconds" in entry.scalars}
-    todo = {case.id: case for case, entry in pairs if entry.status == "missing"}
-    duplicates = len(plan.cases) - len(plan.skipped) - len(plan.unique)
-    if duplicates:
-        print(f"  {duplicates} duplicates, solved once")
-    print(f"files: at most {_bytes(plan.size)} at level {plan.level}")
-    if todo and done:
-        speed = sum(seconds for _, seconds in done.values()) / sum(cost for cost, _ in done.values())
-        seconds = speed * sum(case.cost for case in todo.values())
-        print(f"time: about {duration(seconds)} of one core for {len(todo)} cases")
-    elif todo:
-        print(f"time: known when the first of {len(todo)} cases is solved")
-
-
 def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.study import Study
     from contactstudy.study.folder import Folder
+    from contactstudy.study.report import forecast_lines, shown, state_lines
 
-    study = Study.from_toml(options.study)
-    plan = study.plan()
+    study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
-    entries = folder.entries(plan)
+    print(f"study {study.name}: {study.size} combinations, results in {shown(folder.path)}", flush=True)
+    plan = study.plan()
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
-    print(f"study {study.name}: {len(plan.cases)} cases ({shape}), results in {_shown(folder.path)}")
-    _list(plan, entries, everything=options.all)
-    _forecast(plan, entries)
+    print(f"{len(plan.cases)} cases ({shape})")
+    entries = folder.entries(plan)
+    _say(state_lines(plan, entries, everything=options.all))
+    _say(forecast_lines(plan, entries))
     return ALL_OK
 
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.folder import Folder
     from contactstudy.study.lock import read_lock
+    from contactstudy.study.report import forecast_lines, shown, state_lines
 
     folder = Folder(options.folder)
     study = folder.read_study()
     plan = study.plan()
     entries = folder.entries(plan)
-    print(f"study {study.name}: {len(plan.cases)} cases, results in {_shown(folder.path)}")
+    print(f"study {study.name}: {len(plan.cases)} cases, results in {shown(folder.path)}")
     holder = read_lock(folder.path)
     if holder is not None:
         print(f"locked by process {holder.get('process')} on {holder.get('host')} since {holder.get('time')}")
-    _list(plan, entries, everything=options.all)
-    _forecast(plan, entries)
+    _say(state_lines(plan, entries, everything=options.all))
+    _say(forecast_lines(plan, entries))
     return ALL_OK if all(entry.status in ("ok", "skipped") for entry in entries) else SOME_FAILED
 
 
 def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
-    print(f"wrote {_shown(_write_summary(options.folder.resolve(), options.out))}")
+    from contactstudy.study.report import shown
+
+    print(f"wrote {shown(_write_summary(options.folder.resolve(), options.out))}")
     return ALL_OK
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
-    wants_fields = options.format or options.variable or options.line or options.select
-    if wants_fields or not options.path.is_dir():
-        from contactstudy.export.command import export
+    from contactstudy.export.command import export, export_summaries
+    from contactstudy.study.report import shown
 
+    if options.format or options.variable or options.line or options.select or not options.path.is_dir():
         written = export(
             options.path,
             kind=options.format or "csv",
@@ -293,23 +271,15 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
             select=options.select or (),
             out=options.out,
         )
-        if written is not None:
-            print(f"wrote {_shown(written.resolve())}")
-        return ALL_OK
-    from contactstudy.study import collect
-    from contactstudy.study.store import write_text
-
-    table = collect(options.path).to_dataframe().to_csv()
-    if options.out is not None and str(options.out) == "-":
-        print(table, end="")
-        return ALL_OK
-    path = options.out if options.out is not None else options.path / "summary.csv"
-    write_text(path, table)
-    print(f"wrote {_shown(path.resolve())}")
+    else:
+        written = export_summaries(options.path, options.out)
+    if written is not None:
+        print(f"wrote {shown(written.resolve())}")
     return ALL_OK
 
 
 def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import report as words
     from contactstudy.verification import report, run
     from contactstudy.verification.check import Check
 
@@ -328,7 +298,7 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
         print(f"\n{report.convergence_table(table)}")
     print(f"\n{report.summary(verification)}")
     for path in report.write(verification, folder):
-        print(f"wrote {_shown(path.resolve())}")
+        print(f"wrote {words.shown(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
 
 

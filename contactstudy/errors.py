@@ -37,7 +37,10 @@ class InvalidInputError(ContactStudyError, ValueError):
         self.value = value
         self.allowed = allowed
         self.hint = hint
-        shown = repr(value)
+        try:
+            shown = repr(value)
+        except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables
+            shown = f"a {type(value).__name__} that is too large to show"
         if len(shown) > 120:
             shown = shown[:117] + "..."
         message = f"{parameter} = {shown}: must be {allowed}"
@@ -50,6 +53,10 @@ class InvalidInputError(ContactStudyError, ValueError):
 
 class WindowError(ContactStudyError):
     """The contact reaches the edge of the window in y, so the window is too narrow for the load."""
+
+
+class Terminated(KeyboardInterrupt):
+    """A run was asked to end by SIGTERM; everything that Ctrl-C does happens as well."""
 
 
 class ConvergenceWarning(UserWarning):

@@ -101,6 +101,7 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
     plan = Study.from_toml(Path(__file__).parents[1] / "studies" / "edge_effect.toml").plan()
     setup = build_setup(next(c.parameters for c in plan.cases if c.parameters.get("e_over_a") == 1.0))
     case, grid = setup.case, setup.grid
+    at = [setup.options[name] for name in ("x", "y", "z")]
 
     def timed(work: Callable[[], T]) -> tuple[float, T]:
         began = time.perf_counter()
@@ -115,11 +116,11 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
     yield "building the operator", f"{seconds:.1f} s"
     seconds, result = timed(lambda: solve(case, grid, stresses=False))
     yield "contact, and the traction left on the ends", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.0, setup.x, setup.y, setup.z))
-    yield f"six stresses at {len(setup.x)} x {len(setup.y)} x {len(setup.z)} points", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.1, setup.x, setup.y, setup.z))
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.0, *at))
+    yield f"six stresses at {' x '.join(str(len(axis)) for axis in at)} points", f"{seconds:.1f} s"
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.1, *at))
     yield "... with friction, the first time", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.2, setup.x, setup.y, setup.z))
+    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.2, *at))
     yield "... with any further friction", f"{seconds:.2f} s"
 
 

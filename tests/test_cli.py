@@ -1,7 +1,9 @@
 import csv
+import os
 import re
 import subprocess
 import sys
+import time
 
 import pytest
 import xarray as xr
@@ -157,3 +159,86 @@ def test_help_imports_nothing_heavy():
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     assert "plan" in done.stdout
+
+
+def test_a_reader_who_stops_reading_is_no_error(study_file, tmp_path):
+    """The shell's `contactstudy ... | head -1`: silence, and everything written."""
+    for arguments in (["run", str(study_file), "--workers", "0", "--no-figure"], ["status", "results/small", "--all"]):
+        read, write = os.pipe()
+        os.close(read)
+        with os.fdopen(write, "w") as nobody:
+            done = subprocess.run(
+                [sys.executable, "-m", "tests.study.fake_run", *arguments],
+                cwd=tmp_path,
+                env=os.environ | {"PYTHONPATH": str(ROOT), "CONTACTSTUDY_TEST_SECONDS": "0"},
+                stdout=nobody,
+                stderr=subprocess.PIPE,
+                text=True,
+                check=False,
+            )
+        assert done.returncode == 141, done.stderr
+        assert "Traceback" not in done.stderr
+        assert "BrokenPipe" not in done.stderr
+    assert (tmp_path / "results" / "small" / "summary.nc").exists()
+
+
+def many(count):
+    return as_toml(small_study(sweep={"e_over_a": [n / 100 for n in range(count)], "friction": [0.0, 0.1]}))
+
+
+def test_so_many_cases_are_meant_only_if_somebody_says_so(study_file, capsys, monkeypatch):
+    monkeypatch.setattr("contactstudy.cli.MANY_CASES", 10)
+    study_file.write_text(many(5))
+    for arguments in (("plan", study_file), ("run", study_file, "--workers", 0)):
+        assert command(*arguments) == 2
+        captured = capsys.readouterr()
+        assert "small: 10 combinations" in captured.out
+        assert "fewer than 10; or say --yes" in captured.err
+    assert command("plan", study_file, "--yes") == 0
+    monkeypatch.setattr("sys.stdin.isatty", lambda: True, raising=False)
+    for answer, code in (("", 2), ("n", 2), ("y", 0)):
+        monkeypatch.setattr("builtins.input", lambda question, answer=answer: answer)
+        assert command("plan", study_file) == code
+
+
+def test_a_million_and_one_cases_are_refused_at_once(study_file, capsys):
+    sweep = {"e_over_a": [n / 1000 for n in range(1001)], "friction": [n / 1000 for n in range(1000)]}
+    study_file.write_text(as_toml(small_study(sweep=sweep)))
+    began = time.process_time()
+    assert command("plan", study_file, "--yes") == 2
+    assert "1001000 combinations" in capsys.readouterr().err
+    assert time.process_time() - began < 5
+
+
+def test_twenty_thousand_cases_are_planned_in_seconds(study_file, capsys):
+    study_file.write_text(many(10_000))
+    began = time.process_time()
+    assert command("plan", study_file) == 0
+    assert time.process_time() - began < 20  # 6 s on an idle core; 47 s before values were worked out once
+    assert capsys.readouterr().out.startswith("study small: 20000 combinations")
+
+
+def test_labels_are_no_formulas_and_no_mathematics(study_file, tmp_path):
+    names = ["=HYPERLINK(A1)", "$\\frac{$", "@sum"]
+    profiles = [{"name": name, "kind": "tapered", "half_angle": 0.01 * n} for n, name in enumerate(names, start=1)]
+    study = small_study(sweep={"friction": [0.0], "profile": profiles, "e_over_a": [0.0]})
+    rows = [
+        f"[[sweep.profile]]\nname = '{row['name']}'\nkind = 'tapered'\nhalf_angle = {row['half_angle']}"
+        for row in profiles
+    ]
+    del study.sweep["profile"]
+    study_file.write_text("\n".join([as_toml(study), *rows]))
+    assert run(study_file) == 0
+    assert list((tmp_path / "results" / "small").glob("*.png"))
+    assert command("export", "results/small") == 0
+    with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
+        labels = [row["profile"] for row in csv.DictReader(file)]
+    assert labels == ["'=HYPERLINK(A1)", "$\\frac{$", "'@sum"]
+
+
+def test_what_is_not_netcdf_is_said_in_our_words(tmp_path, capsys):
+    (tmp_path / "s.toml").write_text("[base]")
+    assert command("export", tmp_path / "s.toml") == 2
+    errors = capsys.readouterr().err
+    assert "this file is not netCDF" in errors
+    assert "xarray" not in errors

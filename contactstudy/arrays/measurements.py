@@ -8,6 +8,9 @@ from __future__ import annotations
 
 import csv
 import re
+import stat
+from array import array
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,16 +42,28 @@ WIDEST_STEP = 3.0
 COMMENT = "#"
 """Begins a line of a text file that is not read."""
 
+# Of a file with measurements; a height map of ten million points has as many.
+MOST_BYTES = 500_000_000
+
+NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
+
+# What a message quotes of a file, which may be a foreign one: names of columns, and little else.
+NAME = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
+MOST_NAMES = 8
+LONGEST_QUOTE = 24
+
 
 def read_netcdf(path: Path) -> xr.Dataset:
     """Content of a netCDF file, or an error that names it."""
     import xarray as xr
 
+    regular_file(path, "netCDF")
     try:
-        with xr.open_dataset(path) as opened:
+        with xr.open_dataset(path, engine="netcdf4") as opened:
             return opened.load()
     except (OSError, ValueError) as error:
-        raise InvalidInputError("path", str(path), "a netCDF file that can be read", str(error)) from error
+        reason = (error.strerror or "it is not netCDF") if isinstance(error, OSError) else str(error)
+        raise InvalidInputError("path", str(path), "a netCDF file that can be read", reason.lower()) from error
 
 
 def unit_in_metres(name: str, unit: object) -> float:
@@ -101,30 +116,74 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
         If the file cannot be read, a column or unit is missing or unknown, or a field is no number (with its line).
     """
     path = Path(path)
+    lines = _lines(path)
+    first = next(lines, None)
+    if first is None:
+        raise InvalidInputError("path", str(path), "a file with a header and data")
+    separator = next((mark for mark in ";\t" if mark in first[1]), ",")
+    header = [_named_unit(entry) for entry in _fields(*first, separator)]
+    names = _chosen([name for name, _ in header], positions, values, path)
+    places = [next(place for place, (known, _) in enumerate(header) if known == name) for name in names]
+    columns = [array("d") for _ in names]
+    for number, line in lines:
+        row = _fields(number, line, separator)
+        if len(row) != len(header):
+            raise InvalidInputError(f"line {number}", f"{len(row)} fields", f"{len(header)} fields, as the header has")
+        for name, place, column in zip(names, places, columns, strict=True):
+            column.append(_number(number, name, row[place]))
+    return {
+        name: unit_in_metres(name, header[place][1]) * np.array(column)
+        for name, place, column in zip(names, places, columns, strict=True)
+    }
+
+
+def regular_file(path: Path, kind: str = "text") -> None:
+    """Raise unless `path` is a file of a sensible size: a pipe or a device would never end."""
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        state = path.stat()
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise InvalidInputError("path", str(path), f"a {kind} file that can be read", reason) from error
+    if not stat.S_ISREG(state.st_mode):
+        raise InvalidInputError("path", str(path), "a regular file, not a folder, pipe or device")
+    if state.st_size > MOST_BYTES:
+        raise InvalidInputError("path", str(path), f"at most {MOST_BYTES:.0e} bytes", f"it has {state.st_size}")
+
+
+def _lines(path: Path) -> Iterator[tuple[int, str]]:
+    """Yield lines with their numbers, but for empty ones and comments."""
+    regular_file(path)
+    try:
+        with open(path, encoding="utf-8-sig") as file:
+            for number, line in enumerate(file, start=1):
+                if (content := line.strip()) and not content.startswith(COMMENT):
+                    yield number, line
     except (OSError, UnicodeDecodeError) as error:
         raise InvalidInputError("path", str(path), "a text file that can be read", str(error)) from error
-    lines = [
-        (number, line)
-        for number, line in enumerate(text.splitlines(), start=1)
-        if line.strip() and not line.lstrip().startswith(COMMENT)
-    ]
-    if not lines:
-        raise InvalidInputError("path", str(path), "a file with a header and data")
-    separator = next((mark for mark in ";\t" if mark in lines[0][1]), ",")
-    rows = list(csv.reader((line for _, line in lines), delimiter=separator, skipinitialspace=True))
-    header = [_named_unit(entry) for entry in rows[0]]
-    names = _chosen([name for name, _ in header], positions, values, path)
-    columns: dict[str, list[float]] = {name: [] for name in names}
-    for (number, _), row in zip(lines[1:], rows[1:], strict=True):
-        if len(row) != len(header):
-            raise InvalidInputError(f"line {number}", row, f"{len(header)} fields, as the header has")
-        for (name, _), field in zip(header, row, strict=True):
-            if name in columns:
-                columns[name].append(_number(number, name, field))
-    scales = {name: unit_in_metres(name, unit) for name, unit in header if name in columns}
-    return {name: scales[name] * np.array(column) for name, column in columns.items()}
+
+
+def _fields(number: int, line: str, separator: str) -> list[str]:
+    """Split one line; a quotation mark cannot make it go on in the next."""
+    if '"' not in line:
+        return line.split(separator)
+    try:
+        return next(csv.reader((line.rstrip("\r\n"),), delimiter=separator, skipinitialspace=True, strict=True))
+    except csv.Error as error:
+        raise InvalidInputError(f"line {number}", quoted(line), "fields of numbers", str(error)) from None
+
+
+def quoted(text: str) -> str:
+    """Return the beginning of what a file says: enough to find the place, not enough to give a foreign file away.
+
+    Examples
+    --------
+    >>> quoted("0.1, 0.2")
+    '0.1, 0.2'
+    >>> quoted("a secret that stands in a file of somebody else")
+    'a secret that stands ...'
+    """
+    text = text.strip()
+    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 3]}..."
 
 
 def _named_unit(entry: str) -> tuple[str, str]:
@@ -138,16 +197,18 @@ def _chosen(found: list[str], positions: tuple[str, ...], values: tuple[str, ...
     present = [name for name in values if name in found]
     if any(found.count(name) != 1 for name in positions) or len(present) != 1 or found.count(present[0]) != 1:
         wanted = f"{', '.join(positions)} and one of {', '.join(values)}"
-        raise InvalidInputError("columns", found, f"{wanted}, each with its unit", f"in {path}")
+        shown = [name if NAME.fullmatch(name) else "..." for name in found[:MOST_NAMES]]
+        raise InvalidInputError("columns", shown, f"{wanted}, each with its unit", f"in {path}")
     return [*positions, present[0]]
 
 
 def _number(line: int, name: str, field: str) -> float:
-    """Read a field of a text file: a number, or NaN where it is empty."""
-    try:
-        return float(field) if field.strip() else np.nan
-    except ValueError:
-        raise InvalidInputError(f"line {line}, {name}", field, "a number with a decimal point") from None
+    """Return a field as a number; Python's own reading takes underscores and the digits of all scripts as well."""
+    if NUMBER.fullmatch(field):
+        return float(field)
+    if not field.strip():
+        return np.nan
+    raise InvalidInputError(f"line {line}, {name}", quoted(field), "a number with a decimal point")
 
 
 def check_positions(name: str, positions: FloatArray, least: int = 2) -> None:

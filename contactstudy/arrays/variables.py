@@ -144,4 +144,7 @@ def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
     if title is not None:
         own = {"Conventions": "CF-1.11", "title": title, "source": f"contactstudy {package_version()}"}
         described.attrs = own | described.attrs
+    for name in described.coords:
+        # By CF a coordinate has no missing values, and so no mark for them.
+        described[name].encoding["_FillValue"] = None
     return described

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable, Iterator
+from typing import TypeVar
+
 import numpy as np
 
 from contactstudy import checks
@@ -9,10 +12,16 @@ from contactstudy.arrays.grid import Grid, growing_edges
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import InvalidInputError, WindowError
+
+Result = TypeVar("Result")
 
 MOST_CELLS = 10**8
 """Of a chosen grid: a wrong unit asks for many more."""
+
+WINDOWS = (2.0, 3.0, 5.0, 8.0)
+"""Half-widths of the window over that of the Hertz contact, tried in turn where none is given: a short or a tilted
+contact is wider than the line contact of the same load. The first is the default of :func:`choose_grid`."""
 
 MOST_EXTRA = 1.25
 """How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
@@ -80,20 +89,20 @@ def choose_grid(
         min(high, stop + margin_x) if np.isinf(high) else high,
     )
     least = [
-        max(4, int(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
+        max(4.0, float(np.ceil(span / half_width * checks.positive(name, cells) - 1e-9)))
         for name, span, cells in (
             ("cells_x", x_range[1] - x_range[0], cells_x),
             ("cells_y", 2 * half_window, cells_y),
         )
     ]
-    if least[0] * least[1] > MOST_CELLS:
+    if not least[0] * least[1] <= MOST_CELLS:
         raise InvalidInputError(
             "cells_x, cells_y",
             (cells_x, cells_y),
             f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
             f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
         )
-    counts = [next_fast_len(count, real=True) for count in least]
+    counts = [next_fast_len(int(count), real=True) for count in least]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
         while candidates[-1] < MOST_EXTRA * counts[0]:
@@ -101,3 +110,46 @@ def choose_grid(
         at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
         counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))
     return Grid(x_range, (-half_window, half_window), *counts)
+
+
+def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> Iterator[Grid]:
+    """Grids of wider and wider windows, of which the first that holds the contact is to be taken.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    cells_x, cells_y : float
+        As for :func:`choose_grid`.
+
+    Yields
+    ------
+    Grid
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Material, Roller
+    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)
+    >>> [round(grid.y_range[1] / case.hertz_half_width) for grid in widening_grids(case)]
+    [2, 3, 5, 8]
+    """
+    for window in WINDOWS:
+        yield choose_grid(case, cells_x=cells_x, cells_y=cells_y, window=window, margin=2 * window)
+
+
+def first_that_holds(grids: Iterable[Grid], solved: Callable[[Grid], Result]) -> Result:
+    """Return ``solved(grid)`` of the first grid whose window the contact does not leave.
+
+    Raises
+    ------
+    WindowError
+        Of the last grid, if no window holds the contact.
+    """
+    left = WindowError("there is no grid to solve the contact on")
+    for grid in grids:
+        try:
+            return solved(grid)
+        except WindowError as error:
+            left = error
+    raise left

@@ -9,7 +9,7 @@ from pathlib import Path
 import xarray as xr
 
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.table import Line, to_csv, to_table
+from contactstudy.export.table import Line, csv_text, to_csv, to_table
 from contactstudy.export.vtk import to_vtk
 
 SUFFIXES = {"csv": ".csv", "vtk": ".vtr"}
@@ -67,10 +67,11 @@ def _open(path: Path) -> xr.Dataset:
 
         return open_study(path)
     try:
-        with xr.open_dataset(path) as dataset:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
             return dataset.load()
     except (OSError, ValueError) as error:
-        reason = str(error).splitlines()[0]
+        missing = isinstance(error, FileNotFoundError)
+        reason = "there is no such file" if missing else "this file is not netCDF"
         raise InvalidInputError("path", str(path), "a netCDF file or a study's folder", reason) from None
 
 
@@ -126,6 +127,33 @@ def export(
         return to_vtk(dataset, target, variables)
     ends = None if line is None else parse_line(line)
     if str(target) == "-":
-        print(to_table(dataset, variables, line=ends, points=points).to_csv(index=False), end="")
+        print(csv_text(to_table(dataset, variables, line=ends, points=points)), end="")
         return None
     return to_csv(dataset, target, variables, line=ends, points=points)
+
+
+def export_summaries(folder: Path, out: Path | None = None) -> Path | None:
+    """Write the summaries of a study as CSV, one row per case.
+
+    Parameters
+    ----------
+    folder : Path
+        The study's folder.
+    out : Path, optional
+        Default: ``summary.csv`` in the folder; ``-`` prints it.
+
+    Returns
+    -------
+    Path or None
+        The file; None if it was printed.
+    """
+    from contactstudy.study import collect
+    from contactstudy.study.store import write_text
+
+    text = csv_text(collect(folder).to_dataframe().reset_index())
+    if str(out) == "-":
+        print(text, end="")
+        return None
+    path = out if out is not None else folder / "summary.csv"
+    write_text(path, text)
+    return path

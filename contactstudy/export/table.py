@@ -95,6 +95,28 @@ def to_table(
     return frame[names].rename(columns=headings)
 
 
+# A spreadsheet takes a cell that begins so for a formula, and would run it.
+FORMULA = ("=", "+", "-", "@", "\t", "\r")
+
+
+def _plain(entry: object) -> object:
+    """Return a cell as it is, but a text that a spreadsheet would calculate with an apostrophe before it."""
+    return f"'{entry}" if isinstance(entry, str) and entry.startswith(FORMULA) else entry
+
+
+def csv_text(table: pd.DataFrame) -> str:
+    r"""Return a table as CSV whose texts no spreadsheet takes for formulas.
+
+    Examples
+    --------
+    >>> import pandas as pd
+    >>> csv_text(pd.DataFrame({"profile": ["=1+1", "sharp"], "load": [-1.0, 2.0]}))
+    "profile,load\n'=1+1,-1.0\nsharp,2.0\n"
+    """
+    texts = {name: column.map(_plain) for name, column in table.items() if column.dtype.kind not in "fiub"}
+    return str(table.assign(**texts).rename(columns=_plain).to_csv(index=False))
+
+
 def to_csv(
     dataset: xr.Dataset,
     path: str | Path,
@@ -134,5 +156,5 @@ def to_csv(
     target = Path(path)
     table = to_table(dataset, variables, line=line, points=points)
     with checks.writing(target):
-        table.to_csv(target, index=False)
+        target.write_text(csv_text(table), encoding="utf-8")
     return target

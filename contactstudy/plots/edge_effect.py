@@ -12,7 +12,7 @@ from contactstudy.analysis import dimension_along, in_plane, single_case
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.pressure import plot_axial_pressure
 from contactstudy.plots.stress import plot_stress_plane
-from contactstudy.plots.style import line_styles, units
+from contactstudy.plots.style import as_written, line_styles, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,7 +33,7 @@ def _chosen(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tuple[xr.Datas
             if name == "max_pressure":
                 remarks.append(f"$p_0$ = {value / 1e9:.3g} GPa")
             else:
-                shown = f"{value:.4g}" if isinstance(value, float) else str(value)
+                shown = f"{value:.4g}" if isinstance(value, float) else as_written(value)
                 remarks.append(f"{str(name).replace('_', ' ')} {shown}")
     return dataset, remarks
 

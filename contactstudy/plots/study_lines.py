@@ -14,7 +14,7 @@ from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.study_map import one_value, readable
-from contactstudy.plots.style import line_styles
+from contactstudy.plots.style import as_written, line_styles
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -100,7 +100,7 @@ def plot_study_lines(
             marker = MARKERS[number % len(MARKERS)]
             ax.plot(places, line.values, **style, marker=marker, markersize=4, label=text)
         if not numeric:
-            ax.set_xticks(places, [str(value) for value in across.values], rotation=20)
+            ax.set_xticks(places, [as_written(value) for value in across.values], rotation=20)
         ax.set_xlabel(label)
         ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
         ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.max())), 1e-300))
@@ -114,7 +114,7 @@ def plot_study_lines(
         figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
     if chosen:
         stated = ", ".join(
-            f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {value}"
+            f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {as_written(value)}"
             for dim, value in chosen.items()
         )
         figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")
@@ -124,9 +124,9 @@ def plot_study_lines(
 def _texts(values: xr.DataArray, name: str) -> list[str]:
     """Values of a parameter as a figure states them, in the unit of its label; of a table those of its parameters."""
     if together := _parameters_of(values, name):
-        return [", ".join(str(values[own].values[i]) for own in together) for i in range(values.size)]
+        return [", ".join(as_written(values[own].values[i]) for own in together) for i in range(values.size)]
     if not np.issubdtype(values.dtype, np.number):
-        return [str(value) for value in values.values]
+        return [as_written(value) for value in values.values]
     return [f"{value:g}" for value in readable(values, name)[0].values]
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import COLORS, SYMBOLS, new_axes
+from contactstudy.plots.style import COLORS, SYMBOLS, as_written, new_axes
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -150,7 +150,7 @@ def plot_study_map(
     for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
         numeric = np.issubdtype(values[parameter].dtype, np.number)
         steps, text = readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
-        axis.set_ticks(ticks, [f"{step:g}" if numeric else str(step) for step in steps.values])
+        axis.set_ticks(ticks, [f"{step:g}" if numeric else as_written(step) for step in steps.values])
         axis.set_label_text(text)
     ax.figure.colorbar(drawn, ax=ax, label=label or meaning)
     return ax

@@ -96,6 +96,17 @@ def units(dataset: xr.Dataset, *, si: bool) -> Units:
     return Units(float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"]), "/a", "/p_0")
 
 
+def as_written(value: object) -> str:
+    r"""Return a name from a study as text that matplotlib shows as it is, dollar signs included.
+
+    Examples
+    --------
+    >>> print(as_written("$1 roller"))
+    \$1 roller
+    """
+    return str(value).replace("$", r"\$")
+
+
 def new_axes(ax: Axes | None, size: tuple[float, float] = (6.4, 4.0)) -> Axes:
     """Return the given axes, or those of a new figure of `size` inches."""
     if ax is not None:

@@ -46,11 +46,7 @@ class Cube:
 
 def _unique(values: Sequence[Any]) -> list[Any]:
     """Different values in the order in which they first appear."""
-    seen: list[Any] = []
-    for value in values:
-        if value not in seen:
-            seen.append(value)
-    return seen
+    return list(dict.fromkeys(values))
 
 
 def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
@@ -88,7 +84,8 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]], label: Labeller) -> tuple[
     for column in varying.values():
         cells *= len(column)
     complete = all(None not in column for column in varying.values())
-    positions = [tuple(column.index(row[name]) for name, column in varying.items()) for row in rows]
+    places = {name: {value: place for place, value in enumerate(column)} for name, column in varying.items()}
+    positions = [tuple(places[name][row[name]] for name in varying) for row in rows]
     if varying and complete and cells <= LARGEST_FILL * len(cases) and len(set(positions)) == len(positions):
         labels = {name: (name, column) for name, column in varying.items()}
         return Cube(tuple(varying), tuple(len(column) for column in varying.values()), labels), positions

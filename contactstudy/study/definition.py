@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
@@ -22,6 +23,9 @@ from contactstudy.study.profile_kinds import with_files_in
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
+
+# Each case is a file and about two kilobytes of memory.
+MOST_CASES = 1_000_000
 
 
 def _listed(name: str, values: object) -> list[Any]:
@@ -125,10 +129,13 @@ class Study:
     def _swept(where: str, name: str, values: object) -> list[Any]:
         checks.known_name(where, str(name), PARAMETERS)
         column = [PARAMETERS[name].check(name, value) for value in _listed(f"{where}.{name}", values)]
-        labels = [label(name, value) for value in column]
-        for position, entry in enumerate(labels):
-            if where == "sweep" and entry in labels[:position]:
-                raise InvalidInputError(f"{where}.{name}", entry, "a list of different values", "it appears twice")
+        if where == "sweep":
+            seen = set()
+            for value in column:
+                entry = label(name, value)
+                if entry in seen:
+                    raise InvalidInputError(f"{where}.{name}", entry, "a list of different values", "it appears twice")
+                seen.add(entry)
         return column
 
     @staticmethod
@@ -166,14 +173,17 @@ class Study:
         """
         path = Path(path)
         try:
-            content = tomllib.loads(path.read_text(encoding="utf-8"))
-        except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+            content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+        except (OSError, ValueError) as error:  # a ValueError is no TOML, no UTF-8, or a number of thousands of digits
             raise StudyFileError(f"study file {path}: {error}") from error
+        except RecursionError:
+            raise StudyFileError(f"study file {path}: tables or lists are nested too deeply to be read") from None
         return cls.from_mapping({"name": path.stem} | with_files_in(content, path.parent))
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any]) -> Study:
         """Study from a mapping with the keys :data:`KEYS`."""
+        checks.instance("content of the study file", content, Mapping, f"a table with the keys {', '.join(KEYS)}")
         for key in content:
             checks.known_name("key of the study file", str(key), KEYS)
         return cls(**content)
@@ -182,13 +192,30 @@ class Study:
         """Everything the study says, as JSON that :meth:`from_mapping` reads back after ``json.loads``."""
         return json.dumps({key: getattr(self, key) for key in KEYS}, indent=1)
 
+    @property
+    def size(self) -> int:
+        """Number of combinations and explicit cases, before any is excluded."""
+        axes = [len(values) for values in self.sweep.values()]
+        axes += [len(next(iter(group.values()))) for group in self.zip]
+        return (math.prod(axes) if axes or not self.cases else 0) + len(self.cases)
+
     def plan(self) -> Plan:
         """Cases of the study, in order; solves nothing.
 
         Returns
         -------
         Plan
+
+        Raises
+        ------
+        StudyFileError
+            If there are more than :data:`MOST_CASES`.
         """
+        if self.size > MOST_CASES:
+            raise StudyFileError(
+                f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
+                "have: sweep fewer values, or make several studies"
+            )
         axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
         for group in self.zip:
             rows = zip(*group.values(), strict=True)

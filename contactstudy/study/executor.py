@@ -6,22 +6,33 @@ Every worker has one case at a time, so the death of a worker costs that one cas
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import queue
-from collections.abc import Iterator
+import signal
+from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks
+from contactstudy.errors import InvalidInputError
+from contactstudy.study.crew import Crew
 from contactstudy.study.dispatch import Dispatcher
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.work import Job, Record, Solver, perform
 
 if TYPE_CHECKING:
-    from distributed import Client, Future, WorkerPlugin
+    from distributed import Client, Future, LocalCluster
+    from tornado.ioloop import IOLoop
 
+# How often to look for workers that came or went while no case finishes.
 POLL_SECONDS = 0.5
-"""How often to look for workers that came or went while no case finishes."""
+
+# How long a scheduler, and a new local worker, may take to answer.
 START_SECONDS = 60.0
+
+# How long to wait for a worker while a scheduler has none.
+WAIT_SECONDS = 300.0
+
 WORKER_ENVIRONMENT = {
     "OMP_NUM_THREADS": "1",
     "MKL_NUM_THREADS": "1",
@@ -35,13 +46,23 @@ WORKER_ENVIRONMENT = {
 Dask's own setting returns it to the system at once, which made cases twice as slow as in the parent's process.
 """
 
+GONE = "the dask scheduler has gone away or was restarted; finished cases are kept, run again to go on"
+CLOSE_SECONDS = 2.0
+NOISY = ("distributed", "tornado", "asyncio")
+
 SHORT_LOGS = {"distributed.admin.log-length": 20, "distributed.admin.low-level-log-length": 20}
 """Dask keeps its last thousands of messages, jobs and records in them, for its developers: 20 kB for every case."""
 
 
 def execute(
-    jobs: list[Job], *, workers: int | None = None, scheduler: str | None = None, solver: Solver | None = None
-) -> Iterator[Record]:
+    jobs: list[Job],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    wait: float = WAIT_SECONDS,
+    solver: Solver | None = None,
+    say: Callable[[str], None] = print,
+) -> Generator[Record, None, None]:
     """Solve jobs and yield each one's record as it finishes.
 
     Parameters
@@ -52,16 +73,26 @@ def execute(
         Local processes; 0: this process; default: one per core that may be used.
     scheduler : str, optional
         Address of a dask scheduler instead.
+    wait : float
+        How long to wait for a worker while there is none, seconds.
     solver : callable, optional
         Called instead of the package's solver.
+    say : callable
+        Takes what the user should know while the run goes on.
 
     Raises
     ------
+    StudyFileError
+        If the scheduler does not answer, goes away, or has no worker that can be used.
     Exception
         Whatever a job raised that is no failure of a case; a note says which case it was.
     """
     if workers is not None:
         workers = checks.count("workers", workers, least=0)
+    if isinstance(wait, bool) or not isinstance(wait, (int, float)) or not wait >= 0:
+        raise InvalidInputError("wait", wait, "a number of seconds not below zero")
+    if scheduler is not None:
+        checks.instance("scheduler", scheduler, str, "the address of a dask scheduler, tcp://host:port")
     if not jobs:
         return
     if scheduler is None and workers == 0:
@@ -69,7 +100,7 @@ def execute(
             yield _perform_here(job, solver)
         return
     with _client(len(jobs), workers, scheduler) as client:
-        yield from _drive(client, jobs, solver)
+        yield from _drive(client, Crew(client, jobs[0].folder, wait, say), jobs, solver)
 
 
 class Dispatched:
@@ -95,21 +126,13 @@ def _perform_here(job: Job, solver: Solver | None) -> Record:
 @contextlib.contextmanager
 def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[Client]:
     """Client of the given scheduler, or of local processes that end with the block."""
-    import logging
-
-    import dask
-    from distributed import Client, LocalCluster
-
     if scheduler is not None:
-        try:
-            with dask.config.set(SHORT_LOGS):
-                client = Client(scheduler, timeout=START_SECONDS)
-        except (OSError, ValueError) as error:
-            raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
-        with client:
+        with _client_of(scheduler) as client:
             yield client
         return
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    import dask
+    from distributed import Client
+
     settings = {
         **SHORT_LOGS,
         "distributed.scheduler.allowed-failures": 0,
@@ -117,40 +140,124 @@ def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[C
         "distributed.worker.daemon": True,
         "distributed.nanny.pre-spawn-environ": WORKER_ENVIRONMENT,
     }
-    # A dying worker is a failed case with a reason of its own; the libraries' pages of log would bury it.
-    quiet = logging.CRITICAL
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     with (
+        _silence(),
         dask.config.set(settings),
-        LocalCluster(
-            n_workers=min(workers or cores, jobs),
+        _deaf_loop() as loop,
+        _started(min(workers or cores, jobs), loop) as cluster,
+        Client(cluster) as client,
+    ):
+        try:
+            yield client
+        except BaseException:
+            _kill(cluster)
+            raise
+
+
+def _started(workers: int, loop: IOLoop) -> LocalCluster:
+    """Return a cluster of local processes."""
+    from distributed import LocalCluster
+
+    older = set(_clusters())
+    try:
+        return LocalCluster(
+            n_workers=workers,
+            loop=loop,
             processes=True,
             threads_per_worker=1,
             dashboard_address=None,
             # Without an address of its own the scheduler insists on one port, and two studies at once collide.
             scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},
             memory_limit=0,
-            silence_logs=quiet,
-        ) as cluster,
-        Client(cluster) as client,
-    ):
-        client.register_plugin(_interrupt_plugin())
-        yield client
+            # A dying worker is a failed case with a reason of its own; pages of log would bury it.
+            silence_logs=logging.CRITICAL,
+        )
+    except BaseException:
+        # At the end of the process dask would close the cluster that has only begun to start, and fail.
+        for cluster in set(_clusters()) - older:
+            cluster.shutdown_on_close = False
+        raise
 
 
-def _interrupt_plugin() -> WorkerPlugin:
-    """Leave Ctrl-C, which a terminal sends to the workers as well, to the process that started them."""
-    import signal
+def _clusters() -> list[Any]:
+    """Clusters of this process that dask knows."""
+    from distributed import SpecCluster
 
-    from distributed import WorkerPlugin
-
-    class LeaveInterrupts(WorkerPlugin):
-        def setup(self, worker: Any) -> None:
-            signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-    return LeaveInterrupts()
+    return list(getattr(SpecCluster, "_instances", ()))
 
 
-def _drive(client: Client, jobs: list[Job], solver: Solver | None) -> Iterator[Record]:
+@contextlib.contextmanager
+def _client_of(scheduler: str) -> Iterator[Client]:
+    """Client of a scheduler that runs already."""
+    import dask
+    from distributed import Client
+    from distributed.comm.core import CommClosedError
+
+    with _silence():
+        try:
+            with dask.config.set(SHORT_LOGS):
+                client = Client(scheduler, timeout=START_SECONDS)
+        except (OSError, ValueError) as error:
+            raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
+        try:
+            yield client
+        except (CommClosedError, TimeoutError) as error:
+            raise StudyFileError(GONE) from error
+        finally:
+            with contextlib.suppress(Exception):
+                client.close(timeout=CLOSE_SECONDS)
+
+
+@contextlib.contextmanager
+def _silence() -> Iterator[None]:
+    """Keep the libraries' logs from the screen: what goes wrong is an error with a reason here."""
+    names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] in NOISY]
+    former = {name: logging.getLogger(name).level for name in names}
+    for name in names:
+        logging.getLogger(name).setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for name, level in former.items():
+            logging.getLogger(name).setLevel(level)
+
+
+def _kill(cluster: LocalCluster) -> None:
+    """End the workers of a local cluster at once: dask itself waits for the cases that they are solving."""
+    for nanny in cluster.workers.values():
+        with contextlib.suppress(Exception):
+            nanny.auto_restart = False
+            os.kill(nanny.pid, signal.SIGKILL)
+
+
+@contextlib.contextmanager
+def _deaf_loop() -> Iterator[IOLoop]:
+    """Event loop in a thread that Ctrl-C does not reach, nor the processes that are started from it.
+
+    A terminal sends Ctrl-C to all of them; only the process that was called is to deal with it.
+    """
+    from multiprocessing import resource_tracker
+
+    from distributed.utils import LoopRunner
+
+    resource_tracker.ensure_running()  # otherwise started with the first process, which it would make hear again
+    runner = LoopRunner()
+    if not hasattr(signal, "pthread_sigmask"):  # not on Windows
+        runner.start()
+    else:
+        former = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            runner.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, former)
+    try:
+        yield runner.loop
+    finally:
+        runner.stop()
+
+
+def _drive(client: Client, crew: Crew, jobs: list[Job], solver: Solver | None) -> Generator[Record, None, None]:
     """Keep every worker busy with one job until none is left."""
     from distributed import KilledWorker
 
@@ -159,15 +266,15 @@ def _drive(client: Client, jobs: list[Job], solver: Solver | None) -> Iterator[R
     running: dict[Future[Record], tuple[str, Job]] = {}
     try:
         while dispatcher.waiting or running:
-            _feed(client, dispatcher, finished, running, solver)
+            _feed(client, crew, dispatcher, finished, running, solver)
             try:
                 future = finished.get(timeout=POLL_SECONDS)
             except queue.Empty:
                 continue
             worker, job = running.pop(future)
             error = future.exception() if future.status == "error" else None
-            if future.status == "cancelled":
-                raise StudyFileError("the dask scheduler dropped a case: has it been restarted?")
+            if future.status in ("cancelled", "lost"):
+                raise StudyFileError(GONE)
             if error is None:
                 yield future.result()
             elif isinstance(error, KilledWorker):
@@ -185,19 +292,18 @@ def _drive(client: Client, jobs: list[Job], solver: Solver | None) -> Iterator[R
 
 def _feed(
     client: Client,
+    crew: Crew,
     dispatcher: Dispatcher,
     finished: queue.SimpleQueue[Future[Record]],
     running: dict[Future[Record], tuple[str, Job]],
     solver: Solver | None,
 ) -> None:
     """Give a job to every worker that has none."""
-    if not dispatcher.waiting:
-        return
     busy = {worker for worker, _ in running.values()}
-    present: dict[str, Any] = client.nthreads()
-    for lost in dispatcher.owners - set(present):
+    present = crew.ready(busy)
+    for lost in dispatcher.owners - present:
         dispatcher.forget(lost)
-    for worker in sorted(set(present) - busy):
+    for worker in sorted(present - busy) if dispatcher.waiting else ():
         job = dispatcher.next_job(worker)
         if job is None:
             return

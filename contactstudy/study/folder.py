@@ -6,7 +6,7 @@
     FOLDER/cases/<id>.nc         one finished case
     FOLDER/cases/<id>.failed     one failed case, as JSON
     FOLDER/set-aside/            damaged or foreign files
-    FOLDER/manifest.json         cache of the above; may be deleted at any time
+    FOLDER/manifest.jsonl        cache of the above; may be deleted at any time
     FOLDER/run.log, run.lock     log of all runs; who runs now
 """
 
@@ -14,20 +14,22 @@ from __future__ import annotations
 
 import json
 import os
-import sys
+import stat
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from contactstudy import checks
 from contactstudy.arrays.variables import package_version
+from contactstudy.errors import InvalidInputError
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import StoreError, StudyFileError
+from contactstudy.study.manifest import Manifest
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.store import read_header, remove_dead_parts, write_text
 
 ID_DIGITS = 16
 """Digits of the identity in a file's name; the file holds all 64."""
-MANIFEST_SCHEMA = 1
 
 
 @dataclass(frozen=True)
@@ -68,9 +70,10 @@ class Folder:
     """
 
     def __init__(self, path: str | Path) -> None:
+        checks.instance("folder", path, (str, Path), "the path of a study's folder")
         self.path = Path(path).resolve()
         self.cases = self.path / "cases"
-        self._cache: dict[str, Any] | None = None
+        self._manifest = Manifest(self.path / "manifest.jsonl")
 
     def create(self) -> None:
         """Make the folder, or raise :class:`StoreError`."""
@@ -109,7 +112,12 @@ class Folder:
             content = json.loads(path.read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
             raise StudyFileError(f"{self.path} is not the folder of a study: {path}: {error}") from error
-        return Study.from_mapping(content)
+        except RecursionError:
+            raise StudyFileError(f"{path}: nested too deeply to be a study") from None
+        try:
+            return Study.from_mapping(content)
+        except InvalidInputError as error:
+            raise StudyFileError(f"{path} is not the definition of a study: {error}") from error
 
     def write_failure(self, identity: str, parameters: dict[str, Any], kind: str, message: str) -> None:
         """Record why a case failed."""
@@ -140,68 +148,61 @@ class Folder:
             raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
         return target
 
-    def _manifest(self) -> dict[str, Any]:
-        """Return the cache: file name to size, time of change and header; empty if it is not readable."""
-        if self._cache is None:
-            try:
-                content = json.loads((self.path / "manifest.json").read_text(encoding="utf-8"))
-                known = content["schema"] == MANIFEST_SCHEMA and isinstance(content["files"], dict)
-                self._cache = content["files"] if known else {}
-            except (OSError, ValueError, KeyError, TypeError):
-                self._cache = {}
-        assert self._cache is not None
-        return self._cache
-
     def save_manifest(self) -> None:
         """Write the cache."""
-        write_text(self.path / "manifest.json", json.dumps({"schema": MANIFEST_SCHEMA, "files": self._manifest()}))
+        self._manifest.save()
 
-    def remember(self, path: Path, identity: str, run: dict[str, Any], scalars: dict[str, float]) -> None:
-        """Enter a file, just written or checked, in the cache."""
+    def remember(self, path: Path, identity: str, run: dict[str, Any], scalars: dict[str, float]) -> dict[str, Any]:
+        """Enter a file, just written or checked, in the cache; return its entry."""
         state = path.stat()
-        # Words that came from another process or a file are new ones each time: keep one of each.
-        run = {sys.intern(name): sys.intern(value) if isinstance(value, str) else value for name, value in run.items()}
-        scalars = {sys.intern(name): value for name, value in scalars.items()}
-        self._manifest()[path.name] = {
-            "size": state.st_size,
-            "changed": state.st_mtime_ns,
-            "id": identity,
-            "run": run,
-            "scalars": scalars,
-        }
+        return self._manifest.put(path.name, state.st_size, state.st_mtime_ns, identity, run, scalars)
 
-    def _checked(self, path: Path, identity: str) -> dict[str, Any]:
+    def _checked(self, path: Path) -> dict[str, Any]:
         """Cache entry of a file, read and verified anew if the file has changed since.
 
         Raises
         ------
+        FileNotFoundError
+            If there is none.
         StoreError
             If the file is damaged or foreign.
         """
-        state = path.stat()
-        known = self._manifest().get(path.name)
-        if not known or (known.get("size"), known.get("changed")) != (state.st_size, state.st_mtime_ns):
-            self._manifest().pop(path.name, None)
-            header = read_header(path, verify=True)
-            self.remember(path, header.id, header.run, header.scalars)
-            known = self._manifest()[path.name]
+        try:
+            state = path.stat()
+        except FileNotFoundError:
+            raise
+        except OSError as error:
+            raise StoreError(f"cannot read {path}: {error.strerror or error}") from error
+        if not stat.S_ISREG(state.st_mode):
+            raise StoreError(f"{path} is not a regular file")
+        known = self._manifest.get(path.name)
+        if known and (known["size"], known["changed"]) == (state.st_size, state.st_mtime_ns):
+            return known
+        self._manifest.forget(path.name)
+        header = read_header(path, verify=True)
+        return self.remember(path, header.id, header.run, header.scalars)
+
+    def _of_case(self, path: Path, identity: str) -> dict[str, Any]:
+        """Cache entry of a case's file, which must hold this case."""
+        known = self._checked(path)
         if known["id"] != identity:
             raise StoreError(f"{path} holds another case, {known['id'][:ID_DIGITS]}")
-        return dict(known)
+        return known
 
     def state(self, identity: str, level: str) -> tuple[Entry, str]:
         """State of a case that can be solved, and what is wrong with its file (empty if nothing)."""
         path, problem = self.case_path(identity), ""
         try:
-            known = self._checked(path, identity)
+            known = self._of_case(path, identity)
         except FileNotFoundError:
             known = None
         except StoreError as error:
             known, problem = None, str(error)
         if known is not None:
             name, run = f"cases/{path.name}", known["run"]
-            if LEVELS.index(run.get("level", "summary")) < LEVELS.index(level):
-                reason = f"keeps {run.get('level')}, not {level}"
+            kept = run.get("level")
+            if kept not in LEVELS or LEVELS.index(kept) < LEVELS.index(level):
+                reason = f"keeps {kept}, not {level}"
                 return Entry("stale", reason, name, known["scalars"], run), ""
             if run.get("contactstudy") != package_version():
                 reason = f"solved by version {run.get('contactstudy')}"
@@ -232,15 +233,15 @@ class Folder:
         """Files among the cases that are no case of this package, each with what is wrong."""
         wrong = []
         for path in sorted(self.cases.glob("*")):
-            known = self._manifest().get(path.name)
             if path.suffix == ".failed" or ".part-" in path.name or path.is_dir():
                 continue
             try:
-                identity = known["id"] if known else read_header(path).id
+                identity = self._checked(path)["id"]
                 if self.case_path(identity) != path:
                     wrong.append((path, f"{path} holds the case {identity[:ID_DIGITS]} under a wrong name"))
-                else:
-                    self._checked(path, identity)
+            except FileNotFoundError:
+                if path.is_symlink():
+                    wrong.append((path, f"{path} is a link to a file that is not there"))
             except StoreError as error:
                 wrong.append((path, str(error)))
         return wrong

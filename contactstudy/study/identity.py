@@ -7,7 +7,7 @@ import json
 from collections.abc import Mapping
 from typing import Any
 
-from contactstudy.study.parameters import checked, without_defaults
+from contactstudy.study.parameters import checked, counted
 
 SCHEMA = 1
 """Number of the meaning of the parameters; raised only if an old parameter changes its meaning."""
@@ -39,5 +39,17 @@ def case_id(parameters: Mapping[str, Any]) -> str:
     >>> case_id({"friction": 1}) == case_id({"friction": 1.0, "coupled": False})
     True
     """
-    content = {"schema": SCHEMA, "case": without_defaults(checked(parameters))}
-    return hashlib.sha256(canonical_json(content).encode()).hexdigest()
+    values = checked(parameters)
+    return identity_of({name: fragment(name, value) for name, value in values.items()})
+
+
+def fragment(name: str, value: Any) -> str:
+    """Return a checked parameter's part of the canonical JSON; empty if the value is the default."""
+    value = counted(name, value)
+    return "" if value is None else f'"{name}":{canonical_json(value)}'
+
+
+def identity_of(fragments: Mapping[str, str]) -> str:
+    """Identity of a case from the fragments of its parameters, by name."""
+    content = ",".join(fragments[name] for name in sorted(fragments) if fragments[name])
+    return hashlib.sha256(f'{{"case":{{{content}}},"schema":{SCHEMA}}}'.encode()).hexdigest()

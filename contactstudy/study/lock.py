@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import socket
+import stat
 import uuid
 from collections.abc import Iterator
 from datetime import UTC, datetime
@@ -13,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from contactstudy.study.errors import LockedError, StoreError
-from contactstudy.study.store import alive
+from contactstudy.study.process import birth, boot
 
 LOCK_NAME = "run.lock"
 
@@ -24,22 +25,15 @@ except ImportError:  # not on Windows, where only the tiny moment of a take-over
     fcntl = None
 
 
-def _started(pid: int) -> float:
-    """When a process began, so that a number used again is not taken for the same process."""
-    import psutil
-
-    try:
-        return float(psutil.Process(pid).create_time())
-    except psutil.Error:
-        return 0.0
-
-
 def _is_dead(holder: dict[str, object]) -> bool:
     """Whether the holder of a lock surely does not run any more."""
     pid = holder.get("process")
-    if not isinstance(pid, int) or holder.get("host") != socket.gethostname():
+    if type(pid) is not int or holder.get("host") != socket.gethostname():
         return False
-    return not alive(pid) or abs(_started(pid) - float(str(holder.get("process_start", 0.0)))) > 2.0
+    if holder.get("boot", boot()) != boot():
+        return True
+    born = birth(pid)
+    return born is None or holder.get("birth", born) != born
 
 
 @contextlib.contextmanager
@@ -58,11 +52,13 @@ def _guard(folder: Path) -> Iterator[None]:
 
 def read_lock(folder: Path) -> dict[str, object] | None:
     """Who holds the folder's lock: process, host and time; None if nobody does."""
+    path = folder / LOCK_NAME
     try:
-        content = json.loads((folder / LOCK_NAME).read_text(encoding="utf-8"))
+        # A pipe or a device of that name would never end.
+        content = json.loads(path.read_text(encoding="utf-8")) if stat.S_ISREG(path.stat().st_mode) else None
     except FileNotFoundError:
         return None
-    except (OSError, ValueError):
+    except (OSError, ValueError, RecursionError):
         content = None
     return content if isinstance(content, dict) else {"process": "unknown", "host": "unknown", "time": "unknown"}
 
@@ -86,7 +82,8 @@ def locked(folder: Path) -> Iterator[str]:
         "host": socket.gethostname(),
         "time": now,
         "token": token,
-        "process_start": _started(os.getpid()),
+        "boot": boot(),
+        "birth": birth(os.getpid()),
     }
     message = ""
     try:

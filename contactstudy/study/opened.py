@@ -141,15 +141,13 @@ def _with_fields(
         renamed[dim], coordinates_of_dim = _positions(dim, by_case, cube, dataset)
         added |= coordinates_of_dim
     sizes = {dim: max(values.size for values in by_case.values()) for dim, by_case in positions.items()}
-    names = np.full(cube.shape, "", dtype=object)
-    for place, path in paths.items():
-        names[place] = str(path)
     fields = {}
     for name, (dims, dtype, attributes) in specifications.items():
-        owners = {place for place, (variables, _) in structures.items() if name in variables}
-        owned = np.where([[place in owners] for place in np.ndindex(cube.shape)], names.reshape(-1, 1), "")
-        shape = tuple(sizes[dim] for dim in dims)
-        array = _lazy(owned.reshape(cube.shape), name, shape, dtype)
+        files = np.full(cube.shape, "", dtype=object)
+        for place, (variables, _) in structures.items():
+            if name in variables:
+                files[place] = str(paths[place])
+        array = _lazy(files, name, tuple(sizes[dim] for dim in dims), dtype)
         fields[name] = ((*cube.dims, *(renamed[dim] for dim in dims)), array, attributes)
     return dataset.assign_coords(added).assign(fields)
 
@@ -188,7 +186,7 @@ def _load_block(block: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtyp
 
 def _lazy(paths: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> da.Array:
     """Dask array of a variable over all cases, one chunk per case."""
-    cases = da.from_array(paths.astype(object), chunks=1)
+    cases = da.from_array(paths, chunks=1)
     result: da.Array = da.map_blocks(
         _load_block,
         cases,

@@ -1,58 +1,59 @@
-"""The parameters of a study's case, in one table: name, kind, default, unit, meaning."""
+"""The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
+
+A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solve` has a keyword of the same name:
+its default is read from that signature, and the value is handed on. Any other parameter is used by name in
+:func:`contactstudy.study.setup.setup_of`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import Any, NamedTuple
+import inspect
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.bodies.models import MODELS
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import choose_grid
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.kinds import BODIES, ROLLER_BODIES
+from contactstudy.solution import solve
+from contactstudy.study.numbers import number, rounded
 from contactstudy.study.profile_kinds import profile_table
 
-DIGITS = 12
-"""Significant digits of a number in a study: more would tell apart values that are the same."""
+# Most points that a table {start, stop, count} may ask for: a wrong digit asks for many more.
+MOST_POINTS = 100_000
+
+BODIES = ("finite-length", "quarter-space", "half-space")
+
+# How a roller's ends are treated, by the name of the body that it is; None for a rigid one.
+ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
+
+Check = Callable[[str, object], Any]
 
 
-def rounded(value: float) -> float:
-    """Return `value` to :data:`DIGITS` significant digits, with one zero instead of two.
-
-    Examples
-    --------
-    >>> rounded(0.1 + 0.2), rounded(-0.0)
-    (0.3, 0.0)
-    """
-    return float(f"{value:.{DIGITS}g}") + 0.0
-
-
-def _number(name: str, value: object) -> float:
-    return rounded(checks.finite(name, value))
-
-
-def _flag(name: str, value: object) -> bool:
+def flag(name: str, value: object) -> bool:
+    """Return True or False."""
     checks.instance(name, value, (bool, np.bool_), "true or false")
     return bool(value)
 
 
-def _body(name: str, value: object) -> str:
-    checks.instance(name, value, str, "text")
-    return checks.known_name(name, str(value), BODIES)
+def one_of(known: Iterable[str]) -> Check:
+    """Return the check of a word that must be one of `known`."""
+    names = tuple(known)
+
+    def word(name: str, value: object) -> str:
+        checks.instance(name, value, str, "text")
+        return checks.known_name(name, str(value), names)
+
+    return word
 
 
-def _model(name: str, value: object) -> str:
-    checks.instance(name, value, str, "text")
-    return checks.known_name(name, str(value), MODELS)
-
-
-def _roller_body(name: str, value: object) -> str:
-    checks.instance(name, value, str, "text")
-    return checks.known_name(name, str(value), ROLLER_BODIES)
-
-
-def _profile(name: str, value: object) -> dict[str, Any]:
+def profile(name: str, value: object) -> dict[str, Any]:
+    """Return a profile's table with all its numbers rounded."""
     return {key: _rounded_within(entry) for key, entry in profile_table(value).items()}
 
 
@@ -67,8 +68,8 @@ def _rounded_within(entry: Any) -> Any:
     return entry
 
 
-def _points(name: str, value: object) -> list[float]:
-    """Points as a list: given so, or as a table {start, stop, count} of evenly spaced ones."""
+def points(name: str, value: object) -> list[float]:
+    """Return points given as a list, or as a table {start, stop, count} of evenly spaced ones."""
     if isinstance(value, Mapping):
         for key in value:
             checks.known_name(f"{name} key", str(key), ("start", "stop", "count"))
@@ -76,55 +77,159 @@ def _points(name: str, value: object) -> list[float]:
         if missing:
             raise InvalidInputError(name, dict(value), "a list, or a table with start, stop and count")
         start, stop = (checks.finite(f"{name}.{key}", value[key]) for key in ("start", "stop"))
-        points = np.linspace(start, stop, checks.count(f"{name}.count", value["count"]))
+        count = checks.count(f"{name}.count", value["count"])
+        if count > MOST_POINTS:
+            raise InvalidInputError(f"{name}.count", count, f"at most {MOST_POINTS}")
+        listed = np.linspace(start, stop, count)
     else:
-        points = checks.coordinates(name, value, "half-widths a")
-    return [rounded(float(point)) for point in points]
+        listed = checks.coordinates(name, value, "half-widths a")
+    return [number(name, point) for point in listed.tolist()]
 
 
-class Parameter(NamedTuple):
-    """Specification of one parameter; `default` None means that there is none, or that it may be left out."""
+@dataclass(frozen=True)
+class Parameter:
+    """Specification of one parameter.
 
-    check: Callable[[str, object], Any]
-    default: Any
+    Parameters
+    ----------
+    name : str
+        As in a study.
+    check : callable
+        Takes name and value; returns the value in the form that counts for the identity, or raises.
+    units : str
+        Unit; empty for a word.
+    meaning : str
+        For the reader: long name of the coordinate, and the documentation.
+    taker : callable, optional
+        Has a keyword argument of this name: its default is the parameter's, and the value is handed on to it.
+    fallback : object
+        Default of a parameter without a taker; None: there is none, or it may be left out.
+    absent : str
+        For the documentation: what it is to leave out a parameter without a default.
+    note : str
+        For the documentation: what to know beside the meaning.
+    """
+
+    name: str
+    check: Check
     units: str
     meaning: str
+    taker: Callable[..., Any] | None = None
+    fallback: Any = None
+    absent: str = ""
+    note: str = ""
+
+    @cached_property
+    def default(self) -> Any:
+        """Value of a case that does not give the parameter; None if there is none, or it may be left out."""
+        value = self.fallback
+        if self.taker is not None:
+            value = inspect.signature(self.taker).parameters[self.name].default
+        return None if value is None else self.check(self.name, value)
 
 
-PARAMETERS: dict[str, Parameter] = {
-    "body": Parameter(_body, "finite-length", "", "kind of elastic body"),
-    "model": Parameter(_model, MODELS[0], "", "how free ends are treated: exactly, or by a quick fix for comparison"),
-    "young": Parameter(_number, None, "Pa", "Young's modulus"),
-    "poisson": Parameter(_number, None, "1", "Poisson's ratio"),
-    "radius": Parameter(_number, None, "m", "roller radius"),
-    "roller_length": Parameter(_number, None, "m", "roller length; the body is longer by 2 e"),
-    "gamma": Parameter(_number, None, "1", "body length over roller radius; the roller is shorter by 2 e"),
-    "e_over_a": Parameter(_number, None, "1", "distance e of roller end and free end over Hertz half-width a"),
-    "end_distance": Parameter(_number, None, "m", "distance e of roller end and free end"),
-    "max_pressure": Parameter(_number, None, "Pa", "peak pressure p0 of the Hertz line contact"),
-    "load": Parameter(_number, None, "N", "normal load"),
-    "friction": Parameter(_number, 0.0, "1", "coefficient of friction"),
-    "profile": Parameter(_profile, {"kind": "cylinder"}, "", "roller profile"),
-    "roller_body": Parameter(_roller_body, "rigid", "", "roller as a rigid shape or as an elastic body"),
-    "roller_young": Parameter(_number, None, "Pa", "Young's modulus of an elastic roller; default: the body's"),
-    "roller_poisson": Parameter(_number, None, "1", "Poisson's ratio of an elastic roller; default: the body's"),
-    "tilt": Parameter(_number, 0.0, "rad", "misalignment of the roller; positive if larger x is pressed deeper"),
-    "load_offset": Parameter(_number, None, "m", "where the load acts, from mid-length; default: the tilt is held"),
-    "coupled": Parameter(_flag, False, "1", "whether friction displaces the surface normally"),
-    "cells_x": Parameter(_number, 8.0, "1", "cells per half-width a along x"),
-    "cells_y": Parameter(_number, 16.0, "1", "cells per half-width a along y"),
-    "window": Parameter(_number, 2.0, "1", "half-width of the window in y over a"),
-    "margin": Parameter(_number, 4.0, "1", "distance from roller to grid edge over a, where the body goes on"),
-    "tolerance": Parameter(_number, 1e-6, "1", "tolerance of the contact iteration"),
-    "error_estimate": Parameter(
-        _flag, False, "1", "whether a contact on half the cells gives the discretisation error"
+_WITH_CASE = (
+    Parameter(
+        "body",
+        one_of(BODIES),
+        "",
+        "kind of elastic body",
+        fallback=BODIES[0],
+        note="`finite-length`, `quarter-space` (one free end, at x = 0) or `half-space`",
     ),
-    "stresses": Parameter(_flag, True, "1", "whether stresses are calculated"),
-    "field_x_over_a": Parameter(_points, None, "1", "stress points: x from the free end over a"),
-    "field_y_over_a": Parameter(_points, None, "1", "stress points: y over a"),
-    "field_z_over_a": Parameter(_points, None, "1", "stress points: depth over a"),
-}
+    Parameter(
+        "model",
+        one_of(MODELS),
+        "",
+        "how free ends are treated",
+        fallback=MODELS[0],
+        note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
+        "only), the published scheme with one pair of images",
+    ),
+    Parameter("young", number, "Pa", "Young's modulus of the body", absent="required"),
+    Parameter("poisson", number, "1", "Poisson's ratio of the body", absent="required"),
+    Parameter("radius", number, "m", "roller radius", absent="required"),
+    Parameter("roller_length", number, "m", "roller length; the body is longer by 2 e", absent="or `gamma`"),
+    Parameter(
+        "gamma",
+        number,
+        "1",
+        "body length over roller radius; the roller is shorter by 2 e",
+        absent="or `roller_length`",
+    ),
+    Parameter(
+        "e_over_a",
+        number,
+        "1",
+        "distance e of roller end and free end over Hertz half-width a",
+        absent="or `end_distance`",
+        note="negative: the roller overhangs",
+    ),
+    Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
+    Parameter("max_pressure", number, "Pa", "peak pressure p0 of the Hertz line contact", Case, absent="or `load`"),
+    Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`"),
+    Parameter("friction", number, "1", "coefficient of friction", Case),
+    Parameter("profile", profile, "", "roller profile", fallback={"kind": "cylinder"}),
+    Parameter(
+        "roller_body",
+        one_of(ROLLER_BODIES),
+        "",
+        "roller as a rigid shape or as an elastic body",
+        fallback="rigid",
+        note="`rigid`; `finite-length`, with free ends; or `half-space`",
+    ),
+    Parameter("roller_young", number, "Pa", "Young's modulus of an elastic roller", absent="the body's"),
+    Parameter("roller_poisson", number, "1", "Poisson's ratio of an elastic roller", absent="the body's"),
+    Parameter("tilt", number, "rad", "misalignment of the roller; positive if larger x is pressed deeper", Case),
+    Parameter(
+        "load_offset",
+        number,
+        "m",
+        "where the load acts, from mid-length",
+        absent="the tilt is held",
+        note="the roller tilts until it balances",
+    ),
+    Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
+)
+_WITH_SOLVER = (
+    Parameter("cells_x", number, "1", "cells per half-width a along x", choose_grid),
+    Parameter("cells_y", number, "1", "cells per half-width a along y", choose_grid),
+    Parameter(
+        "window",
+        number,
+        "1",
+        "half-width of the window in y over a",
+        choose_grid,
+        note="the default is widened where the contact needs more; any other value is kept",
+    ),
+    Parameter("margin", number, "1", "distance from roller to grid edge over a, where the body goes on", choose_grid),
+    Parameter("tolerance", number, "1", "tolerance of the contact iteration", solve),
+    Parameter("error_estimate", flag, "1", "whether a contact on half the cells gives the discretisation error", solve),
+    Parameter("stresses", flag, "1", "whether stresses are calculated", solve),
+    Parameter(
+        "field_x_over_a",
+        points,
+        "1",
+        "stress points: x from the free end over a",
+        absent="cell centres",
+        note="a list, or `{start, stop, count}`",
+    ),
+    Parameter("field_y_over_a", points, "1", "stress points: y over a", absent="cell centres"),
+    Parameter("field_z_over_a", points, "1", "stress points: depth over a", absent="19 depths"),
+)
+PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in (*_WITH_CASE, *_WITH_SOLVER)}
 """Every parameter that a case of a study can have."""
+
+
+def taken_by(taker: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those of `values` that `taker` has keyword arguments for.
+
+    Examples
+    --------
+    >>> taken_by(choose_grid, {"cells_x": 4.0, "friction": 0.1})
+    {'cells_x': 4.0}
+    """
+    return {name: value for name, value in values.items() if PARAMETERS[name].taker is taker}
 
 
 def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, Any]:
@@ -157,18 +262,44 @@ def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, An
     }
 
 
+def counted(name: str, value: Any) -> Any:
+    """Return what of a checked value counts for a case's identity; None if that is its default.
+
+    Examples
+    --------
+    >>> counted("friction", 0.0), counted("profile", {"kind": "tapered", "half_angle": 0.1, "name": "ours"})
+    (None, {'kind': 'tapered', 'half_angle': 0.1})
+    """
+    if name == "profile":
+        value = {key: entry for key, entry in value.items() if key != "name"}
+    return None if value == PARAMETERS[name].default else value
+
+
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return checked `values` without those that equal the default and without a profile's name."""
-    kept = {}
-    for name, value in values.items():
-        if name == "profile":
-            value = {key: entry for key, entry in value.items() if key != "name"}
-        if value != PARAMETERS[name].default:
-            kept[name] = value
-    return kept
+    pairs = ((name, counted(name, value)) for name, value in values.items())
+    return {name: value for name, value in pairs if value is not None}
 
 
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` completed by the defaults."""
-    defaults = {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None}
-    return defaults | dict(values)
+    return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
+
+
+def _written(value: Any) -> str:
+    """Return a default as it is written in a study file."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, dict):
+        return f"{{{', '.join(f'{key} = {_written(entry)}' for key, entry in value.items())}}}"
+    return f'"{value}"' if isinstance(value, str) else f"{value:g}"
+
+
+def documented() -> str:
+    """Return the table of all parameters in Markdown, as the documentation shows it."""
+    rows = ["| parameter | default | unit | meaning |", "|---|---|---|---|"]
+    for name, entry in PARAMETERS.items():
+        default = entry.absent if entry.default is None else f"`{_written(entry.default)}`"
+        meaning = f"{entry.meaning}; {entry.note}" if entry.note else entry.meaning
+        rows.append(f"| `{name}` | {default} | {entry.units if entry.units != '1' else ''} | {meaning} |")
+    return "\n".join(rows)

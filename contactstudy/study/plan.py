@@ -9,10 +9,10 @@ from typing import Any
 
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
-from contactstudy.study.identity import case_id
-from contactstudy.study.parameters import without_defaults
+from contactstudy.study.identity import fragment, identity_of
+from contactstudy.study.parameters import counted
 from contactstudy.study.profile_kinds import profile_label
-from contactstudy.study.setup import build_setup
+from contactstudy.study.setup import setup_of
 
 Level = str
 LEVELS: tuple[Level, ...] = ("summary", "surface", "fields")
@@ -114,12 +114,10 @@ def label(name: str, value: Any) -> Any:
     return value
 
 
-def in_words(values: Mapping[str, Any]) -> str:
-    """Parameters as ``name=value`` words."""
-    shown = {name: label(name, value) for name, value in values.items()}
-    return " ".join(
-        f"{name}={value:g}" if isinstance(value, float) else f"{name}={value}" for name, value in shown.items()
-    )
+def in_words(name: str, value: Any) -> str:
+    """Return a parameter as ``name=value``."""
+    shown = label(name, value)
+    return f"{name}={shown:g}" if isinstance(shown, float) else f"{name}={shown}"
 
 
 def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]]) -> bool:
@@ -146,7 +144,6 @@ def make_plan(
             for axis, index in zip(axes, position, strict=True):
                 swept |= axis.entries[index]
             chosen.append(({**base, **swept}, swept, position))
-    product = len(chosen)
     chosen += [({**base, **case}, dict(case), ()) for case in cases]
     kept = [entry for entry in chosen if not _excluded(entry[0], exclude)]
     if cases:
@@ -154,21 +151,36 @@ def make_plan(
     else:
         cube = cube_of_axes(axes, label)
         positions = [entry[2] if cube.dims != ("case",) or axes else (0,) for entry in kept]
-    assert product or cases
+    planner = Planner()
     planned = [
-        _planned(values, in_words(swept), position)
-        for (values, swept, _), position in zip(kept, positions, strict=True)
+        planner.planned(values, swept, position) for (values, swept, _), position in zip(kept, positions, strict=True)
     ]
     return Plan(name, level, tuple(planned), cube)
 
 
-def _planned(values: dict[str, Any], words: str, position: tuple[int, ...]) -> PlannedCase:
-    parameters = without_defaults(values)
-    identity = case_id(parameters)
-    words = words or "the only case"
-    try:
-        setup = build_setup(parameters)
-    except ContactStudyError as error:
-        return PlannedCase(identity, parameters, words, position, reason=str(error))
-    cells = setup.grid.cells_x * setup.grid.cells_y
-    return PlannedCase(identity, parameters, words, position, "", setup.operator, cells, setup.points)
+class Planner:
+    """Makes planned cases of checked parameters; what one value says is worked out once for all cases that share it."""
+
+    def __init__(self) -> None:
+        # By name and identity of the value, which is kept beside so that the identity stays its own.
+        self._known: dict[tuple[str, int], tuple[Any, str, str]] = {}
+
+    def _said(self, name: str, value: Any) -> tuple[Any, str, str]:
+        """Return a value, its part of the identity, and the value in words."""
+        key = (name, id(value))
+        if key not in self._known:
+            self._known[key] = (value, fragment(name, value), in_words(name, value))
+        return self._known[key]
+
+    def planned(self, values: Mapping[str, Any], swept: Mapping[str, Any], position: tuple[int, ...]) -> PlannedCase:
+        """Return a case with its identity, its size, and why it cannot be solved if so."""
+        fragments = {name: self._said(name, value)[1] for name, value in values.items()}
+        identity = identity_of(fragments)
+        words = " ".join(self._said(name, value)[2] for name, value in swept.items()) or "the only case"
+        parameters = {name: counted(name, value) for name, value in values.items() if fragments[name]}
+        try:
+            setup = setup_of(parameters)
+        except ContactStudyError as error:
+            return PlannedCase(identity, parameters, words, position, reason=str(error))
+        cells = setup.grid.cells_x * setup.grid.cells_y
+        return PlannedCase(identity, parameters, words, position, "", setup.operator, cells, setup.points)

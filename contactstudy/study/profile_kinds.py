@@ -7,16 +7,24 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from contactstudy import checks, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
+from contactstudy.study.numbers import number
 
 Table = dict[str, Any]
+
+# Profiles within profiles, as sums of halves of sums.
+DEEPEST = 16
+
+# Points of a measured profile in a study.
+MOST_POINTS = 50_000
 
 
 @dataclass(frozen=True)
@@ -28,23 +36,21 @@ class Surroundings:
     max_pressure: float
 
 
-@dataclass(frozen=True)
-class ProfileKind:
-    """How one kind of profile is written in a study.
+class ProfileKind(Protocol):
+    """How one kind of profile is written in a study."""
 
-    Parameters
-    ----------
-    made : type
-        The class of the profile; its fields are the keys of the table.
-    read : callable
-        Checks the keys and values of a table (without `kind` and `name`); leaves out what is at its default.
-    build : callable
-        Makes the profile from what `read` returns, and the surroundings.
-    """
+    @property
+    def made(self) -> type:
+        """The class of the profile; its fields are keys of the table."""
 
-    made: type
-    read: Callable[[Mapping[str, Any]], Table]
-    build: Callable[[Mapping[str, Any], Surroundings], Profile]
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check keys and values of a table without `kind` and `name`; leave out what is at its default.
+
+        Profiles within the table are at `depth` + 1.
+        """
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Make the profile from what :meth:`read` returns, and the surroundings."""
 
 
 def _only(table: Mapping[str, Any], known: Sequence[str]) -> None:
@@ -58,110 +64,147 @@ def _require(table: Mapping[str, Any], *names: str) -> None:
             raise InvalidInputError("profile", dict(table), f"given with {name}")
 
 
-def _numbers(made: Any, *designed: str, of_radius: Mapping[str, float] | None = None) -> ProfileKind:
-    """Kind of profile whose fields are numbers.
+@dataclass(frozen=True)
+class Numbers:
+    """Kind of profile whose fields are numbers: a dataclass says which, and their defaults.
 
     Parameters
     ----------
     made : type
         The dataclass.
-    *designed : str
+    designed : tuple of str
         Fields that `design_pressure` may be given for, through the class' ``for_pressure``.
     of_radius : mapping
         Fields that need not be given, and how many times the roller's radius they then are.
     """
-    scales = of_radius or {}
-    defaults = {entry.name: None if entry.default is MISSING else entry.default for entry in fields(made)} | (
-        {"design_pressure": None} if designed else {}
-    )
-    needed = [entry.name for entry in fields(made) if entry.default is MISSING and entry.name not in scales]
 
-    def read(table: Mapping[str, Any]) -> Table:
+    made: Any
+    designed: tuple[str, ...] = ()
+    of_radius: Mapping[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def _defaults(self) -> dict[str, Any]:
+        """Default of every key; MISSING where a value is needed."""
+        return {entry.name: None if entry.name in self.of_radius else entry.default for entry in fields(self.made)}
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check that the keys are fields and the values numbers."""
+        defaults = {**self._defaults, "design_pressure": None} if self.designed else self._defaults
         _only(table, list(defaults))
-        given = {key: checks.finite(f"profile.{key}", value) for key, value in table.items() if value is not None}
+        given = {key: number(f"profile.{key}", value) for key, value in table.items() if value is not None}
         return {key: value for key, value in given.items() if value != defaults[key]}
 
-    def build(table: Mapping[str, Any], around: Surroundings) -> Profile:
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Call the class with the numbers, or its ``for_pressure`` with a `design_pressure`."""
         values = dict(table)
-        if designed and ("design_pressure" in values) == any(name in values for name in designed):
-            choice = f"exactly one of {' with '.join(designed)} and design_pressure"
+        pressure = values.pop("design_pressure", None)
+        if self.designed and (pressure is None) != any(name in values for name in self.designed):
+            choice = f"exactly one of {' with '.join(self.designed)} and design_pressure"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
-        if "design_pressure" in values:
-            _require(values, *(name for name in needed if name not in designed))
-            pressure = values.pop("design_pressure")
-            designed_for: Profile = made.for_pressure(pressure, radius=around.radius, modulus=around.modulus, **values)
-            return designed_for
-        _require(values, *needed)
-        profile: Profile = made(**{name: scale * around.radius for name, scale in scales.items()} | values)
-        return profile
-
-    return ProfileKind(made, read, build)
-
-
-def _read_measured(table: Mapping[str, Any]) -> Table:
-    """Positions and drops, from the file if one is named: the content is what counts, not where it was."""
-    options = ("remove_tilt", "remove_offset", "largest_spike")
-    points = ("positions", "drops")
-    _only(table, ["file", *options, *points])
-    values = {key: value for key, value in table.items() if value is not None}
-    if "file" in values:
-        if any(name in values for name in points):
-            raise InvalidInputError("profile", sorted(values), "given with file, or with positions and drops")
-        checks.instance("profile.file", values["file"], str, "the path of a CSV or netCDF file")
-        for option in options[:2]:
-            checks.instance(f"profile.{option}", values.get(option, False), bool, "true or false")
-        read = profiles.Measured.from_file(values.pop("file"), **values)
-        values = {"positions": read.positions, "drops": read.drops, "largest_spike": read.largest_spike}
-    _only(values, [*points, "largest_spike"])
-    _require(values, *points)
-    result: Table = {name: checks.coordinates(f"profile.{name}", values[name], "metres").tolist() for name in points}
-    if values.get("largest_spike") is not None:
-        result["largest_spike"] = checks.finite("profile.largest_spike", values["largest_spike"])
-    return result
+        needed = [name for name, default in self._defaults.items() if default is MISSING]
+        if pressure is None:
+            _require(values, *needed)
+            sizes = {name: times * around.radius for name, times in self.of_radius.items()}
+            made: Profile = self.made(**(sizes | values))
+        else:
+            _require(values, *(name for name in needed if name not in self.designed))
+            made = self.made.for_pressure(pressure, radius=around.radius, modulus=around.modulus, **values)
+        return made
 
 
-def _nameless(value: object) -> Table:
-    return {key: entry for key, entry in profile_table(value).items() if key != "name"}
+class MeasuredPoints:
+    """Kind of profile that is given by its points, or by a file that has them."""
+
+    made = profiles.Measured
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Positions and drops, from the file if one is named: the content is what counts, not where it was."""
+        options = ("remove_tilt", "remove_offset", "largest_spike")
+        points = ("positions", "drops")
+        _only(table, ["file", *options, *points])
+        values = {key: value for key, value in table.items() if value is not None}
+        if "file" in values:
+            if any(name in values for name in points):
+                raise InvalidInputError("profile", sorted(values), "given with file, or with positions and drops")
+            checks.instance("profile.file", values["file"], str, "the path of a CSV or netCDF file")
+            for option in options[:2]:
+                checks.instance(f"profile.{option}", values.get(option, False), bool, "true or false")
+            read = profiles.Measured.from_file(values.pop("file"), **values)
+            values = {"positions": read.positions, "drops": read.drops, "largest_spike": read.largest_spike}
+        _only(values, [*points, "largest_spike"])
+        _require(values, *points)
+        result: Table = {
+            name: checks.coordinates(f"profile.{name}", values[name], "metres").tolist() for name in points
+        }
+        if len(result["positions"]) > MOST_POINTS:
+            raise InvalidInputError(
+                "profile",
+                f"{len(result['positions'])} points",
+                f"measured at no more than {MOST_POINTS} points, because every result keeps them",
+                "thin the points out: cells of the contact are micrometres wide",
+            )
+        if values.get("largest_spike") is not None:
+            result["largest_spike"] = number("profile.largest_spike", values["largest_spike"])
+        return result
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Make the profile of the points."""
+        return self.made(**table)
 
 
-def _read_halves(table: Mapping[str, Any]) -> Table:
-    _only(table, ["left", "right"])
-    _require(table, "left", "right")
-    return {side: _nameless(table[side]) for side in ("left", "right")}
+class TwoHalves:
+    """Kind of profile whose halves are profiles."""
+
+    made = profiles.Halves
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check both halves."""
+        _only(table, ["left", "right"])
+        _require(table, "left", "right")
+        return {side: _nameless(table[side], depth + 1) for side in ("left", "right")}
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Make both halves."""
+        return self.made(**{side: build_profile(table[side], around) for side in ("left", "right")})
 
 
-def _read_sum(table: Mapping[str, Any]) -> Table:
-    _only(table, ["terms"])
-    _require(table, "terms")
-    checks.instance("profile.terms", table["terms"], (list, tuple), "a list of profiles")
-    return {"terms": [_nameless(term) for term in table["terms"]]}
+class Terms:
+    """Kind of profile that is a sum of profiles."""
+
+    made = profiles.Sum
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check all terms."""
+        _only(table, ["terms"])
+        _require(table, "terms")
+        checks.instance("profile.terms", table["terms"], (list, tuple), "a list of profiles")
+        return {"terms": [_nameless(term, depth + 1) for term in table["terms"]]}
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Make all terms."""
+        return self.made(tuple(build_profile(term, around) for term in table["terms"]))
+
+
+def _nameless(value: object, depth: int) -> Table:
+    """Table of a profile within another one, without its name."""
+    return {key: entry for key, entry in profile_table(value, depth).items() if key != "name"}
 
 
 PROFILES: dict[str, ProfileKind] = {
-    "cylinder": _numbers(profiles.Cylinder),
-    "tapered": _numbers(profiles.Tapered),
-    "lundberg": _numbers(profiles.Lundberg, "amplitude"),
-    "johns-gohar": _numbers(profiles.JohnsGohar, "amplitude", "half_width"),
-    "fujiwara-kawase": _numbers(profiles.FujiwaraKawase, "amplitude"),
-    "iso-cylindrical": _numbers(profiles.IsoCylindrical, of_radius={"diameter": 2.0}),
-    "iso-tapered": _numbers(profiles.IsoTapered, of_radius={"diameter": 2.0}),
-    "full-crown": _numbers(profiles.FullCrown),
-    "partial-crown": _numbers(profiles.PartialCrown),
-    "ellipsoid": _numbers(profiles.Ellipsoid),
-    "sphere": _numbers(profiles.Sphere, of_radius={"radius": 1.0}),
-    "measured": ProfileKind(profiles.Measured, _read_measured, lambda table, around: profiles.Measured(**table)),
-    "halves": ProfileKind(
-        profiles.Halves,
-        _read_halves,
-        lambda table, around: profiles.Halves(
-            left=build_profile(table["left"], around), right=build_profile(table["right"], around)
-        ),
-    ),
-    "sum": ProfileKind(
-        profiles.Sum,
-        _read_sum,
-        lambda table, around: profiles.Sum(tuple(build_profile(term, around) for term in table["terms"])),
-    ),
+    "cylinder": Numbers(profiles.Cylinder),
+    "tapered": Numbers(profiles.Tapered),
+    "lundberg": Numbers(profiles.Lundberg, designed=("amplitude",)),
+    "johns-gohar": Numbers(profiles.JohnsGohar, designed=("amplitude", "half_width")),
+    "fujiwara-kawase": Numbers(profiles.FujiwaraKawase, designed=("amplitude",)),
+    "iso-cylindrical": Numbers(profiles.IsoCylindrical, of_radius={"diameter": 2.0}),
+    "iso-tapered": Numbers(profiles.IsoTapered, of_radius={"diameter": 2.0}),
+    "full-crown": Numbers(profiles.FullCrown),
+    "partial-crown": Numbers(profiles.PartialCrown),
+    "ellipsoid": Numbers(profiles.Ellipsoid),
+    "sphere": Numbers(profiles.Sphere, of_radius={"radius": 1.0}),
+    "measured": MeasuredPoints(),
+    "halves": TwoHalves(),
+    "sum": Terms(),
 }
 """Kinds of profile by their name in a study."""
 
@@ -169,7 +212,7 @@ KIND_OF = {kind.made: name for name, kind in PROFILES.items()}
 """Profiles may also be given as objects, because their fields are the keys of their table."""
 
 
-def profile_table(value: object) -> Table:
+def profile_table(value: object, depth: int = 0) -> Table:
     """Table of a profile: checked keys, numbers as floats, defaults left out, `kind` always, `name` if given.
 
     Parameters
@@ -177,6 +220,8 @@ def profile_table(value: object) -> Table:
     value : mapping, str or Profile
         A table with a `kind`, the name of a kind without any more keys, or a profile. Profiles within it (of a sum,
         of two halves) likewise.
+    depth : int
+        Number of profiles that this one is within.
 
     Raises
     ------
@@ -190,6 +235,8 @@ def profile_table(value: object) -> Table:
     >>> profile_table(profiles.Cylinder() + profiles.Lundberg(1e-6))
     {'kind': 'sum', 'terms': [{'kind': 'cylinder'}, {'kind': 'lundberg', 'amplitude': 1e-06}]}
     """
+    if depth > DEEPEST:
+        raise InvalidInputError("profile", f"more than {DEEPEST} profiles within one another", "nested less deeply")
     if is_dataclass(value) and type(value) in KIND_OF:
         given = {entry.name: getattr(value, entry.name) for entry in fields(value)}
         value = {"kind": KIND_OF[type(value)], **given}
@@ -208,7 +255,7 @@ def profile_table(value: object) -> Table:
         checks.instance("profile.name", name, str, "text")
         table["name"] = name
     content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
-    return table | PROFILES[kind].read(content)
+    return table | PROFILES[kind].read(content, depth)
 
 
 def profile_label(table: Mapping[str, Any]) -> str:

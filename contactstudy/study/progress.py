@@ -50,6 +50,8 @@ class Progress:
         self._count = self._total = 0
         self._began = time.monotonic()
         self._file: IO[str] | None = None
+        self._wanted = shown
+        self.remarks: list[str] = []
 
     def __enter__(self) -> Progress:
         """Open the log."""
@@ -76,6 +78,19 @@ class Progress:
             # A log that cannot grow must not stop the run; a full disk shows when a case is written.
             with contextlib.suppress(OSError):
                 self._file.write(f"{now} {message}\n")
+
+    def tell(self, message: str) -> None:
+        """Write a line to the log and, if progress is wanted, to the screen at once, even from a handler of signals."""
+        self.say(message)
+        if self._wanted:
+            with contextlib.suppress(OSError, ValueError):
+                os.write(sys.stderr.fileno(), f"contactstudy: {message}\n".encode())
+
+    def remark(self, message: str) -> None:
+        """Tell what the reader should still know when the run has ended; the same thing once only."""
+        if message not in self.remarks:
+            self.remarks.append(message)
+            self.tell(message)
 
     def begin(self, jobs: list[Job], total: int) -> None:
         """Say what is to be done."""

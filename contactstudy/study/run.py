@@ -5,26 +5,25 @@ from __future__ import annotations
 import contextlib
 import signal
 import threading
+import time
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
 
+from contactstudy import checks
+from contactstudy.errors import Terminated
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.executor import execute
+from contactstudy.study.executor import WAIT_SECONDS, execute
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lock import locked
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
-from contactstudy.study.work import Job, Record, Solver, circumstances
+from contactstudy.study.work import Job, Record, Solver, differences
 
 SAVE_SECONDS = 5.0
-
-
-class Terminated(KeyboardInterrupt):
-    """The process was asked to end by SIGTERM."""
 
 
 @dataclass(frozen=True)
@@ -41,12 +40,15 @@ class RunReport:
         State of every case of the plan, in its order, after the run.
     solved : int
         Cases solved now, failed ones included.
+    remarks : tuple of str
+        What the reader should know of this run: workers with other versions, workers that could not be used.
     """
 
     folder: Path
     plan: Plan
     entries: list[Entry]
     solved: int
+    remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
@@ -78,20 +80,24 @@ class RunReport:
 
 
 @contextlib.contextmanager
-def _terminable() -> Iterator[None]:
-    """Let SIGTERM end the block as Ctrl-C does; signals reach the main thread only."""
+def _interruptible(say: Callable[[str], None]) -> Iterator[None]:
+    """Let the first Ctrl-C or SIGTERM end the block, and no further one break off the tidying up after it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
 
     def handler(number: int, frame: FrameType | None) -> None:
-        raise Terminated("ended by SIGTERM")
+        for each in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(each, signal.SIG_IGN)
+        say("interrupted: ending the workers ...")
+        raise Terminated("ended by SIGTERM") if number == signal.SIGTERM else KeyboardInterrupt
 
-    previous = signal.signal(signal.SIGTERM, handler)
+    previous = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
     try:
         yield
     finally:
-        signal.signal(signal.SIGTERM, previous)
+        for number, former in previous.items():
+            signal.signal(number, former)
 
 
 def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str], None]) -> list[Job]:
@@ -99,12 +105,12 @@ def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str
     for path, problem in folder.foreign_files():
         log(f"{problem}; moved to {folder.set_aside(path)}")
     jobs = []
-    found = circumstances() | {"study": plan.name}
     for case in plan.unique:
         entry, _ = folder.state(case.id, plan.level)
         if entry.status == "missing" or (entry.status == "stale" and not entry.usable) or entry.status in again:
+            place = str(folder.path)
             jobs.append(
-                Job(case.id, case.name, case.parameters, str(folder.path), plan.level, case.operator, case.cost, found)
+                Job(case.id, case.name, case.parameters, place, plan.level, case.operator, case.cost, plan.name)
             )
     return jobs
 
@@ -115,6 +121,7 @@ def run_study(
     *,
     workers: int | None = None,
     scheduler: str | None = None,
+    wait: float = WAIT_SECONDS,
     progress: bool = True,
     again: tuple[str, ...] = (),
     solver: Solver | None = None,
@@ -134,6 +141,8 @@ def run_study(
         Number of local processes; default one per core. 0 solves in this process, without dask.
     scheduler : str, optional
         Address ``tcp://...`` of a dask scheduler to use instead; its workers must see `folder`.
+    wait : float
+        How long to wait for a worker of `scheduler` while there is none, seconds; infinity waits for ever.
     progress : bool
         Whether to show a bar on a terminal; ``run.log`` in the folder is written in any case.
     again : tuple of {"failed", "stale"}
@@ -147,8 +156,10 @@ def run_study(
 
     Raises
     ------
+    InvalidInputError
+        If an argument is of the wrong kind.
     StudyFileError
-        If no case of the study can be solved.
+        If no case of the study can be solved, or the scheduler does not answer or has no worker that can be used.
     LockedError
         If another process runs a study in the folder.
     StoreError
@@ -168,21 +179,27 @@ def run_study(
     >>> run_study(study, tempfile.mkdtemp(), workers=0, progress=False).counts
     {'ok': 2}
     """
+    checks.instance("study", study, Study, "a Study, as from Study.from_toml(path)")
     plan = study.plan()
     if not plan.unique:
         reason = plan.skipped[0].reason if plan.skipped else "every combination is excluded"
         raise StudyFileError(f"study {study.name!r} has no case that can be solved: {reason}")
     place = Folder(folder if folder is not None else Path("results") / study.name)
     place.create()
-    with locked(place.path) as took_over, _terminable(), Progress(place.path / "run.log", shown=progress) as log:
+    with (
+        Progress(place.path / "run.log", shown=progress) as log,
+        _interruptible(log.tell),
+        locked(place.path) as took_over,
+    ):
         if took_over:
             log.say(took_over)
         place.clean()
         place.write_study(study)
         jobs = _todo(plan, place, again, log.say)
         log.begin(jobs, total=len(plan.unique))
+        records = execute(jobs, workers=workers, scheduler=scheduler, wait=wait, solver=solver, say=log.remark)
         try:
-            _collect(execute(jobs, workers=workers, scheduler=scheduler, solver=solver), place, jobs, log)
+            _collect(records, place, jobs, log)
         except KeyboardInterrupt:
             log.say("interrupted: finished cases are kept, run again to go on")
             raise
@@ -191,26 +208,26 @@ def run_study(
             raise
         finally:
             # The manifest is a cache: a disk that cannot take it must not hide why the run ended.
-            with _uninterrupted(), contextlib.suppress(StoreError):
+            with contextlib.suppress(StoreError):
                 place.clean()
                 place.save_manifest()
-        report = RunReport(place.path, plan, place.entries(plan), len(jobs))
+        report = RunReport(place.path, plan, place.entries(plan), len(jobs), tuple(log.remarks))
         log.say(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
     return report
 
 
-def _collect(records: Iterator[Record], place: Folder, jobs: list[Job], log: Progress) -> None:
+def _collect(records: Generator[Record, None, None], place: Folder, jobs: list[Job], log: Progress) -> None:
     """Take in the records as they come."""
-    import time
-
     by_id = {job.id: job for job in jobs}
     saved = time.monotonic()
-    with contextlib.closing(records) as stream:  # type: ignore[type-var]
-        for record in stream:
+    with contextlib.closing(records):
+        for record in records:
             job = by_id[record.id]
             if record.status == "ok":
                 place.failure_path(record.id).unlink(missing_ok=True)
                 place.remember(place.case_path(record.id), record.id, record.run, record.scalars)
+                if other := differences(record.run):
+                    log.remark(f"a worker solves with other versions than this process has: {other}")
             else:
                 place.write_failure(record.id, job.parameters, record.error, record.message)
             log.finished(job, record)
@@ -219,33 +236,35 @@ def _collect(records: Iterator[Record], place: Folder, jobs: list[Job], log: Pro
                 saved = time.monotonic()
 
 
-@contextlib.contextmanager
-def _uninterrupted() -> Iterator[None]:
-    """Let no further Ctrl-C break off the cleaning."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    previous = {number: signal.signal(number, signal.SIG_IGN) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield
-    finally:
-        for number, handler in previous.items():
-            signal.signal(number, handler)
-
-
-def rerun_study(folder: str | Path, **options: object) -> RunReport:
+def rerun_study(
+    folder: str | Path,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    wait: float = WAIT_SECONDS,
+    progress: bool = True,
+    solver: Solver | None = None,
+) -> RunReport:
     """Solve the failed and the stale cases of a folder's study anew, and the missing ones.
 
     Parameters
     ----------
     folder : str or Path
         The study's folder.
-    **options
+    workers, scheduler, wait, progress, solver
         As for :func:`run_study`.
 
     Returns
     -------
     RunReport
     """
-    study = Folder(folder).read_study()
-    return run_study(replace(study), folder, again=("failed", "stale"), **options)  # type: ignore[arg-type]
+    return run_study(
+        Folder(folder).read_study(),
+        folder,
+        workers=workers,
+        scheduler=scheduler,
+        wait=wait,
+        progress=progress,
+        again=("failed", "stale"),
+        solver=solver,
+    )

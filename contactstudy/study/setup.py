@@ -2,36 +2,116 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
-from contactstudy.bodies.material import Material
+from contactstudy.bodies.material import Material, contact_modulus
+from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import choose_grid
+from contactstudy.case.gridding import choose_grid, widening_grids
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.kinds import BODIES, ROLLER_BODIES
-from contactstudy.study.parameters import checked, with_defaults
+from contactstudy.solution import solve
+from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, checked, taken_by, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile
+
+# Points along z of a stress field whose depths the solver chooses, roughly; for forecasts only.
+USUAL_DEPTHS = 32
+
+
+@dataclass(frozen=True)
+class Dimensions:
+    """Lengths of a case that follow from one another, metres, and the contact modulus, Pa."""
+
+    radius: float
+    body_length: float
+    roller_length: float
+    end_distance: float
+    half_width: float
+    modulus: float
+
+    @classmethod
+    def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
+        """Dimensions of a case; with a load, ``a`` depends on the contact's length, which may depend on ``a``.
+
+        Raises
+        ------
+        InvalidInputError
+            If a value that they are calculated from is out of range, or a length would not be positive.
+        """
+        radius = checks.positive("radius", values["radius"], "metres")
+        if "max_pressure" in values:
+            pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
+            found = cls._for(values, radius, modulus, hertz.line_half_width(pressure, radius, modulus))
+            found._check()
+            return found
+        load, half_width = checks.positive("load", values["load"], "N"), 0.0
+        for _ in range(500):
+            found = cls._for(values, radius, modulus, half_width)
+            length = min(found.body_length, found.roller_length)
+            if length <= 0:
+                break
+            pressure = hertz.line_max_pressure(load / length, radius, modulus)
+            previous, half_width = half_width, hertz.line_half_width(pressure, radius, modulus)
+            if abs(half_width - previous) <= 1e-14 * half_width:
+                found = cls._for(values, radius, modulus, half_width)
+                found._check()
+                return found
+        raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
+
+    @classmethod
+    def _for(cls, values: Mapping[str, Any], radius: float, modulus: float, half_width: float) -> Dimensions:
+        """Dimensions for a given half-width."""
+        distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
+        if "gamma" in values:
+            body = checks.positive("gamma", values["gamma"]) * radius
+            return cls(radius, body, body - 2 * distance, distance, half_width, modulus)
+        roller = values["roller_length"]
+        return cls(radius, roller + 2 * distance, roller, distance, half_width, modulus)
+
+    def _check(self) -> None:
+        """Raise if a length is not positive."""
+        for name, length in (("roller length", self.roller_length), ("body length", self.body_length)):
+            if length <= 0:
+                hint = f"e = {self.end_distance:g} m, a = {self.half_width:g} m"
+                raise InvalidInputError(name, length, "positive (metres)", hint)
+
+    @property
+    def max_pressure(self) -> float:
+        """Peak pressure ``p0`` of the Hertz line contact, Pa."""
+        return self.half_width * self.modulus / (2 * self.radius)
 
 
 @dataclass(frozen=True, eq=False)
 class Setup:
-    """A case ready to solve: the arguments of the solver."""
+    """A case ready to solve.
+
+    Parameters
+    ----------
+    case : Case
+        The case.
+    grid : Grid
+        Its cells, or the first of those that are tried.
+    options : dict
+        All other arguments of the solver, by name.
+    cells : dict
+        Cells per half-width, where the window may grow with the contact; empty where `grid` is the only one.
+    """
 
     case: Case
     grid: Grid
-    x: FloatArray | None
-    y: FloatArray | None
-    z: FloatArray | None
-    stresses: bool
-    tolerance: float
-    error_estimate: bool
+    options: dict[str, Any]
+    cells: dict[str, float]
+
+    @property
+    def grids(self) -> Iterator[Grid]:
+        """Grids to try in turn until one holds the contact."""
+        return widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
 
     @property
     def operator(self) -> str:
@@ -41,46 +121,35 @@ class Setup:
     @property
     def points(self) -> int:
         """Number of points with stresses, as far as it is known before solving."""
-        if not self.stresses:
+        if not self.options["stresses"]:
             return 0
-        sizes = [
-            axis.size if axis is not None else default
-            for axis, default in ((self.x, self.grid.cells_x), (self.y, self.grid.cells_y), (self.z, 32))
-        ]
-        return sizes[0] * sizes[1] * sizes[2]
+        x, y, z = (
+            default if (axis := self.options[name]) is None else axis.size
+            for name, default in (("x", self.grid.cells_x), ("y", self.grid.cells_y), ("z", USUAL_DEPTHS))
+        )
+        return int(x * y * z)
 
 
 def _one_of(values: Mapping[str, Any], first: str, second: str) -> None:
-    if (first in values) == (second in values):
-        given = (values.get(first), values.get(second))
-        raise InvalidInputError(f"{first}, {second}", given, "exactly one of the two")
+    """Raise unless exactly one of two parameters is given."""
+    if first in values and second in values:
+        raise InvalidInputError(
+            f"{first}, {second}", (values[first], values[second]), f"given as one of the two, {first} or {second}"
+        )
+    if first not in values and second not in values:
+        raise InvalidInputError(f"{first}, {second}", "neither", f"given as one of the two, {first} or {second}")
 
 
-def _lengths(values: Mapping[str, Any], distance: float) -> tuple[float, float]:
-    """Body and roller length for a distance from roller end to free end, metres."""
-    if "gamma" in values:
-        body = checks.positive("gamma", values["gamma"]) * values["radius"]
-        return body, body - 2 * distance
-    return values["roller_length"] + 2 * distance, values["roller_length"]
-
-
-def _half_width(values: Mapping[str, Any], modulus: float) -> float:
-    """Hertz half-width ``a``; with a load it depends on the contact's length, which may depend on ``a``."""
-    radius = values["radius"]
-    if "max_pressure" in values:
-        return hertz.line_half_width(checks.positive("max_pressure", values["max_pressure"], "Pa"), radius, modulus)
-    load = checks.positive("load", values["load"], "N")
-    half_width = 0.0
-    for _ in range(500):
-        distance = values.get("end_distance", values.get("e_over_a", 0.0) * half_width)
-        length = min(_lengths(values, distance))
-        if length <= 0:
-            break
-        pressure = hertz.line_max_pressure(load / length, radius, modulus)
-        previous, half_width = half_width, hertz.line_half_width(pressure, radius, modulus)
-        if abs(half_width - previous) <= 1e-14 * half_width:
-            return half_width
-    raise InvalidInputError("load", load, "small enough for a roller of positive length at this e_over_a")
+def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
+    """Body of a case, of this `length` between its free ends."""
+    kind, model = values["body"], values["model"]
+    if kind == "finite-length":
+        return FiniteLengthSpace(length=length, material=material, model=model)
+    if kind == "quarter-space":
+        return QuarterSpace(material=material, model=model)
+    if model != MODELS[0]:
+        raise InvalidInputError("model", model, f"{MODELS[0]!r} for a half-space, which has no free end")
+    return HalfSpace(material=material)
 
 
 def _roller_material(values: Mapping[str, Any]) -> Material | None:
@@ -93,6 +162,26 @@ def _roller_material(values: Mapping[str, Any]) -> Material | None:
     return Material(
         young=values.get("roller_young", values["young"]), poisson=values.get("roller_poisson", values["poisson"])
     )
+
+
+def _stress_points(
+    values: Mapping[str, Any], half_width: float, extent: tuple[float, float]
+) -> dict[str, FloatArray | None]:
+    """Stress points in metres; None where the solver chooses."""
+    x, y, z = (
+        half_width * checks.coordinates(name, values[name]) if name in values else None
+        for name in ("field_x_over_a", "field_y_over_a", "field_z_over_a")
+    )
+    if z is not None and z.min() < 0:
+        raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
+    low, high = extent
+    if x is not None and not (low <= x.min() and x.max() <= high * (1 + 1e-12)):
+        raise InvalidInputError(
+            "field_x_over_a",
+            float((x.min() if x.min() < low else x.max()) / half_width),
+            f"inside the body, 0 to {high / half_width:g}",
+        )
+    return {"x": x, "y": y, "z": z}
 
 
 def build_setup(parameters: Mapping[str, Any]) -> Setup:
@@ -123,58 +212,42 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     >>> round(1e3 * setup.case.body.length, 3), round(1e3 * setup.case.roller_start, 3)
     (10.26, 0.13)
     """
-    values = with_defaults(checked(parameters))
+    return setup_of(checked(parameters))
+
+
+def setup_of(parameters: Mapping[str, Any]) -> Setup:
+    """Return what :func:`build_setup` does, for parameters that are checked already."""
+    values = with_defaults(parameters)
     for name in ("young", "poisson", "radius"):
         if name not in values:
             raise InvalidInputError(name, None, "given")
-    _one_of(values, "gamma", "roller_length")
-    _one_of(values, "e_over_a", "end_distance")
-    _one_of(values, "max_pressure", "load")
-    material = Material(young=values["young"], poisson=values["poisson"])
-    radius = checks.positive("radius", values["radius"], "metres")
-    roller_material = _roller_material(values)
-    modulus = material.plane_strain_modulus
-    if roller_material is not None:
-        modulus = 1 / (1 / modulus + 1 / roller_material.plane_strain_modulus)
-    half_width = _half_width(values, modulus)
-    distance = values["end_distance"] if "end_distance" in values else values["e_over_a"] * half_width
-    body_length, roller_length = _lengths(values, distance)
-    for name, length in (("roller length", roller_length), ("body length", body_length)):
-        if length <= 0:
-            raise InvalidInputError(name, length, "positive (metres)", f"e = {distance:g} m, a = {half_width:g} m")
-    around = Surroundings(radius, modulus, half_width * modulus / (2 * radius))
+    for pair in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load")):
+        _one_of(values, *pair)
+    material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
+    sizes = Dimensions.of(values, contact_modulus(material, roller_material))
+    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure)
+    middle = sizes.end_distance + 0.5 * sizes.roller_length
     case = Case(
-        body=BODIES[values["body"]](material, body_length, values["model"]),
+        body=_body(values, material, sizes.body_length),
         roller=Roller(
-            radius=radius,
-            length=roller_length,
+            radius=sizes.radius,
+            length=sizes.roller_length,
             profile=build_profile(values["profile"], around),
             material=roller_material,
             ends=ROLLER_BODIES[values["roller_body"]] or "free",
         ),
-        max_pressure=values.get("max_pressure"),
-        load=values.get("load"),
-        friction=values["friction"],
-        end_distance=distance,
-        coupled=values["coupled"],
-        tilt=values["tilt"],
-        load_position=distance + 0.5 * roller_length + values["load_offset"] if "load_offset" in values else None,
+        end_distance=sizes.end_distance,
+        load_position=middle + values["load_offset"] if "load_offset" in values else None,
+        **taken_by(Case, values),
     )
-    grid = choose_grid(
-        case, cells_x=values["cells_x"], cells_y=values["cells_y"], window=values["window"], margin=values["margin"]
-    )
-    x, y, z = (
-        half_width * checks.coordinates(name, values[name]) if name in values else None
-        for name in ("field_x_over_a", "field_y_over_a", "field_z_over_a")
-    )
-    if z is not None and z.min() < 0:
-        raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
-    low, high = case.body.extent
-    if x is not None and not (low <= x.min() and x.max() <= high * (1 + 1e-12)):
-        raise InvalidInputError(
-            "field_x_over_a",
-            float((x.min() if x.min() < low else x.max()) / half_width),
-            f"inside the body, 0 to {high / half_width:g}",
-        )
     tolerance = checks.positive("tolerance", values["tolerance"])
-    return Setup(case, grid, x, y, z, values["stresses"], tolerance, values["error_estimate"])
+    gridding = taken_by(choose_grid, values)
+    usual = all(gridding[name] == PARAMETERS[name].default for name in ("window", "margin"))
+    return Setup(
+        case=case,
+        grid=choose_grid(case, **gridding),
+        options=_stress_points(values, sizes.half_width, case.body.extent)
+        | taken_by(solve, values)
+        | {"tolerance": tolerance},
+        cells={name: gridding[name] for name in ("cells_x", "cells_y")} if usual else {},
+    )

@@ -24,8 +24,10 @@ import numpy.typing as npt
 import xarray as xr
 
 from contactstudy.arrays.variables import describe
+from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
+from contactstudy.study.process import alive, process_name
 
 NETCDF_LOCK = RLock()
 ALMOST_FULL = 2**20
@@ -45,25 +47,13 @@ class Header(NamedTuple):
     scalars: dict[str, float]
 
 
-def process_name() -> str:
-    """Host and process, as in the names of unfinished files."""
-    return f"{socket.gethostname()}-{os.getpid()}"
-
-
-def alive(pid: int) -> bool:
-    """Whether a process with this number runs on this host."""
-    import psutil
-
-    return bool(psutil.pid_exists(pid))
-
-
 @contextlib.contextmanager
 def _netcdf(path: Path, doing: str) -> Iterator[None]:
     """One netCDF operation at a time; failures of disk and file as :class:`StoreError`."""
     try:
         with NETCDF_LOCK, dask.config.set(scheduler="synchronous"):
             yield
-    except (OSError, RuntimeError, ValueError, KeyError, IndexError, AttributeError) as error:
+    except (OSError, RuntimeError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
         # The netCDF library does not say so itself.
         full = doing == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
         raise StoreError(f"cannot {doing} {path}: {'the disk is full; ' if full else ''}{error}") from error
@@ -77,6 +67,8 @@ def write_atomically(path: Path, write: Any) -> None:
     StoreError
         If the disk is full, permission is missing, ...; a file that was there before stays as it was.
     """
+    if path.is_dir():
+        raise StoreError(f"cannot write {path}: it is a folder, and a file is to be written")
     part = path.with_name(f"{path.name}.part-{process_name()}")
     try:
         write(part)
@@ -193,14 +185,20 @@ def read_header(path: Path, *, verify: bool = False) -> Header:
             raise StoreError(f"{path} is not a case of a contactstudy study")
         if verify:
             dataset.load()
-        parameters = json.loads(dataset.attrs[CASE_ATTRIBUTE])
+        parameters, run = (json.loads(dataset.attrs.get(name, "{}")) for name in (CASE_ATTRIBUTE, RUN_ATTRIBUTE))
+        if not isinstance(parameters, dict) or not isinstance(run, dict):
+            raise StoreError(f"{path}: its attributes are no tables of parameters and circumstances")
         header = Header(
-            dataset.attrs[ID_ATTRIBUTE],
+            str(dataset.attrs[ID_ATTRIBUTE]),
             parameters,
-            json.loads(dataset.attrs.get(RUN_ATTRIBUTE, "{}")),
+            run,
             {str(name): float(variable) for name, variable in dataset.data_vars.items() if variable.ndim == 0},
         )
-    if case_id(parameters) != header.id:
+    try:
+        identity = case_id(parameters)
+    except InvalidInputError as error:
+        raise StoreError(f"{path}: its parameters are none of this version: {error}") from error
+    if identity != header.id:
         raise StoreError(f"{path}: its parameters do not belong to its identity {header.id[:16]}")
     return header
 

@@ -7,10 +7,10 @@ import platform
 import subprocess
 import time
 import warnings
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cache
+from functools import cache, partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -19,11 +19,14 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.summary import summarize
+from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import named, package_version
+from contactstudy.case.gridding import first_that_holds
 from contactstudy.errors import ContactStudyError
+from contactstudy.solution import solve
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
-from contactstudy.study.setup import build_setup
+from contactstudy.study.setup import Setup, build_setup
 from contactstudy.study.store import Header, write_case
 
 Solver = Callable[..., xr.Dataset]
@@ -48,8 +51,8 @@ class Job:
         Equal for jobs that share the solver's preparation.
     cost : float
         Expected effort.
-    circumstances : dict
-        Goes into the file: versions, commit, study.
+    study : str
+        Name of the study, for the file.
     """
 
     id: str
@@ -59,7 +62,7 @@ class Job:
     level: str
     operator: str = ""
     cost: float = 1.0
-    circumstances: dict[str, Any] = field(default_factory=dict)
+    study: str = ""
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,7 @@ class Record:
 
 @cache
 def circumstances() -> dict[str, Any]:
-    """Versions and commit with which cases are solved, for the files."""
+    """Versions and commit with which this process solves cases, for the files."""
     found: dict[str, Any] = {"contactstudy": package_version(), "python": platform.python_version()}
     for package in ("numpy", "scipy", "xarray", "netCDF4", "pyfftw"):
         try:
@@ -120,11 +123,25 @@ def single_threaded() -> Iterator[None]:
         pyfftw.config.NUM_THREADS = previous
 
 
-def default_solver() -> Solver:
-    """Return the package's own solver."""
-    from contactstudy.solution import solve
+def _solve_on(solver: Solver, setup: Setup, grid: Grid) -> tuple[Grid, xr.Dataset]:
+    """Solve a case on one of its grids."""
+    return grid, solver(setup.case, grid, **setup.options)
 
-    return solve
+
+def differences(worker: Mapping[str, Any]) -> str:
+    """Return in words how a worker's versions differ from those of this process; empty if they do not.
+
+    Examples
+    --------
+    >>> differences(circumstances() | {"numpy": "0.1"}).startswith("numpy 0.1 instead of ")
+    True
+    """
+    own = circumstances()
+    return ", ".join(
+        f"{name} {worker.get(name, 'unknown')} instead of {value}"
+        for name, value in own.items()
+        if worker.get(name) != value
+    )
 
 
 def perform(job: Job, solver: Solver | None = None) -> Record:
@@ -154,16 +171,8 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
         with single_threaded(), warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
             setup = build_setup(job.parameters)
-            dataset = (solver or default_solver())(
-                setup.case,
-                setup.grid,
-                x=setup.x,
-                y=setup.y,
-                z=setup.z,
-                stresses=setup.stresses,
-                error_estimate=setup.error_estimate,
-                tolerance=setup.tolerance,
-            )
+            solve_on = partial(_solve_on, solver or solve, setup)
+            grid, dataset = first_that_holds(setup.grids, solve_on)
             scalars = summarize(dataset)
     except StoreError:
         raise
@@ -172,9 +181,10 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     seconds = time.perf_counter() - began
     scalars["seconds"] = named("seconds", xr.DataArray(seconds))
     run = {
-        **job.circumstances,
+        **circumstances(),
+        "study": job.study,
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
-        "settings": {"tolerance": setup.tolerance, "cells": setup.grid.shape},
+        "settings": {"tolerance": setup.options["tolerance"], "cells": grid.shape},
         "warnings": sorted({str(warning.message) for warning in caught}),
         "seconds": seconds,
         "level": job.level,

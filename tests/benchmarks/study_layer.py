@@ -92,7 +92,7 @@ def solve_bare(parameters: list[dict[str, object]]) -> float:
     with single_threaded():
         for values in parameters:
             setup = build_setup(values)
-            solve(setup.case, setup.grid, stresses=setup.stresses, tolerance=setup.tolerance)
+            solve(setup.case, setup.grid, **setup.options)
     return time.perf_counter() - began
 
 

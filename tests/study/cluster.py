@@ -19,25 +19,42 @@ SCHEDULER = "dask scheduler --port 0 --no-dashboard --scheduler-file scheduler.j
 WORKER = "dask worker --nthreads 1 --memory-limit 0 --no-dashboard --scheduler-file scheduler.json"
 
 
+class Cluster(str):
+    """Address of a scheduler, with its processes: the scheduler's is the first."""
+
+    processes: list[subprocess.Popen[bytes]]
+
+
 @contextlib.contextmanager
-def cluster(folder: Path, workers: int = 2) -> Iterator[str]:
-    """Start a scheduler and workers with `folder` as their working folder; yield the scheduler's address."""
-    quiet = {
-        "stdout": subprocess.DEVNULL,
-        "stderr": subprocess.DEVNULL,
-        "cwd": folder,
-        "env": os.environ | ENVIRONMENT | {"PYTHONPATH": str(ROOT)},  # workers import the tests' stand-in solver
-    }
-    commands = [[sys.executable, "-m", *command.split()] for command in (SCHEDULER, *[WORKER] * workers)]
-    processes = [subprocess.Popen(command, **quiet) for command in commands]
+def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluster]:
+    """Start a scheduler and workers with `folder` as their working folder; yield the scheduler's address.
+
+    Lame workers have not got the package.
+    """
+    (folder / "lame").mkdir(exist_ok=True)
+    (folder / "lame" / "contactstudy.py").write_text("raise ModuleNotFoundError('No module named contactstudy')")
+
+    def start(command: str, path: Path) -> subprocess.Popen[bytes]:
+        return subprocess.Popen(
+            [sys.executable, "-m", *command.split()],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+            cwd=folder,
+            env=os.environ | ENVIRONMENT | {"PYTHONPATH": str(path)},  # workers import the tests' stand-in solver
+        )
+
+    processes = [start(SCHEDULER, ROOT), *(start(WORKER, ROOT) for _ in range(workers))]
+    processes += [start(WORKER, folder / "lame") for _ in range(lame)]
     try:
-        file, end = folder / "scheduler.json", time.monotonic() + 60
+        file, end = folder / "scheduler.json", time.monotonic() + 150
         while not file.exists():
             assert time.monotonic() < end, "the scheduler did not start"
             time.sleep(0.05)
-        yield json.loads(file.read_text())["address"]
+        address = Cluster(json.loads(file.read_text())["address"])
+        address.processes = processes
+        yield address
     finally:
         for process in processes:
             process.terminate()
         for process in processes:
-            process.wait(timeout=30)
+            process.wait(timeout=100)

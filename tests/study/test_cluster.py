@@ -1,6 +1,6 @@
-from pathlib import Path
-
 """Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
+
+from pathlib import Path
 
 import pytest
 

@@ -1,5 +1,6 @@
 """Runs that are really killed."""
 
+import contextlib
 import os
 import random
 import signal
@@ -61,6 +62,24 @@ def test_interrupted_run_releases_the_lock_and_goes_on(large, tmp_path, number, 
     assert finished(folder) == 3
     report = run_study(small_study("large", sweep=LARGE), folder, workers=0, solver=solve_fake)
     assert (report.solved, report.counts) == (17, {"ok": 20})
+
+
+@pytest.mark.system
+@pytest.mark.parametrize("begun", [True, False])
+def test_many_interruptions_end_it_quickly_and_quietly(large, tmp_path, begun):
+    """Eight times Ctrl-C, which a terminal sends to the workers as well: while they solve, and while they start."""
+    folder = tmp_path / "out"
+    process = start_run(large, folder, "--workers", "2", tickets=3 if begun else 0)
+    wait_for(process, lambda: finished(folder) >= 1 if begun else (folder / "run.log").exists())
+    for _ in range(8):
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGINT)
+        time.sleep(0.1)
+    _, errors = process.communicate(timeout=SECONDS)
+    assert process.returncode == 130, errors
+    assert "Traceback" not in errors
+    assert "interrupted: ending the workers ..." in errors
+    assert not (folder / "run.lock").exists()
 
 
 @pytest.mark.system

@@ -7,7 +7,8 @@ import sys
 import pytest
 
 from contactstudy.study.errors import LockedError, StoreError
-from contactstudy.study.lock import LOCK_NAME, _started, locked, read_lock
+from contactstudy.study.lock import LOCK_NAME, locked, read_lock
+from contactstudy.study.process import birth, boot
 
 
 def test_a_second_holder_is_refused_and_told_who(tmp_path):
@@ -23,7 +24,8 @@ def holder(**changes):
         "host": socket.gethostname(),
         "time": "then",
         "token": "other",
-        "process_start": _started(os.getpid()),
+        "boot": boot(),
+        "birth": birth(os.getpid()),
     } | changes
 
 
@@ -33,7 +35,7 @@ def dead_process():
     return gone.pid
 
 
-@pytest.mark.parametrize("changes", ["dead", {"process_start": 1.0}])
+@pytest.mark.parametrize("changes", ["dead", {"birth": "1 ticks"}, {"boot": "another"}])
 def test_the_lock_of_a_dead_process_is_taken_over(tmp_path, changes):
     content = holder(**({"process": dead_process()} if changes == "dead" else changes))
     (tmp_path / LOCK_NAME).write_text(json.dumps(content))

@@ -94,9 +94,9 @@ def test_an_unfinished_study_opens(tmp_path):
 
 def test_opening_writes_nothing(tmp_path):
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
-    (tmp_path / "manifest.json").unlink()
+    (tmp_path / "manifest.jsonl").unlink()
     open_study(tmp_path)
-    assert not (tmp_path / "manifest.json").exists()
+    assert not (tmp_path / "manifest.jsonl").exists()
 
 
 def test_collect_keeps_summaries_only(opened, tmp_path):

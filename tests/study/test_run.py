@@ -38,9 +38,9 @@ def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
 def test_without_the_manifest_nothing_is_lost(study, tmp_path):
     run(study, tmp_path)
     for content in (None, "{", json.dumps({"schema": 99, "files": []})):
-        (tmp_path / "manifest.json").unlink()
+        (tmp_path / "manifest.jsonl").unlink()
         if content is not None:
-            (tmp_path / "manifest.json").write_text(content)
+            (tmp_path / "manifest.jsonl").write_text(content)
         assert run(study, tmp_path).solved == 0
 
 
@@ -120,8 +120,7 @@ def test_a_higher_level_solves_again(tmp_path):
 
 
 def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
-    monkeypatch.setattr("contactstudy.study.work.circumstances", lambda: {})
-    monkeypatch.setattr("contactstudy.study.run.circumstances", lambda: {"contactstudy": "0.0.1"})
+    monkeypatch.setattr("contactstudy.study.work.circumstances", lambda: {"contactstudy": "0.0.1"})
     assert run(study, tmp_path).counts == {"stale": 4}
     monkeypatch.undo()
     assert run(study, tmp_path).solved == 0

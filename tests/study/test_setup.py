@@ -46,7 +46,7 @@ def test_a_load_that_leaves_no_roller():
 
 def test_stress_points_are_over_a():
     setup = build_setup(BASE | {"e_over_a": 0})
-    np.testing.assert_allclose(setup.x / setup.case.hertz_half_width, [0, 1, 2])
+    np.testing.assert_allclose(setup.options["x"] / setup.case.hertz_half_width, [0, 1, 2])
 
 
 def test_cases_that_share_an_operator():

@@ -32,7 +32,7 @@ def test_a_study_gives_what_the_solver_gives(tmp_path):
     run_study(study, tmp_path, workers=0)
     (case,) = study.plan().cases
     setup = build_setup(case.parameters)
-    alone = solve(setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z)
+    alone = solve(setup.case, setup.grid, **setup.options)
     stored = load_case(Folder(tmp_path).case_path(case.id))
     np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
     np.testing.assert_array_equal(stored["tau_xz"], alone["tau_xz"].astype(np.float32))

@@ -10,8 +10,9 @@ import xarray as xr
 from contactstudy.study import run_study
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
+from contactstudy.study.process import process_name
 from contactstudy.study.setup import build_setup
-from contactstudy.study.store import load_case, process_name, read_header, remove_dead_parts, write_text
+from contactstudy.study.store import load_case, read_header, remove_dead_parts, write_text
 from tests.small_study import BASE, identity, small_study
 from tests.stand_in_solver import solve_fake
 
@@ -24,7 +25,7 @@ def case_file(tmp_path):
 
 def expected():
     setup = build_setup(BASE | {"e_over_a": 1, "friction": 0.1})
-    return solve_fake(setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z, stresses=True, tolerance=1e-6)
+    return solve_fake(setup.case, setup.grid, **setup.options)
 
 
 def test_surfaces_are_exact_and_fields_in_single_precision(case_file):
@@ -38,7 +39,7 @@ def test_surfaces_are_exact_and_fields_in_single_precision(case_file):
 def test_a_file_alone_repeats_the_case(case_file):
     header = read_header(case_file)
     setup = build_setup(header.parameters)
-    again = solve_fake(setup.case, setup.grid, x=setup.x, y=setup.y, z=setup.z, stresses=True, tolerance=1e-6)
+    again = solve_fake(setup.case, setup.grid, **setup.options)
     np.testing.assert_array_equal(load_case(case_file)["pressure"], again["pressure"])
     assert {"contactstudy", "numpy", "scipy", "xarray", "time", "study", "level"} <= set(header.run)
 

@@ -1,0 +1,79 @@
+"""Identities of the cases of studies/, and the defaults that they rest on: results on disk are found by them."""
+
+import hashlib
+import inspect
+
+import pytest
+
+from contactstudy.case import choose_grid
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import WINDOWS, widening_grids
+from contactstudy.solution import solve
+from contactstudy.study import Study
+from contactstudy.study.numbers import number
+from contactstudy.study.parameters import PARAMETERS, Parameter, taken_by
+from contactstudy.study.setup import build_setup
+from tests.small_study import BASE
+from tests.study.conftest import ROOT
+
+STORED = {
+    "edge_effect": (48, "cec14fb311ed5b01"),
+    "end_distance": (27, "e7beb76f28d7c9ff"),
+    "friction": (33, "3e3aa0f1248bf1ad"),
+    "gamma": (18, "0bdcc9a518eb4d84"),
+    "profiles": (48, "be228be76d7d6e38"),
+    "regime_map": (624, "2fdebce9f302aeb1"),
+}
+
+DEFAULTS = {
+    "body": "finite-length",
+    "model": "exact",
+    "friction": 0.0,
+    "profile": {"kind": "cylinder"},
+    "roller_body": "rigid",
+    "tilt": 0.0,
+    "coupled": False,
+    "cells_x": 8.0,
+    "cells_y": 16.0,
+    "window": 2.0,
+    "margin": 4.0,
+    "tolerance": 1e-6,
+    "error_estimate": False,
+    "stresses": True,
+}
+
+
+@pytest.mark.parametrize("name", STORED)
+def test_identities_of_stored_studies_never_change(name):
+    cases = Study.from_toml(ROOT / "studies" / f"{name}.toml").plan().cases
+    together = hashlib.sha256("\n".join(case.id for case in cases).encode()).hexdigest()
+    assert (len(cases), together[:16]) == STORED[name]
+
+
+def test_defaults_are_those_that_old_cases_were_solved_with():
+    """They come from the signatures of Case, choose_grid and solve: one that changes there needs a new SCHEMA here."""
+    assert {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} == DEFAULTS
+
+
+def test_a_keyword_becomes_a_parameter_by_one_entry(monkeypatch):
+    def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
+
+    new = Parameter("sharpness", number, "1", "made up", takes_more)
+    monkeypatch.setitem(PARAMETERS, "sharpness", new)
+    assert new.default == 0.5
+    assert taken_by(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}
+
+
+def test_a_study_starts_on_the_grid_of_solve():
+    case = build_setup(BASE | {"e_over_a": 1.0, "cells_x": None, "cells_y": None})
+    assert case.grid == choose_grid(case.case)
+    assert list(case.grids) == list(widening_grids(case.case))
+    assert len(list(case.grids)) == len(WINDOWS)
+    assert set(case.options) == {"x", "y", "z", "stresses", "tolerance", "error_estimate"}
+    assert set(case.options) <= set(inspect.signature(solve).parameters)
+
+
+@pytest.mark.parametrize("chosen", [{"window": 2.2}, {"margin": 3.0}])
+def test_a_window_of_the_studys_own_is_kept(chosen):
+    setup = build_setup(BASE | {"e_over_a": 1.0} | chosen)
+    assert list(setup.grids) == [setup.grid]

@@ -1,0 +1,53 @@
+"""A contact wider than the usual window: a study solves it as solve does."""
+
+import numpy as np
+import pytest
+
+from contactstudy import solve
+from contactstudy.study import run_study
+from contactstudy.study.folder import Folder
+from contactstudy.study.setup import build_setup
+from contactstudy.study.store import load_case
+from tests.small_study import small_study
+
+WIDE = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 0.5e-3,
+    "e_over_a": 0.0,
+    "body": "half-space",
+    "max_pressure": 1.0e9,
+    "profile": {"kind": "full-crown", "crown_radius": 3e-4},
+    "stresses": False,
+    "cells_x": 8.0,
+    "cells_y": 16.0,
+}
+
+
+def test_a_study_widens_its_window_as_solve_does(tmp_path):
+    study = small_study(base=WIDE, sweep={})
+    report = run_study(study, tmp_path, workers=0, progress=False)
+    assert report.counts == {"ok": 1}
+    alone = solve(build_setup(WIDE).case, stresses=False)
+    first = build_setup(WIDE).grid
+    stored = load_case(Folder(tmp_path).case_path(study.plan().cases[0].id))
+    assert alone.sizes["y"] > first.cells_y
+    np.testing.assert_array_equal(stored["pressure"], alone["pressure"])
+    assert report.entries[0].run["settings"]["cells"] == (alone.sizes["x"], alone.sizes["y"])
+
+
+def test_a_window_of_its_own_is_too_narrow(tmp_path):
+    report = run_study(small_study(base=WIDE | {"window": 1.9}, sweep={}), tmp_path, workers=0, progress=False)
+    (failure,) = report.failures
+    assert failure[1].reason.startswith("WindowError")
+
+
+@pytest.mark.parametrize("name", ["x", "y", "z"])
+def test_no_coordinate_of_a_result_has_a_mark_for_missing_values(tmp_path, name):
+    import netCDF4
+
+    result = solve(build_setup(WIDE | {"stresses": True, "field_y_over_a": [0.0], "profile": "cylinder"}).case)
+    result.to_netcdf(tmp_path / "a.nc")
+    with netCDF4.Dataset(tmp_path / "a.nc") as file:
+        assert "_FillValue" not in file[name].ncattrs()
