@@ -46,8 +46,8 @@ RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)
 """Positions along y, likewise."""
 
 RESIDUAL_COVERS = (
-    f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to {RESIDUAL_POSITIONS[-1]} a; "
-    "nearer to the top of a loaded end more is left, about 1e-4 at 0.01 a and 1e-3 at 0.004 a"
+    f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
+    f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end more is left, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"
 )
 """What it says and what it does not."""
 
