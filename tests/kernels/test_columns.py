@@ -28,7 +28,9 @@ def strip_kernel(load: Load, distance: float, low: float, high: float) -> float:
     return 0.5 * float(np.log((distance**2 + high**2) / (distance**2 + low**2)))
 
 
-def mean_influence(load: Load, seen: tuple[float, float], loaded: tuple[float, float], low: float, high: float) -> float:
+def mean_influence(
+    load: Load, seen: tuple[float, float], loaded: tuple[float, float], low: float, high: float
+) -> float:
     """Mean over one column of what a unit force per length of y on another does, by quadrature over the distance."""
     (a, b), (c, d) = seen, loaded
 
