@@ -108,12 +108,7 @@ class Grid:
                 f"cells of {widths[at - 1]:g} and {widths[at]:g} m beside x = {edges[at]:g} m",
                 f"such that neighbouring cells differ by a factor of {STEEPEST_GRADING:g} at most",
             )
-        return cls._between(edges, y_range, cells_y)
-
-    @classmethod
-    def _between(cls, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
-        """Grid of cells between checked edges."""
-        widths, span = np.diff(edges), (float(edges[0]), float(edges[-1]))
+        span = (float(edges[0]), float(edges[-1]))
         uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
         return cls(span, y_range, widths.size, cells_y, _inner=() if uniform else tuple(edges[1:-1].tolist()))
 
@@ -183,9 +178,9 @@ class Grid:
         """Return the grid of cells of twice the size; a little more where a number of cells is odd."""
         if self.uniform:
             return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)
-        edges = self.x_edges
-        # Joined in twos, neighbours may differ by more than those of a grid that is given.
-        return Grid._between(np.append(edges[:-1:2], edges[-1]), self.y_range, self.cells_y // 2)
+        # Joined in twos, cells may differ by more than cells that a user gives: they serve a first guess.
+        kept = self._inner[1::2]
+        return Grid(self.x_range, self.y_range, len(kept) + 1, self.cells_y // 2, _inner=kept)
 
 
 def growing_edges(distance: float, width: float) -> FloatArray:
