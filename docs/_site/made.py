@@ -11,6 +11,7 @@ import ast
 import html
 import importlib
 import inspect
+import itertools
 import pkgutil
 import re
 import tomllib
@@ -25,12 +26,10 @@ from mkdocs.structure.files import File, Files
 import contactstudy
 from contactstudy import cli
 from contactstudy.analysis.measures import MEASURES
-from contactstudy.arrays import variables
-from contactstudy.bodies.models import MODELS
+from contactstudy.arrays import vocabulary
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.study.kinds import BODIES, ROLLER_BODIES
-from contactstudy.study.parameters import PARAMETERS
-from contactstudy.study.profile_kinds import PROFILES
+from contactstudy.study.parameters import documented
+from contactstudy.study.profile_kinds import PROFILES, MeasuredPoints, Numbers
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
@@ -72,49 +71,19 @@ def first_sentence(text: str | None) -> str:
 
 # ------------------------------------------------------------------------------------------------ studies
 
-CHOICES: Mapping[str, Sequence[str]] = {
-    "body": tuple(BODIES),
-    "model": tuple(MODELS),
-    "roller_body": tuple(ROLLER_BODIES),
-}
-
-
-def study_keys() -> str:
-    """Return the parameters of a study's case."""
-
-    def default(value: object) -> str:
-        if value is None:
-            return ""
-        if isinstance(value, dict):
-            return code("{" + ", ".join(f'{key} = "{entry}"' for key, entry in value.items()) + "}")
-        return code(
-            str(value).lower() if isinstance(value, bool) else f"{value:g}" if isinstance(value, float) else value
-        )
-
-    return table(
-        ("parameter", "default", "unit", "meaning"),
-        [
-            (
-                code(name),
-                default(entry.default),
-                entry.units,
-                entry.meaning + (f": {code(*CHOICES[name])}" if name in CHOICES else ""),
-            )
-            for name, entry in PARAMETERS.items()
-        ],
-    )
-
 
 def profile_kinds() -> str:
-    """Return the kinds of profile and their keys."""
+    """Return the kinds of profile and the keys of their tables."""
     rows = []
     for name, kind in PROFILES.items():
         keys = [
             code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
             for entry in fields(kind.made)
         ]
-        if hasattr(kind.made, "for_pressure"):
+        if isinstance(kind, Numbers) and kind.designed:
             keys.append(code("design_pressure"))
+        if isinstance(kind, MeasuredPoints):
+            keys.append(code("file"))
         rows.append(
             (code(name), f"[`{kind.made.__name__}`][contactstudy.profiles.{kind.made.__name__}]", ", ".join(keys))
         )
@@ -129,9 +98,9 @@ def measures() -> str:
 # ------------------------------------------------------------------------------------------------ variables
 
 
-def _specifications(entries: Mapping[str, variables.Variable]) -> str:
+def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
     """Every field that a specification has: dims as code, the rest as it stands."""
-    kind = variables.Variable
+    kind = vocabulary.Variable
     names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
     columns = [name for name in names if name != "dims"]
     headings = {"long_name": "meaning", "units": "unit"}
@@ -155,12 +124,42 @@ def _specifications(entries: Mapping[str, variables.Variable]) -> str:
 
 def coordinates() -> str:
     """Return the coordinates of every Dataset."""
-    return _specifications(variables.COORDINATES)
+    return _specifications(vocabulary.COORDINATES)
 
 
 def dataset_variables() -> str:
-    """Return the variables of every Dataset."""
-    return _specifications(variables.VARIABLES)
+    """Return the variables of every Dataset, one table for each subject, in the order and the words of the code."""
+    parts = []
+    for name, entries, meaning in _subjects():
+        parts.append(f"### {name.replace('_', ' ').capitalize()}\n\n{meaning}\n\n{_specifications(entries)}")
+    return "\n\n".join(parts)
+
+
+def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
+    """Name, variables and meaning of each dictionary that ``VARIABLES`` is made of."""
+    body = ast.parse(inspect.getsource(vocabulary)).body
+    (whole,) = (node.value for node in body if isinstance(node, ast.Assign) and _target(node) == "VARIABLES")
+    wanted = {node.id for node in ast.walk(whole) if isinstance(node, ast.Name)}
+    for node, after in itertools.pairwise(body):
+        if isinstance(node, ast.Assign) and _target(node) in wanted:
+            name = _target(node)
+            yield name, getattr(vocabulary, name), first_sentence(_text(after))
+
+
+def _target(node: ast.Assign) -> str:
+    """Name that is assigned to; empty if there are several."""
+    return node.targets[0].id if isinstance(node.targets[0], ast.Name) else ""
+
+
+def _text(node: ast.stmt) -> str:
+    """Text of a statement that is nothing but text."""
+    found = node.value if isinstance(node, ast.Expr) else None
+    return str(found.value) if isinstance(found, ast.Constant) else ""
+
+
+def naming_rules() -> str:
+    """Return the names that are made of other names."""
+    return _specifications(vocabulary.RULES)
 
 
 # ------------------------------------------------------------------------------------------------ command line
@@ -240,11 +239,12 @@ def modules() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
-    "study-keys": study_keys,
+    "study-keys": documented,
     "profile-kinds": profile_kinds,
     "measures": measures,
     "coordinates": coordinates,
     "variables": dataset_variables,
+    "naming-rules": naming_rules,
     "command-line": command_line,
     "layers": layers,
     "quadrature": quadrature,

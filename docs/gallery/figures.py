@@ -150,6 +150,7 @@ def of_page(page: str, *names: str) -> None:
 PAGES = {
     "tutorial/first_roller.md": ("first_roller",),
     "tutorial/first_study.md": ("first_study",),
+    "how-to/settled_number.md": ("settled",),
     "how-to/elastic_roller.md": ("elastic_roller",),
     "how-to/tilt.md": ("tilt",),
     "how-to/fatigue_life.md": ("fatigue",),

@@ -48,7 +48,7 @@ def test_every_marked_table_is_known() -> None:
 
 def test_equations_are_numbered_once_and_in_order() -> None:
     found = []
-    for page in ("theory", "numerics", "contact"):
+    for page in ("theory", "numerics", "contact", "columns"):
         text = (ROOT / "docs" / "explanation" / f"{page}.md").read_text()
         found += [int(number) for number in re.findall(r"\\tag\{(\d+)\}", text)]
     assert found == list(range(1, len(found) + 1))
