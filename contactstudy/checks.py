@@ -19,6 +19,9 @@ ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
 
+REAL = "biufO"
+"""Kinds of arrays whose values can be real numbers: not complex ones, dates or texts."""
+
 
 def store(checked: object, **values: object) -> None:
     """Store checked values in the fields of a frozen dataclass, from its ``__post_init__``."""
@@ -94,6 +97,8 @@ def writing(path: object) -> Iterator[None]:
 def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     """Return `values` as a one-dimensional float array, or raise if it is empty, not numbers, or not finite."""
     try:
+        if np.asarray(values).dtype.kind not in REAL:
+            raise TypeError
         array = np.atleast_1d(np.asarray(values, dtype=np.float64))
     except (TypeError, ValueError, OverflowError):
         raise InvalidInputError(name, values, f"numbers ({unit})") from None

@@ -9,6 +9,7 @@ from contactstudy import checks
 from contactstudy.analysis.discretisation import discretisation_error
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
@@ -301,6 +302,7 @@ def roller_stress(
     checks.instance("case", case, Case, "a Case")
     if case.counterbody is None:
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
+    pressure = in_si("pressure", pressure, "Pa")
     values, grid = labelled_cells("pressure", pressure, extent=case.body.extent)
     body, own = case.counterbody.body, case.counterbody.own_grid(grid)
     loads = sliding(case.counterbody.load_on(grid, values), -case.friction)

@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid, uniform_range
-from contactstudy.checks import FloatArray
+from contactstudy.checks import REAL, FloatArray
 from contactstudy.errors import InvalidInputError
 
 
@@ -21,8 +21,8 @@ def labelled_cells(
     """Values ``(x, y)`` and grid of a DataArray on cell centres.
 
     Cells are uniform along y. Along x their edges are, in this order: what the coordinate `x_width` says; those of
-    uniform cells; or what follows from the body's end and the centres. (`x_bounds` cannot be part of a DataArray without
-    the dimension `bounds`.)
+    uniform cells; or what follows from the body's end and the centres. (`x_bounds` cannot be part of a DataArray
+    without the dimension `bounds`.)
 
     Parameters
     ----------
@@ -49,6 +49,8 @@ def labelled_cells(
     y_range, cells_y = uniform_range("y", array["y"].values)
     grid = _grid(array, extent, y_range, cells_y)
     try:
+        if array.dtype.kind not in REAL:
+            raise TypeError
         values = np.ascontiguousarray(array.transpose("x", "y").values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InvalidInputError(f"{name}.dtype", array.dtype, "real numbers") from None

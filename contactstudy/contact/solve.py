@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
@@ -104,6 +105,7 @@ def solve_contact(
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:
         checks.instance("counterbody", counterbody, Counterbody, "a Counterbody")
+    gap = in_si("gap", gap, "m")
     clearance, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(clearance).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")

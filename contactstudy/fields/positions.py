@@ -12,6 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.units import in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -98,6 +99,7 @@ def field_positions(
 def labelled_load(body: Body, pressure: xr.DataArray) -> tuple[Grid, FloatArray, Labels]:
     """Grid, values and labels of a pressure on a body, checked."""
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    pressure = in_si("pressure", pressure, "Pa")
     values, grid = labelled_cells("pressure", pressure, extent=body.extent)
     return grid, values, (pressure["x"].values, pressure["y"].values)
 

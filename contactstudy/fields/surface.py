@@ -12,6 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import named
 from contactstudy.bodies.models import Body
 from contactstudy.cache import kept
@@ -149,6 +150,7 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     2.24
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    pressure = in_si("pressure", pressure, "Pa")
     values, grid = labelled_cells("pressure", pressure, extent=body.extent)
     loads = sliding(values, checks.finite("friction", friction))
     operator = surface_operator(OperatorRequest(body, grid, tuple(loads)))
