@@ -18,7 +18,7 @@ from contactstudy.fields.loads import Loads, sliding, superposed
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions, labelled_load
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
-from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
 
@@ -51,7 +51,8 @@ def stress_field(
     -------
     Dataset
         `sigma_xx`, `sigma_yy`, `sigma_zz`, `tau_xy`, `tau_xz`, `tau_yz` and `von_mises` (x, y, z) in Pa, positive in
-        tension. On the free ends they hold the traction that the quadratures leave there.
+        tension. On the free ends they hold the traction that the quadratures leave there, but for the
+        edge at the top, which carries none.
 
     Raises
     ------
@@ -77,9 +78,21 @@ def stress_field(
 def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
     """Stresses under `loads` on the cells of `grid`, labelled."""
     stresses = stress_under(body, loads, grid, *positions.axes)
+    _free_edge(body, grid, stresses, positions)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
+
+
+def _free_edge(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> None:
+    """Leave no traction on the edges between top and ends: both auxiliary bodies have a logarithm there.
+
+    Points on an edge are evaluated a little below it. A comparison model that does not free its ends keeps what it has.
+    """
+    if all(part.freed for part in body.parts):
+        on_end, on_top = np.isin(positions.x, body.extent), positions.z < CORNER_OFFSET * grid.dy
+        for component in (0, 3, 4):
+            stresses[component][np.ix_(on_end, np.ones(positions.y.size, bool), on_top)] = 0.0
 
 
 def stress_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
