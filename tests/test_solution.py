@@ -19,7 +19,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.arrays.variables import STRESSES, VARIABLES
+from contactstudy.arrays.variables import STRESSES, specification
 
 STEEL = Material(young=210e9, poisson=0.3)
 BODY = FiniteLengthSpace(length=0.6e-3, material=STEEL)
@@ -44,13 +44,20 @@ def test_everything_the_interface_promises_is_there_with_its_unit(result) -> Non
             "iterations",
             "converged",
         ),
-        *("iterations", "converged", "load_error", "penetration_error", "open_pressure_error", "end_traction_residual"),
+        *("iterations", "converged", "load_error", "penetration_error", "open_pressure_error", "load_position_error"),
+        "end_traction_residual",
+        *(
+            name + error
+            for name in ("peak_pressure", "end_pressure_first", "end_pressure_last")
+            for error in ("", "_error")
+        ),
     )
     assert set(promised) == set(result.data_vars)
     for name in promised:
-        specification = VARIABLES[name]
-        assert result[name].dims == specification.dims, name
-        assert result[name].attrs["units"] == specification.units, name
+        known = specification(name)
+        assert known is not None
+        assert result[name].dims == known.dims, name
+        assert result[name].attrs["units"] == known.units, name
     for axis in "xyz":
         assert result[axis].attrs["units"] == "m"
     assert result.attrs["Conventions"].startswith("CF")

@@ -90,7 +90,12 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
 
 
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Distance of uniform positions along an axis, metres; 0 for a single one."""
+    """Width of the cells along an axis, metres: as told by ``<axis>_width``, or the distance of uniform positions.
+
+    A single position has no width, 0.
+    """
+    if f"{axis}_width" in array.coords:
+        return array[f"{axis}_width"].reset_coords(drop=True)
     dim, place = dimension_along(array, axis), positions(array, axis)
     return (place.max(dim) - place.min(dim)) / np.maximum(place.count(dim) - 1, 1)
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import dimension_along, positions
+from contactstudy.analysis.axes import cell_size, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
@@ -59,38 +59,31 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     )
 
 
-def _spacing(place: Array) -> Array:
-    """Distance of uniform positions along the last axis, which may be padded with NaN; 0 for a single one."""
-    steps = np.maximum(np.isfinite(place).sum(axis=-1) - 1, 1)
-    return np.asarray((np.nanmax(place, axis=-1) - np.nanmin(place, axis=-1)) / steps)
-
-
 def _range(place: Array, chosen: Array) -> tuple[Array, Array]:
     """First and last of the chosen positions along the last axis; infinite if there is none."""
     return np.where(chosen, place, np.inf).min(axis=-1), np.where(chosen, place, -np.inf).max(axis=-1)
 
 
-def _scalars(pressure: Array, facing: Array, x: Array, y: Array) -> tuple[Array, ...]:
+def _scalars(pressure: Array, facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, ...]:
     """Area, length, width, loss of length, resultant, its x, middle of what faces; of contacts (..., x, y), or NaN."""
     known = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
     # A case that failed has no positions either.
-    place_x, place_y = (np.where(known[..., None], place, 0.0) for place in (x, y))
-    dx, dy = _spacing(place_x), _spacing(place_y)
+    place_x, place_y, dx, dy = (np.where(known[..., None], place, 0.0) for place in (x, y, dx, dy))
     loaded = np.asarray(pressure > 0)
     in_row, in_column = (np.asarray(loaded.any(axis=axis)) for axis in (-1, -2))
 
-    def length(place: Array, chosen: Array, step: Array) -> Array:
-        first, last = _range(place, chosen)
-        return np.where(chosen.any(axis=-1), last - first + step, 0.0)
+    def length(place: Array, chosen: Array, width: Array) -> Array:
+        first, last = _range(place - 0.5 * width, chosen)[0], _range(place + 0.5 * width, chosen)[1]
+        return np.where(chosen.any(axis=-1), last - first, 0.0)
 
     along = length(place_x, in_row, dx)
-    load = np.nansum(pressure, axis=-1) * dy[..., None]
-    resultant = load.sum(axis=-1) * dx
-    moment = np.nansum(load * place_x, axis=-1) * dx
+    load = np.nansum(pressure * dy[..., None, :], axis=-1) * dx
+    resultant = np.nansum(load, axis=-1)
+    moment = np.nansum(load * place_x, axis=-1)
     acting = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
     first, last = _range(place_x, facing)
     scalars = (
-        loaded.sum(axis=(-2, -1)) * dx * dy,
+        np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
         along,
         length(place_y, in_column, dy),
         length(place_x, facing, dx) - along,
@@ -99,6 +92,12 @@ def _scalars(pressure: Array, facing: Array, x: Array, y: Array) -> tuple[Array,
         0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
     )
     return tuple(np.where(known, value, np.nan) for value in scalars)
+
+
+def _width_at_each(pressure: xr.DataArray, axis: str) -> xr.DataArray:
+    """Width of the cell at every position along an axis; NaN where a case has fewer than others."""
+    place = positions(pressure, axis)
+    return cell_size(pressure, axis) + 0.0 * place
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
@@ -143,6 +142,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
         (opposite.notnull(), [x]),
         (positions(pressure, "x"), [x]),
         (positions(pressure, "y"), [y]),
+        *((_width_at_each(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
     area, length, width, loss, resultant, position, middle = reduced(_scalars, arguments, 7)
     centre = middle if about is None else checks.finite("about", about, "metres")

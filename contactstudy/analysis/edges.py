@@ -40,7 +40,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InvalidInputError
-        If `pressure` or `gap` is missing or not on the cells of one uniform grid.
+        If `pressure` or `gap` is missing or not on cells that tile a range.
 
     Examples
     --------
@@ -60,9 +60,8 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     pressure, grid = labelled_cells("contact.pressure", contact["pressure"])
     gap, _ = labelled_cells("contact.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
-    starts, stops = contact_borders(pressure.T, grid.x, gap.T)
     touches = bool(pressure.any())
-    first, last = (float(np.nanmin(starts)), float(np.nanmax(stops))) if touches else (np.nan, np.nan)
+    first, last = _ends(pressure, gap, grid) if touches else (np.nan, np.nan)
     result = xr.Dataset(
         {
             "y_left": ("x", left),
@@ -78,11 +77,20 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     return describe(result, "edges of a contact, within a cell")
 
 
+def _ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:
+    """First and last x of the contact: within a uniform cell, or the faces of the outermost of other cells."""
+    if grid.uniform:
+        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
+        return float(np.nanmin(starts)), float(np.nanmax(stops))
+    loaded, edges = np.flatnonzero(pressure.any(axis=1)), grid.x_edges
+    return float(edges[loaded[0]]), float(edges[loaded[-1] + 1])
+
+
 def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: float) -> float:
     """Integral of the width over x."""
     columns = np.flatnonzero(np.isfinite(width))
     if np.any(np.diff(columns) > 1):
-        return float(np.nansum(width) * grid.dx)
+        return float(np.nansum(width * grid.widths))
     smooth = [
         int(0 <= beyond < grid.cells_x and np.isfinite(gap[beyond]).any())
         for beyond in (columns[0] - 1, columns[-1] + 1)
@@ -93,7 +101,7 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
     # A border found within its outermost column of cells may lie short of that column's centre.
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:
-        return float(np.nansum(width) * grid.dx)
+        return float(np.nansum(width * grid.widths))
     # At a smooth end the width goes to zero like a square root, so its square is what is interpolated.
     squared = width[columns] ** 2
     at = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])

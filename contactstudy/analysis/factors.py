@@ -44,7 +44,9 @@ def _at(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
     x = dimension_along(profile, "x")
     distance = abs(positions(profile, "x") - position)
     nearest = distance.fillna(np.inf).argmin(x)
-    return profile.isel({x: nearest}).where(distance.min(x) <= cell_size(profile, "x"))
+    width = cell_size(profile, "x")
+    reach = width.isel({x: nearest}) if x in width.dims else width
+    return profile.isel({x: nearest}).where(distance.min(x) <= reach)
 
 
 def _ends(

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import dimension_along, single_case
+from contactstudy.analysis.axes import cell_size, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.arrays.required import require
@@ -61,14 +61,12 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     place = cells[x].values
     if place.size < number:
         raise InvalidInputError("count", count, f"at most the number of cells, {place.size}")
-    step = (place[-1] - place[0]) / max(place.size - 1, 1)
-    borders = np.linspace(place[0] - step / 2, place[-1] + step / 2, number + 1)
+    half = 0.5 * np.broadcast_to(cell_size(cells["line_load"], "x").values, place.shape)
+    borders = np.linspace(place[0] - half[0], place[-1] + half[-1], number + 1)
     width = borders[1] - borders[0]
 
     # Cells that a border cuts give each slice its share of the load.
-    share = np.clip(
-        np.minimum(borders[1:, None], place + step / 2) - np.maximum(borders[:-1, None], place - step / 2), 0, None
-    )
+    share = np.clip(np.minimum(borders[1:, None], place + half) - np.maximum(borders[:-1, None], place - half), 0, None)
     weights = xr.DataArray(share, dims=("slice", x))
     result = xr.Dataset(
         {

@@ -20,8 +20,9 @@ def labelled_cells(
 ) -> tuple[FloatArray, Grid]:
     """Values ``(x, y)`` and grid of a DataArray on cell centres.
 
-    Cells are uniform along y. Along x their edges are, in this order: what the coordinates `x_width` or `x_bounds` say;
-    those of uniform cells; or what follows from the body's end and the centres.
+    Cells are uniform along y. Along x their edges are, in this order: what the coordinate `x_width` says; those of
+    uniform cells; or what follows from the body's end and the centres. (`x_bounds` cannot be part of a DataArray without
+    the dimension `bounds`.)
 
     Parameters
     ----------
@@ -81,10 +82,7 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
     if "x_width" in array.coords:
         widths = checks.coordinates("x_width", array["x_width"].values)
         centres = checks.coordinates("x", array["x"].values)
-        return _tiled(centres - 0.5 * widths, centres + 0.5 * widths, "x_width", y_range, cells_y)
-    if "x_bounds" in array.coords:
-        bounds = np.asarray(array["x_bounds"].transpose("x", ...).values, dtype=np.float64)
-        return _tiled(bounds[:, 0], bounds[:, 1], "x_bounds", y_range, cells_y)
+        return _tiled(centres - 0.5 * widths, centres + 0.5 * widths, y_range, cells_y)
     try:
         x_range, cells_x = uniform_range("x", array["x"].values)
     except InvalidInputError as error:
@@ -97,14 +95,14 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
     return Grid(x_range, y_range, cells_x, cells_y)
 
 
-def _tiled(low: FloatArray, high: FloatArray, name: str, y_range: tuple[float, float], cells_y: int) -> Grid:
+def _tiled(low: FloatArray, high: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
     """Grid of cells from `low` to `high`, which have to meet."""
     apart = np.abs(high[:-1] - low[1:])
     wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
     if wrong.size:
         at = int(wrong[0])
         raise InvalidInputError(
-            name, f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
+            "x_width", f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
         )
     middle = 0.5 * (high[:-1] + low[1:])
     return Grid.from_edges(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)

@@ -19,6 +19,9 @@ from contactstudy.errors import InvalidInputError
 LARGEST_TILT = 0.1
 """Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
 
+INCLINED_POINTS = 41
+"""Points along the axis from which the mean inclination of the roller is taken."""
+
 GAP_NODES = 6
 """Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
 
@@ -118,6 +121,21 @@ class Case:
                 allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
                 raise InvalidInputError("load_position", position, allowed)
             checks.store(self, load_position=position)
+            self._check_inclination(start, stop)
+
+    def _check_inclination(self, start: float, stop: float) -> None:
+        """Raise if a roller that is free to tilt would have to by more than a small angle, to lie on the body."""
+        x = np.linspace(start, stop, INCLINED_POINTS)[1:-1]
+        lowest = self._clearance(x - self.roller_start - 0.5 * self.roller.length, np.zeros(1))[:, 0]
+        slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), lowest, 1)[1]) / (stop - start)
+        if abs(slope) > LARGEST_TILT:
+            raise InvalidInputError(
+                "load_position",
+                self.load_position,
+                f"None, for where it faces the body the roller is inclined by {slope:.3g} rad: balanced, it would tilt "
+                f"by more than a small angle, {LARGEST_TILT} rad",
+                "let the roller overhang less, or hold its tilt",
+            )
 
     def _check_load(self) -> None:
         """Raise unless one of pressure and load is given, and of a size that a contact can have."""

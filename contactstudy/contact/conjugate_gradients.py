@@ -173,7 +173,7 @@ def solve_complementarity(
         change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
         closed = ~state.contact & (opening < -OVERLAP * tolerance * scale)
         if (moved < 0).any() or closed.any():
-            state.change_area(moved, closed, opening)
+            state.change_area(moved, closed, opening, step, along)
         else:
             state.pressure, state.sunk, state.fresh = moved, state.sunk - step * along, False
             settled = violation <= tolerance * scale and change <= tolerance
@@ -285,7 +285,9 @@ class _State:
         step = float((residual * self.direction).sum()) / curvature if curvature > 0 else 0.0
         return step, along, curvature
 
-    def change_area(self, moved: FloatArray, closed: BoolArray, opening: FloatArray) -> None:
+    def change_area(
+        self, moved: FloatArray, closed: BoolArray, opening: FloatArray, step: float, along: FloatArray
+    ) -> None:
         """Take cells out of the contact whose pressure has become negative, and cells that overlap into it."""
         moved[moved < 0] = 0.0
         if closed.any():
@@ -294,20 +296,37 @@ class _State:
             moved[closed] = np.maximum(-scaled[closed], LEAST_ENTRY * moved.max())
         moved = self._resultants.restored(self._on_both_sides(moved))
         settled = self._apply(moved)
+        part = 1.0
         # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
-        part = _part_that_descends(moved - self.pressure, settled - self.sunk, opening) if closed.any() else 1.0
-        self.pressure = moved if part == 1.0 else self.pressure + part * (moved - self.pressure)
-        self.sunk = settled if part == 1.0 else self.sunk + part * (settled - self.sunk)
+        if closed.any():
+            part = _part_that_descends(moved - self.pressure, settled - self.sunk, opening)
+        if part > 0:
+            self.pressure = moved if part == 1.0 else self.pressure + part * (moved - self.pressure)
+            self.sunk = settled if part == 1.0 else self.sunk + part * (settled - self.sunk)
+        else:
+            self._go_to_the_border(step, along)
         self.contact = self.pressure > 0
         self.fresh = True
 
+    def _go_to_the_border(self, step: float, along: FloatArray) -> None:
+        """Follow the direction until the first cell leaves the contact: that keeps the resultants and descends."""
+        change = -step * self.direction
+        falling = self.contact & (change < 0)
+        reach = self.pressure[falling] / -change[falling]
+        part = min(1.0, float(reach.min(initial=1.0)))
+        pressure = self.pressure + part * change
+        pressure[falling] = np.where(reach <= part, 0.0, np.maximum(pressure[falling], 0.0))
+        self.pressure, self.sunk = pressure, self.sunk - part * step * along
+
 
 def _part_that_descends(change: FloatArray, sinking: FloatArray, opening: FloatArray) -> float:
-    """Part of a change of the pressure to take: all, unless it raises the energy; then what lowers it most.
+    """Part of a change of the pressure to take: all, unless it raises the energy; then what lowers it most, or none.
 
     Between two pressures that are nowhere negative and have the prescribed resultants, all have both properties, and
     the energy between them is a parabola.
     """
     slope = -float((change * np.where(np.isfinite(opening), opening, 0.0)).sum())
     curvature = float((change * sinking).sum())
-    return slope / curvature if 0 < slope < 0.5 * curvature else 1.0
+    if slope <= 0:
+        return 0.0
+    return slope / curvature if slope < 0.5 * curvature else 1.0

@@ -120,11 +120,23 @@ def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArr
         finer = between_columns(_refined(squared.T).T, coarse.grid.x, problem.grid.x)
         guess = np.sqrt(np.maximum(np.where(possible, finer, 0.0), 0.0))
     else:
-        heights = gap[possible]
+        heights = _levelled(problem)
+        under = heights[possible]
         sinks = problem.resultants.total is not None
-        level = np.quantile(heights, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(heights) if sinks else 0.0
-        guess = np.sqrt(np.maximum(level - np.where(possible, gap, np.inf), 0.0))
+        level = np.quantile(under, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(under) if sinks else 0.0
+        guess = np.sqrt(np.maximum(level - np.where(possible, heights, np.inf), 0.0))
     return np.asarray(guess if guess.any() else possible.astype(np.float64))
+
+
+def _levelled(problem: ContactProblem) -> FloatArray:
+    """Gap less its mean slope along the axis, where the shape is free to tilt."""
+    lever = problem.resultants.lever
+    if lever is None:
+        return problem.gap
+    facing = np.isfinite(problem.gap).any(axis=1)
+    lowest, arm = problem.gap[facing].min(axis=1), lever[facing, 0]
+    slope = np.polynomial.polynomial.polyfit(arm, lowest, 1)[1] if arm.size > 1 else 0.0
+    return problem.gap - slope * lever
 
 
 def _continued_square(operator: ContactOperator, problem: ContactProblem, found: ContactIterate) -> FloatArray:

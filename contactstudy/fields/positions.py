@@ -16,6 +16,9 @@ from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
+FARTHEST = 1e4
+"""Distance over the size of load and body up to which fields are computed: the work grows with it along y."""
+
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
 
@@ -79,6 +82,15 @@ def field_positions(
     at_z = checks.coordinates("z", z)
     if (at_z < 0).any():
         raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
+    low, high = body.extent
+    size = max(grid.x_range[1] - grid.x_range[0], grid.y_range[1] - grid.y_range[0])
+    size = max(size, high - low) if np.isfinite([low, high]).all() else size
+    for name, values in (("x", at_x), ("y", at_y), ("z", at_z)):
+        farthest = float(values[np.abs(values).argmax()])
+        if abs(farthest) > FARTHEST * size:
+            raise InvalidInputError(
+                name, farthest, f"within {FARTHEST:g} times the size of load and body, {FARTHEST * size:g} m"
+            )
     own_x, own_y = own or (grid.x, grid.y)
     return FieldPositions(at_x, at_y, at_z, own_x if x is None else at_x, own_y if y is None else at_y)
 

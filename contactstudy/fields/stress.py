@@ -51,7 +51,7 @@ def stress_field(
     -------
     Dataset
         `sigma_xx`, `sigma_yy`, `sigma_zz`, `tau_xy`, `tau_xz`, `tau_yz` and `von_mises` (x, y, z) in Pa, positive in
-        tension. What is known exactly is returned exactly: free ends carry no traction, the top carries the load.
+        tension. On the free ends they hold the traction that the quadratures leave there.
 
     Raises
     ------
@@ -66,8 +66,8 @@ def stress_field(
     >>> pressure = xr.DataArray(np.ones((8, 8)), coords={"x": centres, "y": centres - 1.0}, dims=("x", "y"))
     >>> body = FiniteLengthSpace(length=2.0, material=Material(1.0, 0.3))
     >>> stress = stress_field(body, pressure, x=[0.0, 1.0], y=[0.0], z=[0.5])
-    >>> float(stress.sigma_xx[0, 0, 0]), round(float(stress.sigma_zz[1, 0, 0]), 3)
-    (0.0, -0.954)
+    >>> abs(float(stress.sigma_xx[0, 0, 0])) < 1e-5, round(float(stress.sigma_zz[1, 0, 0]), 3)
+    (True, -0.954)
     """
     grid, values, own = labelled_load(body, pressure)
     positions = field_positions(body, grid, x, y, z, own)
@@ -75,16 +75,15 @@ def stress_field(
 
 
 def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
-    """Stresses under `loads` on the cells of `grid`, labelled, with what is known on the free ends imposed."""
+    """Stresses under `loads` on the cells of `grid`, labelled."""
     stresses = stress_under(body, loads, grid, *positions.axes)
-    _impose_free_ends(body, stresses, positions.x)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
 
 def stress_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    """Stresses (6, x, y, z) as computed: nothing is imposed on the free ends.
+    """Stresses (6, x, y, z).
 
     The fields under each load's distribution are kept, so that a sweep over the friction computes them once.
     """
@@ -161,11 +160,3 @@ def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z
         return 0.0
     traction = stress_under(body, loads, grid, ends, y, z)[[0, 3, 4]]
     return float(np.sqrt((traction**2).sum(axis=0)).max() / pressure.max())
-
-
-def _impose_free_ends(body: Body, stresses: FloatArray, x: FloatArray) -> None:
-    """Set what is known exactly on the end faces, unless the body is a comparison model that does not free them."""
-    if not all(part.freed for part in body.parts):
-        return
-    for component in (0, 3, 4):
-        stresses[component][np.isin(x, body.extent)] = 0.0

@@ -69,7 +69,8 @@ def test_equal_materials_as_half_spaces_do_not_couple_with_friction():
         ).pressure.values
         for coupled in (False, True)
     ]
-    assert np.abs(results[0] - results[1]).max() < 1e-6 * results[0].max()
+    # Both are solved to the tolerance of the contact, by other rounds.
+    assert np.abs(results[0] - results[1]).max() < 1e-5 * results[0].max()
 
 
 @pytest.mark.parametrize(

@@ -40,7 +40,7 @@ def test_the_resultant_acts_where_it_was_prescribed(offset: float):
     position = 0.5 * LENGTH + offset * HALF_WIDTH
     result = solve(case_with(load_position=position), stresses=False)
     assert bool(result.converged)
-    line = result.pressure.sum("y")
+    line = result.pressure.sum("y") * result.x_width
     assert abs(float((line * line.x).sum() / line.sum()) - position) < 1e-6 * LENGTH
     assert float(result.load_position) == pytest.approx(position, abs=1e-6 * LENGTH)
     if offset == 0:
@@ -53,14 +53,15 @@ def test_the_resultant_acts_where_it_was_prescribed(offset: float):
 def test_the_tilt_that_follows_from_the_position_gives_the_position():
     free = solve(case_with(load_position=0.5 * LENGTH + HALF_WIDTH), stresses=False)
     held = solve(case_with(tilt=float(free.tilt)), stresses=False)
-    np.testing.assert_allclose(held.pressure, free.pressure, atol=2e-5 * float(free.pressure.max()))
+    np.testing.assert_allclose(held.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
     assert float(held.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
 
 
 def test_opposite_tilts_mirror_the_pressure():
-    first, second = (solve(case_with(tilt=tilt), stresses=False).pressure.values for tilt in (2e-4, -2e-4))
+    results = [solve(case_with(tilt=tilt), stresses=False) for tilt in (2e-4, -2e-4)]
+    first, second = (result.pressure.values for result in results)
     np.testing.assert_allclose(first, second[::-1], atol=1e-5 * first.max())
-    assert first[first.shape[0] // 2 :].sum() > first[: first.shape[0] // 2].sum()
+    assert float(results[0].load_position) > 0.5 * LENGTH + 0.1 * HALF_WIDTH
 
 
 def test_a_load_on_mid_length_does_not_tilt():
@@ -234,11 +235,15 @@ def test_approach_and_tilt_say_what_they_are_relative_to():
 def test_a_load_near_the_end_of_a_short_contact_acts_where_it_was_prescribed():
     """All the pressure of the first guess lies on one side of the load, so no factor on it could balance it."""
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
-    roller = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
-    case = Case(body=body, roller=roller, max_pressure=1.5e9, end_distance=-9.9e-3, load_position=5e-5)
-    result = solve(case, stresses=False)
-    assert bool(result.converged)
-    assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)
+    crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
+    arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}
+    for grid in (None, Grid((0.0, 2e-3), (-4e-4, 4e-4), 320, 64)):
+        result = solve(Case(roller=crowned, **arguments), grid, stresses=False)
+        assert bool(result.converged)
+        assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)
+    steep = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
+    with pytest.raises(InvalidInputError, match=r"load_position = 5e-05: must be None, .* inclined"):
+        Case(roller=steep, **arguments)
 
 
 @pytest.mark.parametrize("scale", [1.0, 1e-4, 1e-6])

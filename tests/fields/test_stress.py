@@ -124,3 +124,10 @@ def test_a_body_too_thin_to_be_freed_is_refused(on_cells) -> None:
     thin = FiniteLengthSpace(material=Material(1.0, 0.3), length=0.005)
     with pytest.raises(InvalidInputError, match=r"body.length = 0.005: must be at least 0.004 of the width"):
         stress_field(thin, pressure, z=[0.1])
+
+
+@pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e300), ("z", 1e300)])
+def test_points_out_of_reach_are_refused(short_body: FiniteLengthSpace, strip_pressure, axis: str, far: float) -> None:
+    points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [far]}
+    with pytest.raises(InvalidInputError, match=f"^{axis} = .* within 10000 times the size"):
+        stress_field(short_body, strip_pressure(8.0, (16, 16)), **points)

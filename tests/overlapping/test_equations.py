@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid, Material
+from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
-from contactstudy.overlapping.surface import build_end_correction
 
 
 @pytest.mark.parametrize(("lateral", "parity"), [(0.3, 0), (0.3, 1), (2.0, 1), (20.0, 0)])
@@ -37,10 +38,9 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 @pytest.mark.parametrize("length", [8.0, 2.5])
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid((0.0, length), (-2.0, 2.0), 24, 16)
-    correction = build_end_correction(
-        length, Material(1.0, 0.3), grid, (Load.NORMAL,), reference=80.0, resolution=Resolution()
-    )
-    for kernel in correction.kernels[Load.NORMAL]:
+    freed = FreedEnds(length)
+    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (Load.NORMAL,), 80.0, Resolution())
+    for kernel in end_kernel(request).samples[Load.NORMAL]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 

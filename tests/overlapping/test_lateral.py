@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy import integrate, special
 
 from contactstudy import Grid
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.lateral import LateralPanel, cosine_moments, lateral_columns, lateral_panels
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -28,9 +29,9 @@ def answered(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
         for place, parity in enumerate(parts):
             own = batch.along_x[..., batch.parities == parity] * np.exp(-0.3 * batch.nodes)[:, None]
             flat = own.reshape(GRID.cells_x, -1)
-            for load, waves in enumerate(batch.syntheses(parity)):
-                for kind, synthesis in enumerate(waves):
-                    total[load, kind, place] += flat @ synthesis
+            for number, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
+                for kind, synthesis in enumerate(batch.synthesis(load, parity)):
+                    total[number, kind, place] += flat @ synthesis
     return total
 
 

@@ -1,9 +1,10 @@
 """The command line with the stand-in solver, for tests that kill the process: ``python -m tests.study.fake_run``."""
 
+import os
 import sys
 
 from contactstudy.cli import main
-from tests.stand_in_solver import solve_held
+from tests.stand_in_solver import HELD, solve_fake, solve_held
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:], solver=solve_held))
+    sys.exit(main(solver=solve_held if HELD in os.environ else solve_fake))

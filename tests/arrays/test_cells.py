@@ -1,0 +1,118 @@
+"""Labelled arrays on cells of any width: where their edges come from, and what does not tile."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+import contactstudy as cs
+from contactstudy import Grid, InvalidInputError
+from contactstudy.arrays.cells import cell_coordinates, labelled_cells
+
+EDGES = np.array([0.0, 0.1, 0.3, 0.7, 1.1, 1.4, 1.5])
+GRID = Grid.from_edges(EDGES, (-1.0, 1.0), 4)
+
+
+def array(**coordinates: object) -> xr.DataArray:
+    return xr.DataArray(
+        np.arange(24.0).reshape(GRID.shape), coords={"x": GRID.x, "y": GRID.y, **coordinates}, dims=("x", "y")
+    )
+
+
+def test_edges_are_what_widths_say() -> None:
+    data = array(x_width=("x", GRID.widths))
+    values, grid = labelled_cells("p", data)
+    assert np.allclose(grid.x_edges, EDGES)
+    assert np.array_equal(values, data.values)
+
+
+@pytest.mark.parametrize("extent", [(0.0, np.inf), (0.0, 1.5), (-np.inf, 1.5)])
+def test_edges_follow_from_the_end_of_the_body(extent: tuple[float, float]) -> None:
+    _, grid = labelled_cells("p", array(), extent=extent)
+    assert np.allclose(grid.x_edges, EDGES)
+
+
+def test_dimensions_in_either_order_are_the_same() -> None:
+    data = array(x_width=("x", GRID.widths))
+    values, grid = labelled_cells("p", data.transpose("y", "x"))
+    assert grid.shape == GRID.shape
+    assert np.array_equal(values, data.values)
+
+
+def test_uniform_cells_need_no_more_coordinates() -> None:
+    uniform = Grid((0.0, 1.5), (-1.0, 1.0), 6, 4)
+    assert cell_coordinates(uniform) == {}
+    data = xr.DataArray(np.ones((6, 4)), coords={"x": uniform.x, "y": uniform.y}, dims=("x", "y"))
+    assert labelled_cells("p", data)[1].uniform
+
+
+@given(ratios=st.lists(st.floats(0.35, 2.9), min_size=2, max_size=20))
+def test_labels_lead_back_to_the_cells(ratios: list[float]) -> None:
+    edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
+    grid = Grid.from_edges(edges, (-1.0, 1.0), 4)
+    dataset = xr.Dataset(
+        {"p": (("x", "y"), np.ones(grid.shape))}, coords={"x": grid.x, "y": grid.y, **cell_coordinates(grid)}
+    )
+    for found in (
+        labelled_cells("p", dataset["p"])[1],
+        labelled_cells("p", dataset["p"].drop_vars(["x_width", "x_bounds"], errors="ignore"), extent=(0.0, edges[-1]))[
+            1
+        ],
+    ):
+        # The centres alone determine edges by a recursion that doubles no error.
+        assert np.allclose(found.x_edges, edges, atol=1e-9 * edges[-1])
+
+
+def test_part_of_the_cells_keeps_their_widths() -> None:
+    data = array(x_width=("x", GRID.widths)).isel(x=slice(1, 4))
+    assert np.allclose(labelled_cells("p", data)[1].x_edges, EDGES[1:5])
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        (array(), r"x = .*uniformly spaced.*x_width"),
+        (
+            array(x_width=("x", GRID.widths)).isel(x=[0, 1, 3, 4]),
+            r"x_width = 'one cell ends at 0.3 m, the next begins at 0.7 m",
+        ),
+        (array(x_width=("x", 1.2 * GRID.widths)), r"x_width = 'one cell ends at .* the next begins at"),
+        (array(x_width=("x", GRID.widths)).isel(x=slice(None, None, -1)), r"x"),
+        (array(x_width=("x", -GRID.widths)), r"x"),
+        (array(x_width=("x", np.full(6, np.nan))), r"x_width"),
+    ],
+    ids=["no widths", "a gap", "an overlap", "backwards", "negative", "not finite"],
+)
+def test_cells_that_do_not_tile_are_refused_with_their_place(data: xr.DataArray, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        labelled_cells("p", data)
+
+
+def test_centres_that_do_not_follow_from_the_end_are_refused_with_their_place() -> None:
+    data = xr.DataArray(np.ones((3, 2)), coords={"x": [0.5, 0.6, 2.0], "y": [0.0, 1.0]}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match=r"a cell centre at 0.6 m.*x_width"):
+        labelled_cells("p", data, extent=(0.0, np.inf))
+
+
+@pytest.mark.parametrize("engine", ["netcdf4", "h5netcdf"])
+def test_result_on_graded_cells_survives_a_file(tmp_path: Path, engine: str) -> None:
+    steel = cs.Material(210e9, 0.3)
+    body = cs.FiniteLengthSpace(length=0.6e-3, material=steel)
+    roller = cs.Roller(radius=5e-3, length=0.5e-3, profile=cs.profiles.Cylinder(fillet_radius=0.1e-3))
+    result = cs.solve(cs.Case(body=body, roller=roller, max_pressure=1.5e9), accuracy=0.05, stresses=False)
+    assert {"x_width", "x_bounds"} <= set(result.coords)
+    assert np.allclose(result.x_bounds[:, 1] - result.x_bounds[:, 0], result.x_width, rtol=1e-9)
+    result.to_netcdf(tmp_path / "result.nc", engine=engine)
+    with xr.open_dataset(tmp_path / "result.nc", engine=engine) as opened:
+        opened.load()
+    assert np.array_equal(opened.x_width, result.x_width)
+    stresses = [
+        cs.stress_field(body, each.pressure, 0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5]) for each in (result, opened)
+    ]
+    for name in stresses[0].data_vars:
+        assert np.array_equal(stresses[0][name], stresses[1][name])

@@ -1,0 +1,104 @@
+"""Grids of any cell edges: what they know of their cells, and errors that say where."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import Grid, InvalidInputError
+from contactstudy.arrays.grid import STEEPEST_GRADING, growing_edges
+
+Y_RANGE = (-1.0, 1.0)
+
+RATIOS = st.lists(st.floats(0.3, 3.3), min_size=1, max_size=30)
+
+
+def edges_of(ratios: list[float]) -> list[float]:
+    return np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios]))).tolist()
+
+
+@given(ratios=RATIOS)
+def test_cells_tile_the_range_between_their_edges(ratios: list[float]) -> None:
+    edges = np.array(edges_of(ratios))
+    grid = Grid.from_edges(edges, Y_RANGE, 4)
+    assert np.allclose(grid.x_edges, edges, rtol=1e-12)
+    assert grid.x_edges[0] == grid.x_range[0]
+    assert grid.x_edges[-1] == grid.x_range[1]
+    assert grid.shape == (edges.size - 1, 4)
+    assert np.all((grid.x > grid.x_edges[:-1]) & (grid.x < grid.x_edges[1:]))
+    assert np.allclose(grid.x - 0.5 * grid.widths, grid.x_edges[:-1], atol=1e-12 * edges[-1])
+    assert float(grid.weights.sum()) == pytest.approx(grid.cells_x)
+    assert float((grid.weights * np.ones(grid.shape)).sum()) * grid.cell_area == pytest.approx(2 * edges[-1])
+
+
+@given(ratios=RATIOS)
+def test_grids_of_equal_edges_are_equal(ratios: list[float]) -> None:
+    edges = edges_of(ratios)
+    one, other = (Grid.from_edges(edges, Y_RANGE, 4) for _ in range(2))
+    assert one == other
+    assert hash(one) == hash(other)
+    moved = [*edges[:-1], edges[-1] * 1.01]
+    assert Grid.from_edges(moved, Y_RANGE, 4) != one
+
+
+@given(ratios=RATIOS)
+def test_cells_joined_in_twos_have_every_other_edge(ratios: list[float]) -> None:
+    """Also where the joined ones differ by more than cells that are given may."""
+    grid = Grid.from_edges(edges_of(ratios), Y_RANGE, 4)
+    joined = grid.coarsened()
+    assert joined.cells_y == 2
+    assert joined.x_range == grid.x_range
+    if not grid.uniform:
+        assert set(joined.x_edges[:-1].tolist()) == set(grid.x_edges[:-1:2].tolist())
+        assert float(joined.widths.sum()) == pytest.approx(float(grid.widths.sum()))
+
+
+def test_equal_widths_make_a_uniform_grid() -> None:
+    grid = Grid.from_edges(np.linspace(0.0, 3.0, 7), Y_RANGE, 4)
+    assert grid.uniform
+    assert grid == Grid((0.0, 3.0), Y_RANGE, 6, 4)
+    assert np.array_equal(grid.weights, np.ones((6, 1)))
+
+
+@pytest.mark.parametrize(
+    ("edges", "message"),
+    [
+        ([0.0, 1.0, 1.0, 2.0], r"x_edges = '1, 1 m': must be increasing"),
+        ([0.0, 1.0, 0.5, 2.0], r"x_edges = '1, 0.5 m': must be increasing"),
+        ([0.0, 1.0, 1.0 + 1e-15, 2.0], r"must be increasing"),
+        ([0.0, 1.0, 2.0, 7.0], r"cells of 1 and 5 m beside x = 2 m.*factor of 4"),
+        ([0.0, 5.0, 6.0, 7.0], r"cells of 5 and 1 m beside x = 5 m"),
+        ([0.0], r"at least two edges"),
+        ([0.0, np.nan, 1.0], r"x_edges"),
+        ([0.0, np.inf], r"x_edges"),
+        ([[0.0, 1.0], [2.0, 3.0]], r"x_edges"),
+        ("wide", r"x_edges"),
+    ],
+)
+def test_edges_that_make_no_cells_are_refused_with_their_place(edges: object, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        Grid.from_edges(edges, Y_RANGE, 4)
+
+
+@pytest.mark.parametrize(("y_range", "cells_y"), [((1.0, -1.0), 4), ((0.0, np.inf), 4), ((-1.0, 1.0), 0)])
+def test_cells_along_y_are_checked_as_for_uniform_cells(y_range: tuple[float, float], cells_y: int) -> None:
+    with pytest.raises(InvalidInputError):
+        Grid.from_edges([0.0, 1.0, 3.0], y_range, cells_y)
+
+
+@given(distance=st.floats(1e-3, 1e4), width=st.floats(1e-3, 10.0))
+def test_growing_cells_reach_the_distance_and_grow_gently(distance: float, width: float) -> None:
+    edges = growing_edges(distance, width)
+    assert edges[-1] == pytest.approx(distance)
+    widths = np.diff(np.append(0.0, edges))
+    assert np.all(widths > 0)
+    assert widths[0] <= width * (1 + 1e-9)
+    if edges.size > 1:
+        assert np.all(widths[1:] / widths[:-1] < STEEPEST_GRADING)
+
+
+def test_no_distance_has_no_cells_and_an_endless_one_a_single_cell() -> None:
+    assert growing_edges(0.0, 1.0).size == 0
+    assert growing_edges(np.inf, 0.5).tolist() == [0.5]

@@ -1,0 +1,112 @@
+"""Field under columns of any width: that of uniform cells, every load and extent, properties of any edges."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import Grid
+from contactstudy.checks import FloatArray
+from contactstudy.kernels import displacement, stress
+from contactstudy.kernels.columns_field import columns_field
+from contactstudy.kernels.field import half_space_field
+from contactstudy.kernels.influence import Influence
+from contactstudy.kernels.load import Load
+from contactstudy.kernels.patch import STRESS_CORNERS
+from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
+
+LENGTH, POISSON = 2.0, 0.3
+EXTENTS = {
+    "none": (-np.inf, np.inf),
+    "first": (0.0, np.inf),
+    "last": (-np.inf, LENGTH),
+    "both": (0.0, LENGTH),
+}
+X, Z = np.array([0.0, 0.3, 1.0, LENGTH]), np.array([0.05, 0.5])
+
+
+def stresses_of(load: Load) -> Influence:
+    return Influence.of(STRESS_CORNERS[load], POISSON, load, stress.UNDER_PRESSURE)
+
+
+def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
+    level = displacement._row_level(load, POISSON, LENGTH, 20.0) if np.isfinite(extent).all() else None
+    return Influence.of(DISPLACEMENT_CORNERS[load], POISSON, load, displacement.UNDER_PRESSURE, level)
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_field_of_uniform_cells(load: Load, extent: str) -> None:
+    grid = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    cells = np.random.default_rng(0).random(grid.shape)
+    cells[:, :3] = 0
+    # Displacements of a row without end are differences of large numbers.
+    for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
+        for y in (grid.y, np.array([0.1, 0.33])):
+            expected = half_space_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            found = columns_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            assert found.shape == expected.shape
+            assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
+
+
+GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
+"""Edges that are kept of twenty uniform cells."""
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
+    uniform = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
+    cells = np.random.default_rng(1).random(graded.shape)
+    spread = np.repeat(cells, np.diff(GRADED), axis=0)
+    influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
+    expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
+    found = columns_field(cells, influence, graded, X, y, Z, extent=EXTENTS[extent])
+    assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
+
+
+def test_nothing_loaded_leaves_nothing() -> None:
+    grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
+    field = columns_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
+    assert field.shape == (6, X.size, grid.y.size, Z.size)
+    assert not field.any()
+
+
+@st.composite
+def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
+    """Columns of any widths, and a load on them."""
+    ratios = draw(st.lists(st.floats(0.3, 3.0), min_size=1, max_size=10))
+    edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
+    grid = Grid.from_edges(LENGTH * edges / edges[-1], (-1.0, 1.0), 6)
+    return grid, np.random.default_rng(draw(st.integers(0, 1000))).random(grid.shape)
+
+
+@settings(max_examples=20)
+@given(loaded=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
+def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
+    grid, cells = loaded
+    backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
+    influence, y = stresses_of(load), np.array([-0.4, 0.1])
+    there = columns_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
+    back = columns_field(cells[::-1], influence, backwards, LENGTH - X[::-1], y, Z, extent=EXTENTS[extent])
+    sign = np.array(influence.sign_along_x)[:, None, None, None]
+    assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
+
+
+@settings(max_examples=5)
+@given(loaded=graded_loads())
+def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, FloatArray]) -> None:
+    grid, cells = loaded
+    depth, reach, points = 0.6, 40.0, 81
+    # Points that crowd where the load is: y = sinh(s).
+    s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
+    wide, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
+    field = columns_field(
+        cells, stresses_of(Load.NORMAL), grid, 1.0 + wide, wide, np.array([depth]), extent=EXTENTS["none"]
+    )[2, :, :, 0]
+    carried = -float(steps @ field @ steps)
+    total = float((cells * grid.widths[:, None]).sum() * grid.dy)
+    assert carried == pytest.approx(total, rel=2e-3)
