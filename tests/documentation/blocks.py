@@ -7,6 +7,8 @@ The blocks of a page run in their order and share their names. They find
 * after a TOML block that is a whole study: its file, its results in `results/NAME`, by the stand-in solver, and the
   `path` of one of its cases. Other TOML blocks are parsed.
 
+A text block that directly follows a Python block is what it prints: the same words, and the same numbers to a percent.
+
 A block that cannot run here has the reason in the page, on the line before it::
 
     <!-- skip: next "needs a SLURM cluster" -->
@@ -14,7 +16,9 @@ A block that cannot run here has the reason in the page, on the line before it::
 
 from __future__ import annotations
 
+import contextlib
 import functools
+import io
 import os
 import re
 import shutil
@@ -54,6 +58,37 @@ class Fences:
             region.parsed = region.lexemes["source"]
             region.evaluator = self._evaluator
             yield region
+
+
+class PrintingEvaluator(PythonEvaluator):
+    """Evaluator that keeps what a block prints."""
+
+    def __call__(self, example: Example) -> None:
+        with contextlib.redirect_stdout(io.StringIO()) as printed:
+            super().__call__(example)
+        example.namespace["_printed"] = printed.getvalue()
+
+
+OUTPUT = re.compile(r"^```python\n(?:(?!^```).*\n)*```\n\n(```text\n((?:(?!^```).*\n)*)```)", re.MULTILINE)
+"""A text block that directly follows a Python block."""
+
+
+class Outputs:
+    """Parser of text blocks that directly follow Python blocks."""
+
+    def __call__(self, document: Document) -> Iterable[Region]:
+        for found in OUTPUT.finditer(document.text):
+            yield Region(found.start(1), found.end(1), found[2], compare_output)
+
+
+def compare_output(example: Example) -> None:
+    """Compare what is shown with what was printed: words as they are, numbers to a percent."""
+    shown, printed = example.parsed.split(), example.namespace["_printed"].split()
+    assert len(shown) == len(printed), example.namespace["_printed"]
+    for one, other in zip(shown, printed, strict=True):
+        if one != other:
+            tail = ",:;"
+            assert float(one.strip(tail)) == pytest.approx(float(other.strip(tail)), rel=0.01, abs=2e-3), (one, other)
 
 
 class ReasonedSkips(SkipParser):
@@ -110,7 +145,7 @@ def end_page(names: dict[str, Any]) -> None:
 
 
 pytest_collect_file = Sybil(
-    parsers=[Fences("python", PythonEvaluator()), Fences("toml", run_toml), ReasonedSkips()],
+    parsers=[Fences("python", PrintingEvaluator()), Outputs(), Fences("toml", run_toml), ReasonedSkips()],
     path=str(ROOT),
     patterns=["docs/*.md", "docs/**/*.md"],
     filenames=["README.md"],
