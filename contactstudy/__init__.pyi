@@ -23,6 +23,7 @@ from .case import choose_grid as choose_grid
 from .case import roughness as roughness
 from .contact import slices as slices
 from .contact import solve_contact as solve_contact
+from .contact.end_law import edge_peak as edge_peak
 from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError

@@ -89,7 +89,7 @@ def test_result_survives_netcdf(result, tmp_path) -> None:
 def test_stresses_may_have_positions_of_their_own() -> None:
     result = solve(CASE, x=[0.0, 0.3e-3], y=[0.0], z=[50e-6])
     assert result["von_mises"].dims == ("x_field", "y_field", "z")
-    assert result["sigma_xx"].values[0, 0, 0] == 0.0
+    assert abs(result["sigma_xx"].values[0, 0, 0]) < 1e-5 * CASE.hertz_max_pressure  # what is left on the free end
 
 
 def test_half_space_has_nothing_left_on_its_ends() -> None:

@@ -48,7 +48,7 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     Parameters
     ----------
     dataset : Dataset
-        With `pressure` on uniform cells.
+        With `pressure` on cells.
 
     Returns
     -------
@@ -79,7 +79,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     Parameters
     ----------
     dataset : Dataset
-        With `pressure` on uniform cells.
+        With `pressure` on cells.
     start, stop : float or DataArray
         Positions, metres; an array has a position for each case of a study. They may be infinite.
 
@@ -117,7 +117,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     Parameters
     ----------
     dataset : Dataset
-        With `pressure` on uniform cells.
+        With `pressure` on cells.
 
     Returns
     -------

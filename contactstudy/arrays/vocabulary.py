@@ -74,12 +74,12 @@ CONTACT = {
     "initial_gap": Variable(XY, "m", "g_0", "gap before deformation"),
     "displacement_z": Variable(XY, "m", "u_z", "normal displacement of the top, into the body"),
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
-    "load": Variable(SCALAR, "N", "F", "normal load"),
+    "load": Variable(SCALAR, "N", "W", "normal load"),
     "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
     "tilt": Variable(
-        SCALAR, "rad", r"\theta", "tilt relative to its reference, positive if larger x is pressed deeper"
+        SCALAR, "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
     ),
-    "load_position": Variable(SCALAR, "m", "x_F", "position x of the pressure's resultant"),
+    "load_position": Variable(SCALAR, "m", "x_W", "position x of the pressure's resultant"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),
@@ -165,7 +165,7 @@ ANALYSIS = {
     "end_pressure_over_p0_first": Variable(SCALAR, "1", "", "pressure in the first loaded cells, over p0"),
     "end_pressure_over_p0_last": Variable(SCALAR, "1", "", "pressure in the last loaded cells, over p0"),
     "end_pressure_over_p0": Variable(SCALAR, "1", "", "mean of the pressures at both ends, over p0"),
-    "resultant": Variable(SCALAR, "N", "F", "resultant of the pressure"),
+    "resultant": Variable(SCALAR, "N", "W", "resultant of the pressure"),
     "moment": Variable(SCALAR, "N m", "M", "moment of the pressure, positive for a load at larger x"),
     "end_over_middle_first": Variable(SCALAR, "1", "", "{variable} at the first end, over that in the middle"),
     "end_over_middle_last": Variable(SCALAR, "1", "", "{variable} at the last end, over that in the middle"),

@@ -97,6 +97,10 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
             "end_intensity_error": sharper.intensity_error,
         }
     result = xr.Dataset(values)
+    for key, intensity in result.items():
+        if str(key).startswith("end_intensity"):
+            exponent = float(result[str(key).replace("intensity", "exponent").removesuffix("_error")])
+            intensity.attrs["units"] = f"Pa m{exponent:.3g}"
     if not refined.settled:
         result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
     return describe(result)
