@@ -55,7 +55,7 @@ def test_comparison_models_beside_the_exact_ends(tmp_path):
     assert "no free end" in opened["message"].sel(body="half-space", model="mirror").item()
     residual = opened["end_traction_residual"].sel(body="finite-length")
     exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
-    assert exact < 1e-4 < once < mirror
+    assert exact < 3e-4 < once < mirror  # from a depth of 0.02 a on
     ends = opened["end_pressure_over_p0"].sel(body="finite-length").values
     assert len({round(value, 4) for value in ends.tolist()}) == 4
 
