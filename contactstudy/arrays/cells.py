@@ -21,8 +21,8 @@ def labelled_cells(
     """Values ``(x, y)`` and grid of a DataArray on cell centres.
 
     Cells are uniform along y. Along x their edges are, in this order: what the coordinate `x_width` says; those of
-    uniform cells; or what follows from the body's end and the centres. (`x_bounds` cannot be part of a DataArray without
-    the dimension `bounds`.)
+    uniform cells; or what follows from the body's end and the centres. A DataArray cannot carry `x_bounds`, which have
+    a dimension more.
 
     Parameters
     ----------
@@ -91,7 +91,7 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
             raise InvalidInputError(
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
-        return Grid.from_edges(_edges_from_end(centres, extent), y_range, cells_y)
+        return Grid.between(_edges_from_end(centres, extent), y_range, cells_y)
     return Grid(x_range, y_range, cells_x, cells_y)
 
 
@@ -105,7 +105,7 @@ def _tiled(low: FloatArray, high: FloatArray, y_range: tuple[float, float], cell
             "x_width", f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
         )
     middle = 0.5 * (high[:-1] + low[1:])
-    return Grid.from_edges(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
+    return Grid.between(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
 
 
 def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:

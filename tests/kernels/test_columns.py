@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -40,8 +42,7 @@ def mean_influence(
 
     corners = sorted({a - d, a - c, b - d, b - c, *((0.0,) if a - d < 0 < b - c else ())})
     pieces = [
-        integrate.quad(weighted, start, stop, epsabs=0, epsrel=1e-10, limit=200)[0]
-        for start, stop in zip(corners, corners[1:], strict=False)
+        integrate.quad(weighted, start, stop, epsabs=0, epsrel=1e-10, limit=200)[0] for start, stop in pairwise(corners)
     ]
     return sum(pieces) / ((b - a) * (d - c))
 
