@@ -75,6 +75,10 @@ def test_few_samples_and_falling_pressures_have_no_law() -> None:
     assert law_of(samples(HALVINGS**0.5), rigid=True) is None
 
 
+def test_an_end_that_is_pressed_on_some_columns_only_has_no_law() -> None:
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), rigid=True) is None
+
+
 @given(intensity=st.floats(1e3, 1e9), radius=st.floats(1e-7, 1e-3), factor=st.floats(0.1, 10.0))
 def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, factor: float) -> None:
     peak = edge_peak(intensity, 231e9, radius)
