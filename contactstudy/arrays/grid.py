@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
 SPACING_TOLERANCE = 1e-4
@@ -91,6 +91,13 @@ class Grid:
         >>> grid.widths.tolist(), grid.uniform
         ([1.0, 1.0, 2.0], False)
         """
+        grid = cls.between(x_edges, y_range, cells_y)
+        grid.check_growth(np.ones(grid.cells_x, dtype=bool))
+        return grid
+
+    @classmethod
+    def between(cls, x_edges: object, y_range: tuple[float, float], cells_y: int) -> Grid:
+        """Grid of cells between increasing edges, however fast their widths grow: nothing may be pressed there."""
         edges = checks.coordinates("x_edges", x_edges)
         if edges.size < 2:
             raise InvalidInputError("x_edges", edges, "at least two edges (metres)")
@@ -99,8 +106,16 @@ class Grid:
         if wrong.size:
             at = int(wrong[0])
             raise InvalidInputError("x_edges", f"{edges[at]:g}, {edges[at + 1]:g} m", "increasing")
+        span = (float(edges[0]), float(edges[-1]))
+        uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
+        return cls(span, y_range, widths.size, cells_y, _inner=() if uniform else tuple(edges[1:-1].tolist()))
+
+    def check_growth(self, cells: BoolArray) -> None:
+        """Raise if neighbours among some cells along x differ by more than an estimated error allows."""
+        edges, widths = self.x_edges, self.widths
         ratio = np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:])
-        steep = np.flatnonzero(ratio > STEEPEST_GRADING)
+        # An edge may be rounded.
+        steep = np.flatnonzero((ratio > STEEPEST_GRADING * (1 + SPACING_TOLERANCE)) & cells[1:] & cells[:-1])
         if steep.size:
             at = int(steep[0]) + 1
             raise InvalidInputError(
@@ -108,9 +123,6 @@ class Grid:
                 f"cells of {widths[at - 1]:g} and {widths[at]:g} m beside x = {edges[at]:g} m",
                 f"such that neighbouring cells differ by a factor of {STEEPEST_GRADING:g} at most",
             )
-        span = (float(edges[0]), float(edges[-1]))
-        uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
-        return cls(span, y_range, widths.size, cells_y, _inner=() if uniform else tuple(edges[1:-1].tolist()))
 
     @classmethod
     def from_centres(cls, x: object, y: object) -> Grid:

@@ -61,7 +61,7 @@ class Counterbody:
         after = growing_edges(stop - edges[-1], widths[-1]) + edges[-1] if stop - edges[-1] > tolerance else [stop]
         own = np.concatenate([before, inside, after])
         own[0], own[-1] = 0.0, stop
-        return Grid.from_edges(own, grid.y_range, grid.cells_y)
+        return Grid.between(own, grid.y_range, grid.cells_y)
 
     def overlap(self, grid: Grid) -> FloatArray:
         """Return the length that each own cell shares with each cell of `grid`, metres: array (own cell, cell).
@@ -88,4 +88,4 @@ def _moved(grid: Grid, shift: float) -> Grid:
     """Return the same cells elsewhere along x."""
     if grid.uniform:
         return Grid((grid.x_range[0] + shift, grid.x_range[1] + shift), grid.y_range, *grid.shape)
-    return Grid.from_edges(grid.x_edges + shift, grid.y_range, grid.cells_y)
+    return Grid.between(grid.x_edges + shift, grid.y_range, grid.cells_y)

@@ -33,7 +33,7 @@ def columns_of(case: Case, edges: FloatArray, y_range: tuple[float, float], cell
     first, last = edges[1] - edges[0], edges[-1] - edges[-2]
     before = growing_edges(edges[0] - low, first)
     after = growing_edges(high - edges[-1], last)
-    return Grid.from_edges(np.concatenate([edges[0] - before[::-1], edges, edges[-1] + after]), y_range, cells_y)
+    return Grid.between(np.concatenate([edges[0] - before[::-1], edges, edges[-1] + after]), y_range, cells_y)
 
 
 def choose_grid(

@@ -80,7 +80,9 @@ class EndLaw:
 
 def law_of(samples: list[Sample], *, rigid: bool) -> EndLaw | None:
     """Decide on the law of an end from its outermost column between splittings; None if it settles."""
-    if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure or samples[-3].pressure <= 0:
+    if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
+        return None
+    if min(sample.pressure for sample in samples[-3:]) <= 0:
         return None
     growth = [
         np.log(after.pressure / before.pressure) / np.log(before.width / after.width)

@@ -109,6 +109,8 @@ def solve_contact(
     clearance, grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)
     if not np.isfinite(clearance).any():
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
+    # Where nothing can be pressed, cells may be as narrow as the room that is left to an end.
+    grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
     friction = checks.finite("friction", friction)
     shape = Shape(

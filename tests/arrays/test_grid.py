@@ -62,6 +62,11 @@ def test_equal_widths_make_a_uniform_grid() -> None:
     assert np.array_equal(grid.weights, np.ones((6, 1)))
 
 
+def test_widths_that_grow_as_fast_as_they_may_are_not_refused_for_rounding() -> None:
+    edges = np.append(0.0, np.cumsum(1.3e-6 * STEEPEST_GRADING ** np.arange(8)))
+    assert Grid.from_edges(0.1 + edges, Y_RANGE, 4).cells_x == 8
+
+
 @pytest.mark.parametrize(
     ("edges", "message"),
     [

@@ -1,0 +1,96 @@
+"""The law of a singular end: which one it is, its intensity, and what an edge of small radius makes of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError
+from contactstudy.checks import FloatArray
+from contactstudy.contact.end_law import EndLaw, Sample, edge_peak, law_of
+
+HALVINGS = 0.1 * 0.5 ** np.arange(7)
+
+
+def column_means(edges: FloatArray, exponent: float, intensity: float, bend: float) -> FloatArray:
+    """Means over columns of ``K d**-m (1 + c d)``."""
+    first, second = 1 - exponent, 2 - exponent
+    primitive = edges**first / first + bend * edges**second / second
+    return np.asarray(intensity * np.diff(primitive) / np.diff(edges))
+
+
+def graded_edges(width: float) -> FloatArray:
+    return width * np.concatenate([np.arange(9.0), 8 + 2 * np.arange(1, 9), 24 + 4 * np.arange(1, 17)])
+
+
+@given(intensity=st.floats(1e-3, 1e9), bend=st.floats(-3.0, 3.0))
+def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, bend: float) -> None:
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
+    law = EndLaw("power", 0.5).with_intensity(edges, pressure)
+    assert law.intensity == pytest.approx(intensity, rel=1e-6)
+    assert 0 < law.intensity_error < 5e-3 * intensity
+
+
+@pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
+def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
+    law = EndLaw("power", np.nan).with_intensity(edges, pressure)
+    assert law.exponent == pytest.approx(exponent, abs=1e-3)
+    assert law.intensity == pytest.approx(2.0, rel=1e-2)
+
+
+def samples(pressure: FloatArray) -> list[Sample]:
+    return [Sample(float(width), float(value)) for width, value in zip(HALVINGS, pressure, strict=True)]
+
+
+@given(exponent=st.floats(0.15, 0.5))
+def test_growing_as_a_power_is_told(exponent: float) -> None:
+    rigid, elastic = (law_of(samples(HALVINGS**-exponent), rigid=rigid) for rigid in (True, False))
+    assert rigid is not None
+    assert elastic is not None
+    assert (rigid.kind, rigid.exponent) == ("power", 0.5)
+    assert elastic.kind == "power"
+    assert np.isnan(elastic.exponent)
+
+
+@given(share=st.floats(0.02, 0.2))
+def test_growing_as_a_logarithm_is_told(share: float) -> None:
+    law = law_of(samples(1 + share * np.log(1 / HALVINGS)), rigid=True)
+    assert law is not None
+    assert (law.kind, law.exponent) == ("logarithm", 0.0)
+    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1))).intensity)
+
+
+@given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
+def test_an_end_that_settles_has_no_law(power: float, share: float) -> None:
+    assert law_of(samples(1 - share * HALVINGS**power), rigid=True) is None
+
+
+def test_few_samples_and_falling_pressures_have_no_law() -> None:
+    assert law_of(samples(HALVINGS**-0.5)[:3], rigid=True) is None
+    assert law_of(samples(HALVINGS**0.5), rigid=True) is None
+
+
+def test_an_end_that_is_pressed_on_some_columns_only_has_no_law() -> None:
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), rigid=True) is None
+
+
+@given(intensity=st.floats(1e3, 1e9), radius=st.floats(1e-7, 1e-3), factor=st.floats(0.1, 10.0))
+def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, factor: float) -> None:
+    peak = edge_peak(intensity, 231e9, radius)
+    assert edge_peak(intensity, 231e9, factor * radius) == pytest.approx(peak * factor ** (-1 / 3))
+    assert edge_peak(factor * intensity, 231e9, radius) == pytest.approx(peak * factor ** (2 / 3))
+    assert edge_peak(intensity, factor * 231e9, radius) == pytest.approx(peak * factor ** (1 / 3))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [((0.0, 1e9, 1e-5), "intensity"), ((1e7, -1.0, 1e-5), "modulus"), ((1e7, 1e9, np.nan), "edge_radius")],
+)
+def test_impossible_edges_are_refused(arguments: tuple[float, float, float], name: str) -> None:
+    with pytest.raises(InvalidInputError, match=name):
+        edge_peak(*arguments)

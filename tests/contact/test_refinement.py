@@ -1,0 +1,158 @@
+"""Columns that follow a pressure: which are split, what is read, when the refinement ends; made-up pressures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.refinement import (
+    MOST_COLUMNS,
+    SHARPEST,
+    STEEPEST,
+    AxialShape,
+    first_edges,
+    refined_contact,
+    split,
+)
+
+HALF_WIDTH, LENGTH = 1.0, 20.0
+Y = (np.arange(16) - 7.5) / 8
+
+
+def shape(length: float = LENGTH, *, ends_inside: tuple[bool, bool] = (False, False), rigid: bool = True) -> AxialShape:
+    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), ends_inside, rigid)
+
+
+def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
+    """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+        if start is not None:
+            assert start.shape == (edges.size - 1, Y.size)
+        within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
+        means = 0.5 * along(within) @ weights
+        return np.asarray(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    return solve
+
+
+@st.composite
+def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
+    ratios = draw(st.lists(st.floats(0.4, 2.5), min_size=1, max_size=20))
+    edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
+    chosen = draw(st.lists(st.booleans(), min_size=edges.size - 1, max_size=edges.size - 1))
+    return edges, np.array(chosen)
+
+
+@given(marked=marked_edges())
+def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tuple[FloatArray, BoolArray]) -> None:
+    edges, marks = marked
+    finer = split(edges, marks)
+    assert np.all(np.isin(edges, finer))
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    assert np.all(np.isin(centres[marks], finer))
+    widths = np.diff(finer)
+    assert np.all(widths > 0)
+    if marks.any():
+        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= STEEPEST * (1 + 1e-12))
+
+
+@given(length=st.floats(1.0, 300.0))
+def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> None:
+    edges = first_edges(shape(length))
+    widths = np.diff(edges)
+    assert (edges[0], edges[-1]) == (0.0, length)
+    assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
+    assert np.allclose(widths, widths[::-1])
+    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= STEEPEST)
+
+
+def test_first_columns_are_split_where_the_shape_bends() -> None:
+    fillet, kink = 3.0, 17.0
+    bent = AxialShape(
+        0.0, LENGTH, HALF_WIDTH, 0.05, lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet, (False, False)
+    )
+    widths = np.diff(first_edges(bent))
+    plain = np.diff(first_edges(shape()))
+    assert widths.size > plain.size
+    assert widths[-len(plain) // 3 :].max() < plain.max()
+
+
+BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "narrow": lambda x: 1 + 2 * np.exp(-(((x - 3.3) / 0.15) ** 2)),
+    "contact's end": lambda x: np.sqrt(np.maximum(1 - ((x - 10.0) / 8.0) ** 2, 0)),
+    "lesser peak": lambda x: 1 + np.exp(-(((x - 2.0) / 0.3) ** 2)) + 0.5 * np.exp(-(((x - 17.0) / 0.2) ** 2)),
+    "falls to the end": lambda x: 1 - 0.5 * np.exp(-x / 0.3) - 0.4 * np.exp(-(LENGTH - x) / 0.5),
+    "even": lambda x: np.ones_like(x),
+}
+
+
+@pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
+@pytest.mark.parametrize("name", BUMPS)
+def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float) -> None:
+    along = BUMPS[name]
+    found = refined_contact(averaged(along), shape(), accuracy)
+    peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
+    assert found.settled
+    assert found.laws == (None, None)
+    assert abs(found.peak - peak) <= found.peak_error <= accuracy * peak * (1 + 1e-9)
+    ends = along(np.array([0.0, LENGTH]))
+    for end, error, exact in zip(found.ends, found.end_errors, ends, strict=True):
+        assert abs(end - exact) <= error + 1e-12
+
+
+def test_tighter_accuracy_takes_more_columns() -> None:
+    sizes = [refined_contact(averaged(BUMPS["narrow"]), shape(), each).edges.size for each in (0.02, 0.003, 0.0015)]
+    assert sizes[0] < sizes[1] < sizes[2]
+
+
+@given(at=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
+def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: float, width: float) -> None:
+    def bump(x: FloatArray) -> FloatArray:
+        return np.asarray(1 + height * np.exp(-(((x - at) / width) ** 2)))
+
+    there = refined_contact(averaged(bump), shape(), 0.02)
+    back = refined_contact(averaged(lambda x: bump(LENGTH - x)), shape(), 0.02)
+    assert back.peak == pytest.approx(there.peak, rel=2e-3)
+    assert abs(back.edges.size - there.edges.size) <= 4
+    assert abs(there.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= there.peak_error
+
+
+@pytest.mark.parametrize("exponent", [0.5, 0.25])
+def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent: float) -> None:
+    bend = 0.02
+
+    def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+        first, second = (edges**power / power for power in (1 - exponent, 2 - exponent))
+        means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
+        return np.asarray(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    found = refined_contact(exact, shape(ends_inside=(True, False), rigid=exponent == 0.5), 0.01)
+    law, other = found.laws
+    assert law is not None
+    assert other is None
+    assert np.isinf([found.peak, found.peak_error, found.ends[0], found.end_errors[0]]).all()
+    assert law.kind == "power"
+    assert law.exponent == pytest.approx(exponent, abs=0.02)
+    assert np.diff(found.edges)[0] <= SHARPEST * HALF_WIDTH
+    assert found.ends[1] == pytest.approx(0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.end_errors[1])
+    # K is that of the row of cells beside y = 0.
+    assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
+
+
+def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
+    def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+        noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
+        noise[[0, 1, -2, -1]] = 0.0
+        return np.asarray((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    found = refined_contact(restless, shape(), 0.001)
+    assert not found.settled
+    assert found.edges.size <= 2 * MOST_COLUMNS
+    assert found.peak_error > 0.001 * found.peak
