@@ -93,7 +93,7 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
             raise InvalidInputError(
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
-        return Grid.from_edges(_edges_from_end(centres, extent), y_range, cells_y)
+        return Grid.between(_edges_from_end(centres, extent), y_range, cells_y)
     return Grid(x_range, y_range, cells_x, cells_y)
 
 
@@ -107,7 +107,7 @@ def _tiled(low: FloatArray, high: FloatArray, y_range: tuple[float, float], cell
             "x_width", f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
         )
     middle = 0.5 * (high[:-1] + low[1:])
-    return Grid.from_edges(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
+    return Grid.between(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
 
 
 def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:

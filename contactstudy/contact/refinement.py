@@ -80,8 +80,8 @@ class AxialShape:
         Depth ``a**2 / 2R`` to which a cylinder sinks, metres.
     height : callable
         Height along the axis over the plane that the shape touches, metres.
-    ends_inside : tuple of bool
-        Whether it ends inside the face of the body, at either end.
+    room : tuple of float
+        How far the face of the body goes on beyond either end, metres; 0 or less where it does not.
     rigid : bool
         Whether it is rigid.
     """
@@ -91,7 +91,7 @@ class AxialShape:
     half_width: float
     depth: float
     height: Callable[[FloatArray], FloatArray]
-    ends_inside: tuple[bool, bool]
+    room: tuple[float, float]
     rigid: bool = True
 
 
@@ -196,7 +196,7 @@ class _State:
                 step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / largest
                 jumps[i] = max(jumps[i], END_STEP * step)
                 rises = pressure[i].max() >= self._half(side).max()
-                sharp = self.shape.ends_inside[side] or rises
+                sharp = self.shape.room[side] > 0 or rises
                 if widths[i] > (SHARPEST if sharp else END_COLUMN) * a:
                     jumps[i] = np.inf
         touched = np.flatnonzero(pressure.any(axis=1))
@@ -230,6 +230,11 @@ class _State:
         self.peaks.append((peaks[0], peaks[1]))
         self.ends.append((ends[0], ends[1]))
 
+    def _unknown_law(self, side: int) -> bool:
+        """Whether a rigid end inside the face is pressed, which is always singular, and its law did not show."""
+        pressed = bool(self.pressure[-side].any())
+        return pressed and self.shape.rigid and self.shape.room[side] > 0 and self.laws[side] is None
+
     def stated(self, theta: float, accuracy: float) -> Refined:
         """Values with their errors."""
         finite = [value for value in self.peaks[-1] if np.isfinite(value)]
@@ -237,10 +242,15 @@ class _State:
         floor = scale * (theta / THETA_PER_ERROR + self.along_y)
         peak_errors = [_moved([peaks[side] for peaks in self.peaks], floor) for side in (0, 1)]
         first, last = (_moved([ends[side] for ends in self.ends], floor) for side in (0, 1))
+        for side in (0, 1):
+            if self._unknown_law(side):
+                first, last = (np.inf, last) if side == 0 else (first, np.inf)
+                if self._half(side).max() <= self.pressure[-side].max():
+                    peak_errors[side] = np.inf
         errors = [error for error in (*peak_errors, first, last) if np.isfinite(error)]
         side = int(np.argmax(self.peaks[-1]))
         laws = [
-            law.with_intensity(*_from_end(side, self.edges, self.pressure)) if law else None
+            law.with_intensity(*_from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
             for side, law in enumerate(self.laws)
         ]
         return Refined(

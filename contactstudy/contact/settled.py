@@ -148,6 +148,11 @@ def _under(grid: Grid, edges: FloatArray) -> slice:
     return slice(first, first + edges.size - 1)
 
 
+def _room(distance: float, near: float) -> float:
+    """Return how far the face goes on beyond an end; 0 where both end together, or where the roller overhangs."""
+    return distance if distance > near else 0.0
+
+
 def _axial_shape(case: Case) -> AxialShape:
     """Return what the refinement knows of a case."""
     start, stop = case.contact_range
@@ -167,6 +172,6 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width,
         half_width**2 / (2 * case.roller.radius),
         height,
-        (bool(case.roller_start > low + near), bool(end < high - near)),
+        (_room(case.roller_start - low, near), _room(high - end, near)),
         rigid=case.roller.material is None,
     )

@@ -29,7 +29,7 @@ def graded_edges(width: float) -> FloatArray:
 def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, bend: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
-    law = EndLaw("power", 0.5).with_intensity(edges, pressure)
+    law = EndLaw("power", 0.5).with_intensity(edges, pressure, np.inf)
     assert law.intensity == pytest.approx(intensity, rel=1e-6)
     assert 0 < law.intensity_error < 5e-3 * intensity
 
@@ -38,7 +38,7 @@ def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, ben
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
-    law = EndLaw("power", np.nan).with_intensity(edges, pressure)
+    law = EndLaw("power", np.nan).with_intensity(edges, pressure, np.inf)
     assert law.exponent == pytest.approx(exponent, abs=1e-3)
     assert law.intensity == pytest.approx(2.0, rel=1e-2)
 
@@ -62,7 +62,7 @@ def test_growing_as_a_logarithm_is_told(share: float) -> None:
     law = law_of(samples(1 + share * np.log(1 / HALVINGS)), rigid=True)
     assert law is not None
     assert (law.kind, law.exponent) == ("logarithm", 0.0)
-    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1))).intensity)
+    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
 @given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))

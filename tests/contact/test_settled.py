@@ -350,3 +350,17 @@ def test_error_estimate_on_given_graded_cells() -> None:
     assert bool(result.converged)
     assert result.sizes["x"] == 16
     assert any(name.endswith("_error") and "pressure" in name for name in result.data_vars)
+
+
+@pytest.mark.parametrize("distance", [1e-4, 0.05])
+def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float) -> None:
+    """At 1e-4 a no column shows the law; at 0.05 a the fitted intensity says that it is no better than some percent."""
+    case = Case(
+        body=finite(LENGTH + 2 * distance * A), roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE
+    )
+    found = settled_values(settled(case))
+    assert np.isinf(found["end_pressure_first_error"])
+    if distance > 1e-3:
+        intensity = found["end_intensity_first"] / (PRESSURE * np.sqrt(A))
+        assert float(intensity) == pytest.approx(0.1015, rel=0.06)
+        assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
