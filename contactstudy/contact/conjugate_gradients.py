@@ -262,10 +262,10 @@ class _State:
         inside = np.where(self.contact, height, 0.0)
         if motions:
             works = [float((weight * inside).sum()) for weight in self._weights]
-            # Least squares, for a contact of one column of cells cannot tilt.
-            self.motion = np.asarray(
-                np.array(works) / self._gram[0] if len(motions) == 1 else np.linalg.lstsq(self._gram, works)[0]
-            )
+            if len(motions) == 1:
+                self.motion = np.asarray(np.array(works) / self._gram[0])
+            else:  # least squares, for a contact of one column of cells cannot tilt
+                self.motion = np.asarray(np.linalg.lstsq(self._gram, works, rcond=None)[0])
         level = sum((amount * each for amount, each in zip(self.motion, motions, strict=True)), np.zeros((1, 1)))
         return np.asarray(height - level)
 

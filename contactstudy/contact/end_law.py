@@ -115,7 +115,7 @@ def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> t
     powers = [1 - exponent, 2 - exponent]
     means = [(high**power - low**power) / (power * (high - low)) for power in powers]
     matrix = np.stack(means, axis=1) / values[:, None]
-    found = np.linalg.lstsq(matrix, np.ones(values.size))[0]
+    found = np.linalg.lstsq(matrix, np.ones(values.size), rcond=None)[0]
     return float(found[0]), float(np.sqrt(np.mean((matrix @ found - 1) ** 2)))
 
 

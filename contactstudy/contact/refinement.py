@@ -14,20 +14,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
 from contactstudy.contact.problem import between_columns
-
-FIRST_COLUMN = 0.1
-"""Width of the first columns at either end, over the half-width. Accuracy: wider ones miss a sharp end in a face."""
-
-WIDEST = 16
-"""Least number of columns over the length. Accuracy."""
-
-BENT = 0.3
-"""Depth, over ``a**2 / 2R``, by which the shape may leave its chord inside a first column. Accuracy."""
-
-NARROWEST_BENT = 0.2
-"""Width over the half-width below which a first column is not split for its shape. Speed."""
 
 POWERS = (2.0, 16.0)
 """Powers of the pressure whose jumps are marked. Accuracy."""
@@ -53,46 +42,11 @@ END_COLUMN = 0.012
 SHARPEST, SMALLEST = 2e-3, 2e-4
 """Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
 
-STEEPEST = 2.6
-"""Largest ratio of neighbouring widths. Accuracy."""
-
-MOST_COLUMNS = 600
-"""Columns at which the refinement ends, whatever is settled."""
-
 ROUGH, POLISHED = 1e-2, 1e-5
 """Tolerances of the contact at the levels and where values are read. Speed and accuracy."""
 
 Solve = Callable[[FloatArray, FloatArray | None, float], FloatArray]
 """From edges, a first guess of the pressure (or none) and a tolerance to the pressure (column, y)."""
-
-
-@dataclass(frozen=True)
-class AxialShape:
-    """What the refinement knows of the shape that is pressed.
-
-    Attributes
-    ----------
-    start, stop : float
-        Where it can be pressed, metres.
-    half_width : float
-        Hertz half-width ``a``, metres.
-    depth : float
-        Depth ``a**2 / 2R`` to which a cylinder sinks, metres.
-    height : callable
-        Height along the axis over the plane that the shape touches, metres.
-    room : tuple of float
-        How far the face of the body goes on beyond either end, metres; 0 or less where it does not.
-    rigid : bool
-        Whether it is rigid.
-    """
-
-    start: float
-    stop: float
-    half_width: float
-    depth: float
-    height: Callable[[FloatArray], FloatArray]
-    room: tuple[float, float]
-    rigid: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -171,7 +125,7 @@ class _State:
             if not marks.any():
                 break
             finer = split(self.edges, marks)
-            guess = np.sqrt(between_columns(self.pressure**2, _centres(self.edges), _centres(finer)))
+            guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
             self.edges, self.pressure = finer, self.solve(finer, guess, ROUGH)
             self._sample()
         self.pressure = self.solve(self.edges, self.pressure, POLISHED)
@@ -210,7 +164,7 @@ class _State:
         return marks
 
     def _half(self, side: int) -> FloatArray:
-        left = _centres(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
+        left = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
         own: FloatArray = self.pressure[left if side == 0 else ~left]
         return own
 
@@ -222,7 +176,7 @@ class _State:
         for side in (0, 1):
             edges, row = _from_end(side, self.edges, top)
             end = _extrapolated(edges, row)
-            own = row[_centres(edges) < abs(middle - self.edges[0 if side == 0 else -1])]
+            own = row[centres_of(edges) < abs(middle - self.edges[0 if side == 0 else -1])]
             largest = float(own.max())
             # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
             peaks.append(np.inf if self.laws[side] else max(largest, end) if own.argmax() == 0 else largest)
@@ -277,10 +231,6 @@ def _moved(values: list[float], floor: float) -> float:
     return max(half, floor)
 
 
-def _centres(edges: FloatArray) -> FloatArray:
-    return np.asarray(0.5 * (edges[1:] + edges[:-1]))
-
-
 def _from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Distances of the edges from an end of the shape, and the values counted from there."""
     return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
@@ -288,7 +238,7 @@ def _from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatAr
 
 def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
-    left = _centres(edges) < 0.5 * (edges[0] + edges[-1])
+    left = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
     top = np.where(left, pressure[left].max(), pressure[~left].max())
     top = np.maximum(top, LESSER_HALF * pressure.max())
     steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
@@ -319,42 +269,3 @@ def _extrapolated(edges: FloatArray, row: FloatArray) -> float:
     sums = np.cumsum(row[:3] * np.diff(edges[:4]))
     at = edges[1:4]
     return max(float(np.linalg.solve(np.stack([at, at**2, at**3], axis=1), sums)[0]), 0.0)
-
-
-def first_edges(shape: AxialShape) -> FloatArray:
-    """Columns that double from either end, halved where the shape bends."""
-    length = shape.stop - shape.start
-    width = min(FIRST_COLUMN * shape.half_width, length / (4 * WIDEST))
-    widths = [width]
-    while sum(widths) < 0.5 * length:
-        widths.append(min(2 * widths[-1], length / WIDEST))
-    side = np.append(0.0, np.cumsum(widths)) * (0.5 * length / sum(widths))
-    edges = shape.start + np.concatenate([side, length - side[-2::-1]])
-    edges[-1] = shape.stop
-    while True:
-        marks = _bent(shape, edges) & (np.diff(edges) > NARROWEST_BENT * shape.half_width)
-        if not marks.any() or edges.size > MOST_COLUMNS:
-            return edges
-        edges = split(edges, marks)
-
-
-def _bent(shape: AxialShape, edges: FloatArray) -> BoolArray:
-    """Columns inside which the shape leaves its chord, where it is low enough to be pressed."""
-    part = np.linspace(0.0, 1.0, 9)
-    # Just inside: the shape may step at its ends.
-    inside = np.clip(part, 1e-9, 1 - 1e-9)
-    heights = shape.height((edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()).reshape(-1, part.size)
-    chord = heights[:, :1] + (heights[:, -1:] - heights[:, :1]) * part
-    low = heights.min(axis=1) - heights.min()
-    return np.asarray((np.abs(heights - chord).max(axis=1) > BENT * shape.depth) & (low < 3 * shape.depth))
-
-
-def split(edges: FloatArray, marks: BoolArray) -> FloatArray:
-    """Halve marked columns, and every column that is then much wider than a neighbour."""
-    while marks.any():
-        edges = np.sort(np.concatenate([edges, _centres(edges)[marks]]))
-        widths = np.diff(edges)
-        marks = np.zeros(widths.size, dtype=bool)
-        marks[:-1] |= widths[:-1] > STEEPEST * widths[1:]
-        marks[1:] |= widths[1:] > STEEPEST * widths[:-1]
-    return edges

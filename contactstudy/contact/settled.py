@@ -15,10 +15,11 @@ from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
 from contactstudy.checks import FloatArray
+from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement import AxialShape, Refined, refined_contact
+from contactstudy.contact.refinement import Refined, refined_contact
 from contactstudy.errors import WindowError
 from contactstudy.threads import one_blas_thread
 

@@ -10,15 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.refinement import (
-    MOST_COLUMNS,
-    SHARPEST,
-    STEEPEST,
-    AxialShape,
-    first_edges,
-    refined_contact,
-    split,
-)
+from contactstudy.contact.axial_shape import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
+from contactstudy.contact.refinement import SHARPEST, refined_contact
 
 HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
