@@ -9,7 +9,7 @@ falls until what is stated is settled. Two solutions may agree by chance, so the
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -44,6 +44,9 @@ SHARPEST, SMALLEST = 2e-3, 2e-4
 
 ROUGH, POLISHED = 1e-2, 1e-5
 """Tolerances of the contact at the levels and where values are read. Speed and accuracy."""
+
+Pair = tuple[float, float]
+Laws = tuple[EndLaw | None, EndLaw | None]
 
 Solve = Callable[[FloatArray, FloatArray | None, float], FloatArray]
 """From edges, a first guess of the pressure (or none) and a tolerance to the pressure (column, y)."""
@@ -170,19 +173,9 @@ class _State:
 
     def read(self) -> None:
         """Note the peak of either half and the pressure at either end."""
-        top, self.along_y = _across(self.pressure)
-        middle = 0.5 * (self.edges[0] + self.edges[-1])
-        peaks, ends = [], []
-        for side in (0, 1):
-            edges, row = _from_end(side, self.edges, top)
-            end = _extrapolated(edges, row)
-            own = row[centres_of(edges) < abs(middle - self.edges[0 if side == 0 else -1])]
-            largest = float(own.max())
-            # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
-            peaks.append(np.inf if self.laws[side] else max(largest, end) if own.argmax() == 0 else largest)
-            ends.append(np.inf if self.laws[side] else end)
-        self.peaks.append((peaks[0], peaks[1]))
-        self.ends.append((ends[0], ends[1]))
+        peaks, ends, self.along_y = _read(self.edges, self.pressure, (self.laws[0], self.laws[1]))
+        self.peaks.append(peaks)
+        self.ends.append(ends)
 
     def _unknown_law(self, side: int) -> bool:
         """Whether a rigid end inside the face is pressed, which is always singular, and its law did not show."""
@@ -217,6 +210,45 @@ class _State:
             (laws[0], laws[1]),
             max(errors, default=floor) <= accuracy * scale,
         )
+
+
+def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Refined:
+    """Return the values of another pressure on the same columns, which the coupled friction has changed a little.
+
+    The errors grow with the peak.
+    """
+    peaks, ends, _ = _read(refined.edges, pressure, refined.laws)
+    peak = max(peaks)
+    factor = peak / refined.peak if np.isfinite(peak) else float(pressure.max() / refined.pressure.max())
+    first, last = (
+        law.with_intensity(*_from_end(side, refined.edges, pressure), shape.room[side]) if law else None
+        for side, law in enumerate(refined.laws)
+    )
+    return replace(
+        refined,
+        pressure=pressure,
+        peak=peak,
+        peak_error=factor * refined.peak_error,
+        ends=ends,
+        end_errors=(factor * refined.end_errors[0], factor * refined.end_errors[1]),
+        laws=(first, last),
+    )
+
+
+def _read(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
+    """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
+    top, along_y = _across(pressure)
+    half = 0.5 * (edges[-1] - edges[0])
+    peaks, ends = [], []
+    for side in (0, 1):
+        distances, row = _from_end(side, edges, top)
+        end = _extrapolated(distances, row)
+        own = row[centres_of(distances) < half]
+        largest = float(own.max())
+        # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
+        peaks.append(np.inf if laws[side] else max(largest, end) if own.argmax() == 0 else largest)
+        ends.append(np.inf if laws[side] else end)
+    return (peaks[0], peaks[1]), (ends[0], ends[1]), along_y
 
 
 def _moved(values: list[float], floor: float) -> float:

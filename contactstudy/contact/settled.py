@@ -19,14 +19,14 @@ from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement import Refined, refined_contact
+from contactstudy.contact.refinement import Refined, read_again, refined_contact
 from contactstudy.errors import WindowError
 from contactstudy.threads import one_blas_thread
 
 WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn. Speed."""
 
-ROOM = 1.2
+ROOM, COUPLED_ROOM = 1.2, 1.5
 """Window over the extent of the contact along y. Speed; what lies outside is not pressed."""
 
 ROUGHLY = 0.1
@@ -72,9 +72,14 @@ def _within(case: Case, half_window: float, cells_y: int, accuracy: float, toler
         touched = np.flatnonzero(rough.pressure.any(axis=0))
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
-        solver = _Solver(case, min(ROOM * reach, half_window), cells_y)
+        # Coupled friction moves the contact along y.
+        room = COUPLED_ROOM if case.coupled else ROOM
+        solver = _Solver(case, min(room * reach, half_window), cells_y)
         refined = refined_contact(solver, shape, accuracy)
-    contact = contact_of(solver.shape(refined.edges), Settings(tolerance))
+    whole = solver.shape(refined.edges)
+    contact = contact_of(whole, Settings(tolerance))
+    if whole.coupled_friction:
+        refined = read_again(refined, contact.pressure[_under(whole.grid, refined.edges)], shape)
     return SettledContact(contact, refined)
 
 
@@ -128,7 +133,7 @@ class _Solver:
         return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled)
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
-        """Pressure (column, y) without the displacement from friction, which hardly moves what is refined."""
+        """Pressure (column, y) without the displacement from friction, which changes it by a few percent."""
         # The pressure alone decides where columns are needed.
         shape = self.shape(edges)._replace(coupled_friction=0.0)
         grid, gap = shape.grid, shape.gap.values

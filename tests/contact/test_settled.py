@@ -364,3 +364,17 @@ def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float
         intensity = found["end_intensity_first"] / (PRESSURE * np.sqrt(A))
         assert float(intensity) == pytest.approx(0.1015, rel=0.06)
         assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
+
+
+def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
+    """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
+    body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))
+    roller = Roller(radius=RADIUS, length=8 * A)
+    case = Case(body=body, roller=roller, max_pressure=PRESSURE, friction=0.5, coupled=True)
+    found = solve(case, stresses=False)
+    fine = solve(case, choose_grid(case, cells_x=32, cells_y=32), stresses=False, error_estimate=True)
+    uncoupled = solve(Case(body=body, roller=roller, max_pressure=PRESSURE), stresses=False)
+    difference = abs(float(found["peak_pressure"] - fine["peak_pressure"]))
+    assert difference < float(found["peak_pressure_error"])
+    assert float(found["peak_pressure"]) == pytest.approx(float(found["pressure"].max()), rel=3e-3)
+    assert abs(float(found["peak_pressure"] / uncoupled["peak_pressure"]) - 1) > 1e-3
