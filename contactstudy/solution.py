@@ -124,7 +124,7 @@ def solve(
     _check_balanced(case)
     known = xr.Dataset()
     if grid is None and roughness is None:
-        settled = settled_contact(case, _accuracy(accuracy), checks.positive("tolerance", tolerance))
+        settled = settled_contact(case, check_accuracy(accuracy), checks.positive("tolerance", tolerance))
         contact, known = _checked(case, settled.contact), settled_values(settled)
     elif grid is None:
         contact = _contact(case, choose_grid(case), roughness, tolerance)
@@ -158,7 +158,7 @@ def solve(
     return describe(result, "roller on an elastic body: contact and stresses")
 
 
-def _accuracy(value: object) -> float:
+def check_accuracy(value: object) -> float:
     """Return an accuracy that the refinement can reach, or raise."""
     accuracy = checks.positive("accuracy", value)
     least, most = ACCURACIES

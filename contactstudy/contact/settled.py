@@ -87,8 +87,11 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
     """Label what is settled, each value with its error; the law of a singular end instead of its pressure."""
     refined = settled.refined
     values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
-    for name, value, error, law in zip(("first", "last"), refined.ends, refined.end_errors, refined.laws, strict=True):
+    dy = settled.contact.shape.grid.dy
+    ends = (refined.ends, refined.end_errors, refined.loads, refined.load_errors, refined.laws)
+    for name, value, error, load, load_error, law in zip(("first", "last"), *ends, strict=True):
         values |= {f"end_pressure_{name}": value, f"end_pressure_{name}_error": error}
+        values |= {f"end_load_{name}": dy * load, f"end_load_{name}_error": dy * load_error}
         if law is not None:
             values |= {
                 f"end_exponent_{name}": law.exponent,
