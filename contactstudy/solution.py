@@ -141,7 +141,7 @@ def solve(
         coarse = _labelled(case, _contact(case, grid.coarsened(), None, tolerance))
         result = result.assign(discretisation_error(result, coarse).data_vars)
     half_width = case.hertz_half_width
-    result["initial_gap"] = (("x", "y"), contact.shape.gap.values)
+    result["initial_gap"] = (("x", "y"), contact.shape.gap.values.copy())
     result["hertz_half_width"] = half_width
     result["hertz_max_pressure"] = case.hertz_max_pressure
     loads = sliding(contact.pressure, case.friction)
