@@ -23,7 +23,7 @@ from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.fields.stress import end_traction_residual, stress_dataset
+from contactstudy.fields.stress import end_traction_residual, stress_and_residual, stress_dataset
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
@@ -145,16 +145,18 @@ def solve(
     result["hertz_half_width"] = half_width
     result["hertz_max_pressure"] = case.hertz_max_pressure
     loads = sliding(contact.pressure, case.friction)
-    result["end_traction_residual"] = end_traction_residual(
-        case.body, loads, grid, half_width * np.array(RESIDUAL_POSITIONS), half_width * np.array(RESIDUAL_DEPTHS)
-    )
-    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
+    looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z
-        field = stress_dataset(case.body, loads, grid, field_positions(case.body, grid, x, y, depths))
+        positions = field_positions(case.body, grid, x, y, depths)
+        field, residual = stress_and_residual(case.body, loads, grid, positions, *looked_at)
         if x is not None or y is not None:
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
+    else:
+        residual = end_traction_residual(case.body, loads, grid, *looked_at)
+    result["end_traction_residual"] = residual
+    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
     return describe(result, "roller on an elastic body: contact and stresses")
 
 
