@@ -98,8 +98,9 @@ def solve(
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
         `end_traction_residual`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
-        instead of ``(x, y, z)``. On refined columns also `peak_pressure`, `end_pressure_first` and
-        `end_pressure_last`, each with its error ``<name>_error``. At a singular end both are infinite, and
+        instead of ``(x, y, z)``. On refined columns also `peak_pressure` (and ``_first`` and ``_last``, of either
+        half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
+        `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
         or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end.
 

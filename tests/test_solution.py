@@ -49,7 +49,8 @@ def test_everything_the_interface_promises_is_there_with_its_unit(result) -> Non
         *(
             name + error
             for name in (
-                *("peak_pressure", "end_pressure_first", "end_pressure_last"),
+                *("peak_pressure", "peak_pressure_first", "peak_pressure_last"),
+                *("end_pressure_first", "end_pressure_last"),
                 *("end_load_first", "end_load_last"),
             )
             for error in ("", "_error")

@@ -97,6 +97,8 @@ CONTACT = {
     "hertz_max_pressure": Variable(
         SCALAR, "Pa", "p_0", "peak pressure of the Hertz line contact of the same load per length"
     ),
+    "peak_pressure_first": Variable(SCALAR, "Pa", "", "largest pressure on the half nearer to end I"),
+    "peak_pressure_last": Variable(SCALAR, "Pa", "", "largest pressure on the half nearer to end II"),
     "end_pressure_first": Variable(SCALAR, "Pa", r"p_\mathrm{I}", "largest pressure at the end nearer to end I"),
     "end_pressure_last": Variable(SCALAR, "Pa", r"p_\mathrm{II}", "largest pressure at the end nearer to end II"),
     "end_load_first": Variable(SCALAR, "N", r"W_\mathrm{I}", "load on the last half-width a nearer to end I"),

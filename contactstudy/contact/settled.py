@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import EndedBody, HalfSpace
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
@@ -133,10 +133,16 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
     refined = settled.refined
     values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = settled.contact.shape.grid.dy
-    ends = (refined.ends, refined.end_errors, refined.loads, refined.load_errors, refined.laws)
-    for name, value, error, load, load_error, law in zip(("first", "last"), *ends, strict=True):
-        values |= {f"end_pressure_{name}": value, f"end_pressure_{name}_error": error}
-        values |= {f"end_load_{name}": dy * load, f"end_load_{name}_error": dy * load_error}
+    for name, side in (("first", 0), ("last", 1)):
+        law = refined.laws[side]
+        values |= {
+            f"peak_pressure_{name}": refined.peaks[side],
+            f"peak_pressure_{name}_error": refined.peak_errors[side],
+            f"end_pressure_{name}": refined.ends[side],
+            f"end_pressure_{name}_error": refined.end_errors[side],
+            f"end_load_{name}": dy * refined.loads[side],
+            f"end_load_{name}_error": dy * refined.load_errors[side],
+        }
         if law is not None:
             values |= {
                 f"end_exponent_{name}": law.exponent,
@@ -227,5 +233,5 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width**2 / (2 * case.roller.radius),
         height,
         (_room(case.roller_start - low, near), _room(high - end, near)),
-        rigid=case.roller.material is None,
+        stiff=case.roller.body is None or isinstance(case.roller.body, HalfSpace),
     )
