@@ -37,8 +37,12 @@ kernels of the ends. Speed."""
 ROUGHLY = 0.1
 """Accuracy of the contact to which the window is fitted. Speed."""
 
-CELLS_Y, MORE_CELLS_Y, CLOSE = 32, 64, 0.005
-"""Cells along y, and the number for accuracies below the last one. Accuracy."""
+CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
+"""Numbers of cells along y, of which the first that suffices is taken, and that of the first contact. Accuracy."""
+
+BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
+"""Part of the peak that lies between its cells along y, times the square of their number across the contact, and the
+part of the accuracy that it may take. Accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,31 +93,32 @@ def _is_value(part: object) -> bool:
 def _settled(request: _Request) -> SettledContact:
     """Solve for a settled contact."""
     case, accuracy, tolerance = request
-    cells_y = CELLS_Y if accuracy >= CLOSE else MORE_CELLS_Y
     *narrower, widest = WINDOWS
     for window in narrower:
         with contextlib.suppress(WindowError):
-            return _within(case, window * case.hertz_half_width, cells_y, accuracy, tolerance)
-    return _within(case, widest * case.hertz_half_width, cells_y, accuracy, tolerance)
+            return _within(case, window * case.hertz_half_width, accuracy, tolerance)
+    return _within(case, widest * case.hertz_half_width, accuracy, tolerance)
 
 
 _kept = kept("settled contacts", lambda settled: settled.nbytes)(_settled)
 
 
-def _within(case: Case, half_window: float, cells_y: int, accuracy: float, tolerance: float) -> SettledContact:
+def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -> SettledContact:
     """Contact in a window that is first fitted to it."""
     shape = _axial_shape(case)
     with one_blas_thread():
         # How wide the contact is depends on what frees the ends by little, and that is what takes longest to prepare.
         body = case.body
         mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
-        first = _Solver(replace(case, body=mirrored), half_window, cells_y // 2)
+        first = _Solver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
         rough = refined_contact(first, shape, ROUGHLY)
         touched = np.flatnonzero(rough.pressure.any(axis=0))
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
-        solver = _Solver(case, min(_shared_window(case, reach), half_window), cells_y)
+        window = min(_shared_window(case, reach), half_window)
+        at_peak = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
+        solver = _Solver(case, window, _cells_across(float(at_peak.sum()) * cells.dy / (2 * window), accuracy))
         refined = refined_contact(solver, shape, accuracy)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
@@ -126,6 +131,12 @@ def _shared_window(case: Case, reach: float) -> float:
     """Half-width of a window that holds a contact up to `reach`, metres, and that similar cases have as well."""
     least = (COUPLED_ROOM if case.coupled else ROOM) * reach / case.hertz_half_width
     return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
+
+
+def _cells_across(part: float, accuracy: float) -> int:
+    """Return how many cells along y resolve a peak where the contact takes this `part` of the window."""
+    needed = np.sqrt(BETWEEN_CELLS / (SHARE_OF_Y * accuracy)) / part
+    return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
 
 
 def settled_values(settled: SettledContact) -> xr.Dataset:

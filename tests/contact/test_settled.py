@@ -379,3 +379,10 @@ def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
     assert difference < float(found["peak_pressure_error"])
     assert float(found["peak_pressure"]) == pytest.approx(float(found["pressure"].max()), rel=3e-3)
     assert abs(float(found["peak_pressure"] / uncoupled["peak_pressure"]) - 1) > 1e-3
+
+
+@pytest.mark.parametrize(("accuracy", "least"), [(0.05, 8), (0.01, 17), (0.002, 37), (0.001, 53)])
+def test_the_peak_has_cells_across_it_as_the_accuracy_asks(accuracy: float, least: int) -> None:
+    found = settled_contact(CASES["half-space"], accuracy, 1e-6)
+    pressure = found.contact.pressure
+    assert int((pressure[int(pressure.max(axis=1).argmax())] > 0).sum()) >= least
