@@ -8,6 +8,7 @@ from random import Random
 import numpy as np
 
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, Roller
+from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import MODELS, Body
 from tests.fuzz.shapes import magnitude, mirrored, random_profile, stretched
 
@@ -121,16 +122,16 @@ def random_drawn(chance: Random) -> Drawn:
         ends=chance.choice(("free", "free", "none")),
     )
     body = _random_body(chance, material, length, half_width)
+    pressure = 0.5 * strain * contact_modulus(material, roller.material)
     case = Case(
         body=body,
         roller=roller,
         friction=chance.choice((0.0, 0.1, chance.uniform(-1.0, 1.0))),
         coupled=chance.random() < 0.25,
         end_distance=_end_distance(chance, body, length, half_width),
-        max_pressure=1.0,
+        max_pressure=pressure,
     )
-    pressure = 0.5 * strain * case.modulus
-    case = replace(case, **_tilt(chance, case, strain), max_pressure=pressure)
+    case = replace(case, **_tilt(chance, case, strain))
     if chance.random() < 0.3:
         case = replace(case, max_pressure=None, load=case.normal_load)
     return _with_cells(chance, case)

@@ -1,8 +1,8 @@
 """What has to hold of every converged case, whatever it is.
 
-Each function takes a solved case; it raises `ViolationError`, or returns whether there was anything to look at. Bounds are
-over the peak pressure unless they say otherwise. They allow for the tolerance of the contact, which is one of the gap:
-on fine cells it leaves the pressure free by more.
+Each function takes a solved case; it raises `ViolationError`, or returns whether there was anything to look at. Bounds
+are over the peak pressure unless they say otherwise. They allow for the tolerance of the contact, which is one of the
+gap: on fine cells it leaves the pressure free by more.
 """
 
 from __future__ import annotations

@@ -61,3 +61,17 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     assert np.abs(softer - first[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
     np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
+
+
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_a_single_row_of_cells_under_itself(extent: tuple[float, float], axis: int) -> None:
+    """Where a contact is one cell wide, the stresses below it asked for a transform of no points."""
+    row = np.zeros(GRID.shape)
+    row[(5, slice(None)) if axis == 0 else (slice(None), 5)] = 1.0
+    x, y = (GRID.x[[5]], GRID.y) if axis == 0 else (GRID.x, GRID.y[[5]])
+    step = 1e-7 * (np.arange(3) - 1)
+    beside = (x[:, None] + step).ravel(), (y[:, None] + step).ravel()
+    # Beside the centres the field is not summed as a convolution.
+    apart = stresses(row, *beside, extent)[:, :, 1::3, 1::3]
+    np.testing.assert_allclose(stresses(row, x, y, extent), apart, atol=1e-9)
