@@ -371,6 +371,19 @@ def loads_on_the_top(solved: Solved) -> bool:
     return True
 
 
+def same_points_among_others(solved: Solved) -> bool:
+    """Stresses at the cells' centres do not depend on what other points are asked for: no symmetry is used then."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    pressure = solved.result["pressure"]
+    depth = [chance.uniform(0.2, 2.0) * case.hertz_half_width]
+    alone = stacked(stress_field(case.body, pressure, case.friction, z=depth))
+    aside = [np.sort(np.append(at, at[0] + 0.31 * (at[1] - at[0]))) for at in (grid.x, grid.y)]
+    among = stacked(stress_field(case.body, pressure, case.friction, *aside, depth))
+    kept = np.ix_(range(6), *(np.arange(at.size) != 1 for at in aside))
+    close("stresses among others", among[kept], alone, solved.peak, QUADRATURE)
+    return True
+
+
 def free_ends(solved: Solved) -> bool:
     """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
 
@@ -434,5 +447,6 @@ IN_TURN: tuple[Callable[[Solved], bool], ...] = (
     reciprocity,
     equilibrium,
     loads_on_the_top,
+    same_points_among_others,
 )
 """Those that solve again or need stresses: two for each case."""

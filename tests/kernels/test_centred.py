@@ -64,14 +64,17 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
 
 
 @pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
-@pytest.mark.parametrize("axis", [0, 1])
-def test_a_single_row_of_cells_under_itself(extent: tuple[float, float], axis: int) -> None:
-    """Where a contact is one cell wide, the stresses below it asked for a transform of no points."""
-    row = np.zeros(GRID.shape)
-    row[(5, slice(None)) if axis == 0 else (slice(None), 5)] = 1.0
-    x, y = (GRID.x[[5]], GRID.y) if axis == 0 else (GRID.x, GRID.y[[5]])
-    step = 1e-7 * (np.arange(3) - 1)
-    beside = (x[:, None] + step).ravel(), (y[:, None] + step).ravel()
-    # Beside the centres the field is not summed as a convolution.
-    apart = stresses(row, *beside, extent)[:, :, 1::3, 1::3]
-    np.testing.assert_allclose(stresses(row, x, y, extent), apart, atol=1e-9)
+@pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
+@pytest.mark.parametrize("whole", [False, True])
+def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+    """At periods of a fast length the farthest cells were left out of components odd in y.
+
+    Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
+    """
+    load = np.zeros(GRID.shape)
+    load[loaded] = 1.0
+    x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
+    # With a position that lies otherwise beside each, nothing is taken by symmetry.
+    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)
