@@ -23,8 +23,13 @@ KEPT_BYTES = 100_000_000
 
 def done(path: Path) -> dict[int, dict[str, object]]:
     """What a file notes, by seed; a line that was being written when the run ended does not count."""
-    found = {}
-    for line in path.read_text().splitlines() if path.exists() else ():
+    found: dict[int, dict[str, object]] = {}
+    if not path.exists():
+        return found
+    text = path.read_text()
+    if text and not text.endswith("\n"):
+        path.write_text(text + "\n")
+    for line in text.splitlines():
         try:
             note = json.loads(line)
         except json.JSONDecodeError:

@@ -12,6 +12,9 @@ from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import MODELS, Body
 from tests.fuzz.shapes import magnitude, mirrored, random_profile, stretched
 
+REFINED = 0.06
+"""Part of the cases whose cells are refined: they take several seconds."""
+
 
 @dataclass(frozen=True)
 class Drawn:
@@ -101,8 +104,8 @@ def random_material(chance: Random) -> Material:
     return Material(chance.choice((210e9, magnitude(chance, 1e6, 1e12))), poisson)
 
 
-def random_drawn(chance: Random) -> Drawn:
-    """A case and its cells.
+def random_drawn(chance: Random, *, refined: bool | None = None) -> Drawn:
+    """A case and its cells; whether these are refined is left to chance unless it is said.
 
     Raises
     ------
@@ -134,7 +137,7 @@ def random_drawn(chance: Random) -> Drawn:
     case = replace(case, **_tilt(chance, case, strain))
     if chance.random() < 0.3:
         case = replace(case, max_pressure=None, load=case.normal_load)
-    return _with_cells(chance, case)
+    return _with_cells(chance, case, refined)
 
 
 def _random_body(chance: Random, material: Material, length: float, half_width: float) -> Body:
@@ -168,10 +171,10 @@ def _tilt(chance: Random, case: Case, strain: float) -> dict[str, float]:
     return {}
 
 
-def _with_cells(chance: Random, case: Case) -> Drawn:
+def _with_cells(chance: Random, case: Case, refined: bool | None) -> Drawn:
     """Uniform, graded or refined cells."""
     form = chance.random()
-    if form < 0.06:
+    if form < REFINED if refined is None else refined:
         return Drawn(case, None, chance.choice((0.1, 0.1, 0.05, 0.02)))
     a = case.hertz_half_width
     half_window = chance.choice((2.0, 2.0, 3.0, 4.0)) * a

@@ -36,15 +36,18 @@ class Outcome:
     seconds: float = 0.0
 
 
-def outcome_of(chance: Random) -> Outcome:
-    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function."""
+def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
+    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function.
+
+    `refined` decides whether cells are refined or given; None leaves it to chance.
+    """
     began = time.perf_counter()
     checked: list[str] = []
     now = "drawing"
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
-            drawn = random_drawn(chance)
+            drawn = random_drawn(chance, refined=refined)
             now = "solve"
             kind, said = _checked(drawn, chance, checked)
     except ViolationError as violation:
