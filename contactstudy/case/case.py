@@ -25,8 +25,12 @@ INCLINED_POINTS = 41
 GAP_NODES = 6
 """Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
 
-LARGEST_HALF_WIDTH = 0.5
-"""Hertz half-width over the roller's radius beyond which a unit is wrong rather than the load high."""
+SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-10, 0.5
+"""Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
+means 10 Pa on steel."""
+
+SHORTEST, LONGEST = 1e-4, 1e10
+"""Lengths of contact and body over the Hertz half-width outside which, likewise, a unit is wrong."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -146,14 +150,25 @@ class Case:
         name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
         value = checks.positive(name, getattr(self, name), unit)
         checks.store(self, **{name: value})
-        if self.hertz_half_width > LARGEST_HALF_WIDTH * self.roller.radius:
+        if not SMALLEST_HALF_WIDTH <= self.hertz_half_width / self.roller.radius <= LARGEST_HALF_WIDTH:
             raise InvalidInputError(
                 name,
                 value,
                 f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
-                f"of the roller's radius, {self.roller.radius:g} m",
+                f"and at least {SMALLEST_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
             )
+
+        low, high = self.body.extent
+        lengths = {"roller.length": self.contact_length, "body.length": high - low}
+        for longest, length in lengths.items():
+            if np.isfinite(length) and not SHORTEST <= length / self.hertz_half_width <= LONGEST:
+                raise InvalidInputError(
+                    longest,
+                    length,
+                    f"between {SHORTEST:g} and {LONGEST:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
+                    "lengths are in metres, pressures and moduli in Pa, loads in N",
+                )
 
     @property
     def roller_start(self) -> float:

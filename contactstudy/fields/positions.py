@@ -105,10 +105,10 @@ def labelled_load(body: Body, pressure: xr.DataArray) -> tuple[Grid, FloatArray,
 
 
 def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
-    """Positions clipped by rounding errors to the body; raise for any outside."""
+    """Positions of which those within rounding of an end lie on it; raise for any outside."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
     outside = (x < low - rounding) | (x > high + rounding)
     if outside.any():
         raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
-    return np.clip(x, low, high)
+    return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))

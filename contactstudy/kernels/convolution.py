@@ -24,7 +24,8 @@ def even_spectrum(kernel: FloatArray) -> FloatArray:
 def odd_spectrum(kernel: FloatArray) -> FloatArray:
     """Spectrum along y, without its factor i, of a kernel that is odd in y, given at offsets 0 .. N (last axis)."""
     spectrum = np.zeros_like(kernel)
-    spectrum[..., 1:-1] = -fft.dst(kernel[..., 1:-1], type=1, axis=-1)
+    if kernel.shape[-1] > 2:  # an odd kernel on a single cell is nothing
+        spectrum[..., 1:-1] = -fft.dst(kernel[..., 1:-1], type=1, axis=-1)
     return spectrum
 
 

@@ -61,3 +61,20 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     assert np.abs(softer - first[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
     np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
+
+
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
+@pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
+@pytest.mark.parametrize("whole", [False, True])
+def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+    """At periods of a fast length the farthest cells were left out of components odd in y.
+
+    Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
+    """
+    load = np.zeros(GRID.shape)
+    load[loaded] = 1.0
+    x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
+    # With a position that lies otherwise beside each, nothing is taken by symmetry.
+    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)

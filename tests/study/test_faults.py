@@ -133,7 +133,7 @@ def test_points_beyond_counting():
         case_id({"field_x_over_a": {"start": 0, "stop": 1, "count": 10**9}})
 
 
-@pytest.mark.parametrize("changes", [{"max_pressure": 1e-99}, {"load": 1e99, "max_pressure": None}, {"young": 1e-99}])
+@pytest.mark.parametrize("changes", [{"max_pressure": 1e-49}, {"load": 1e49, "max_pressure": None}, {"young": 1e-49}])
 def test_extreme_cases_are_skipped_and_stop_no_plan(changes):
     base = {name: value for name, value in (BASE | {"e_over_a": 1.0} | changes).items() if value is not None}
     plan = small_study(base=base, sweep={"friction": [0.0]}).plan()
