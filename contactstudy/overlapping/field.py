@@ -100,9 +100,12 @@ def end_field(
     dict of Load to array (component, x, y, z)
         Under the load in each of the problem's directions.
     """
+    fields: dict[Load, FloatArray] = {}
     with one_blas_thread():
-        field = _at_few_positions(_Task(problem, harmonics, x, y, z, reference))
-    return dict(zip(problem.loads, field.swapaxes(3, 4), strict=True))
+        for alike in problem.alike():
+            field = _at_few_positions(_Task(alike, harmonics, x, y, z, reference))
+            fields |= dict(zip(alike.loads, field.swapaxes(3, 4), strict=True))
+    return fields
 
 
 def _at_few_positions(task: _Task) -> FloatArray:
@@ -122,7 +125,8 @@ def _by_symmetry(task: _Task) -> FloatArray:
     if np.isinf(length):
         return _with_corner(task, {0: problem.columns[1]})[0]
     half, where = np.unique(np.round(problem.from_end(task.x) / length, SAME_POSITION), return_inverse=True)
-    fields = _with_corner(replace(task, x=length * half), parity_parts(problem.columns[1]))
+    parts = parity_parts(problem.columns[1], problem.sign_x)
+    fields = _with_corner(replace(task, x=length * half), parts)
     signs = np.ones((harmonics.count, 1, 1, 1))
     signs[harmonics.odd_along_x] = -1.0
     first = sum(fields.values())

@@ -11,7 +11,9 @@ from contactstudy.overlapping.field import Harmonics, end_field, real_product
 from contactstudy.overlapping.problem import EndProblem
 
 
-def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> dict[Load, FloatArray]:
+def end_stress(
+    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float = np.inf
+) -> dict[Load, FloatArray]:
     """Stresses that the free ends add to the half-space with all mirrored loads.
 
     Parameters
@@ -20,13 +22,19 @@ def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray)
         Body and load.
     x, y, z : array
         Points, as a tensor product, inside the body, metres.
+    reference : float
+        Between two ends: where along y the bending of the far body under a force along x is zero, metres.
 
     Returns
     -------
     dict of Load to array (6, x, y, z)
         Under the load in each of the problem's directions: xx, yy, zz, xy, xz, yz in Pa.
     """
-    return end_field(problem, STRESS, x, y, z)
+    fields: dict[Load, FloatArray] = {}
+    for alike in problem.alike():
+        grows = alike.sign_x < 0 and np.isfinite(reference)
+        fields |= end_field(alike, STRESS, x, y, z, reference=reference if grows else None)
+    return fields
 
 
 def _below_equivalent_load(
