@@ -55,10 +55,15 @@ def half_space_displacement(
         Along x, y, z in metres.
     """
     nu, length = material.poisson, extent[1] - extent[0]
+    influence = displacement_influence(load, nu, length, reference)
+    field = half_space_field(cells, influence, grid, x, y, z, extent=extent)
+    return field / (4 * np.pi * material.shear_modulus)
+
+
+def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:
+    """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
     level = None
     if np.isfinite(length):
         along = (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
-        level = tuple(row_level(Response(direction, load), nu, length, reference) for direction in along)
-    influence = Influence.of(DISPLACEMENT_CORNERS[load], nu, load, UNDER_PRESSURE, level)
-    field = half_space_field(cells, influence, grid, x, y, z, extent=extent)
-    return field / (4 * np.pi * material.shear_modulus)
+        level = tuple(row_level(Response(direction, load), poisson, length, reference) for direction in along)
+    return Influence.of(DISPLACEMENT_CORNERS[load], poisson, load, UNDER_PRESSURE, level)

@@ -148,7 +148,7 @@ class EndKernel:
         return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
 
 
-def _sampled(
+def sampled_kernel(
     modes: AxialModes, wavenumber: float, positions: FloatArray, request: EndRequest, shortest: float
 ) -> list[FloatArray]:
     """Correction between the graded positions at one wavenumber, for each of the responses."""
@@ -228,7 +228,7 @@ def _samples(
         modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
         for wavenumber in panel.nodes.tolist():
             if wavenumber not in known:
-                sampled = np.array([_sampled(mode, wavenumber, positions, request, shortest) for mode in modes])
+                sampled = np.array([sampled_kernel(mode, wavenumber, positions, request, shortest) for mode in modes])
                 # Ends that know nothing of each other: both parities see half of either quarter space.
                 alone = len(request.parities) > len(modes)
                 known[wavenumber] = 0.5 * np.repeat(sampled, 2, axis=0) if alone else sampled
