@@ -73,6 +73,8 @@ CONTACT = {
     "gap": Variable(XY, "m", "g", "gap after deformation"),
     "initial_gap": Variable(XY, "m", "g_0", "gap before deformation"),
     "displacement_z": Variable(XY, "m", "u_z", "normal displacement of the top, into the body"),
+    "displacement_x": Variable(XY, "m", "u_x", "displacement of the top along the roller's axis"),
+    "displacement_y": Variable(XY, "m", "u_y", "displacement of the top along rolling"),
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
     "load": Variable(SCALAR, "N", "W", "normal load"),
     "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),

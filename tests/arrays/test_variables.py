@@ -92,6 +92,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "stress_field": cs.stress_field(body, pressure, z=depths),
         "displacement_field": cs.displacement_field(body, pressure, z=depths),
         "surface_displacement": cs.surface_displacement(body, pressure),
+        "surface_displacement, all": cs.surface_displacement(body, pressure, components="xyz"),
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
         "summarize": cs.summarize(solved),
