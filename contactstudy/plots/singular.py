@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis.axes import cell_size, dimension_along, positions
-from contactstudy.checks import BoolArray
+from contactstudy.checks import BoolArray, FloatArray
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,9 +52,9 @@ def singular_ends(one: xr.Dataset) -> list[float]:
     ]
 
 
-def near_singular(one: xr.Dataset, ends: list[float]) -> BoolArray:
-    """Cells along x that are too near to a singular end to be drawn."""
-    x = positions(one["pressure"], "x").values
+def near_singular(one: xr.Dataset, ends: list[float], x: FloatArray | None = None) -> BoolArray:
+    """Positions along x, by default the cells', that are too near to a singular end to be drawn."""
+    x = positions(one["pressure"], "x").values if x is None else x
     near = np.zeros(x.size, dtype=bool)
     if "hertz_half_width" in one:
         for end in ends:
