@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -15,6 +17,7 @@ from contactstudy import (
     Material,
     QuarterSpace,
     Roller,
+    cache,
     choose_grid,
     profiles,
     solve,
@@ -386,3 +389,35 @@ def test_the_peak_has_cells_across_it_as_the_accuracy_asks(accuracy: float, leas
     found = settled_contact(CASES["half-space"], accuracy, 1e-6)
     pressure = found.contact.pressure
     assert int((pressure[int(pressure.max(axis=1).argmax())] > 0).sum()) >= least
+
+
+class _Crown:
+    """A profile of a user's own, which can be changed after it has been used."""
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        return np.asarray(x**2 / (2 * self.radius))
+
+
+def test_contacts_are_kept_for_values_only() -> None:
+    cache.clear()
+    case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
+    first = settled_contact(case, 0.05, 1e-6)
+    assert settled_contact(replace(case, friction=0.2), 0.05, 1e-6) is first
+    assert settled_contact(case, 0.04, 1e-6) is not first
+    assert settled_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first
+    own = _Crown(5e-3)
+    changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=own), max_pressure=PRESSURE)
+    before = settled_contact(changed, 0.05, 1e-6).refined.peak
+    own.radius = 2.5e-3
+    assert settled_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * before
+
+
+def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
+    first = solve(CASES["half-space"], stresses=False, accuracy=0.05)
+    kept = first["pressure"].values.copy()
+    for name in ("pressure", "gap", "displacement_z", "initial_gap"):
+        first[name].values[:] = 0.0
+    np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], kept)
