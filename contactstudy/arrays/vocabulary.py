@@ -70,6 +70,11 @@ COORDINATES = {
 CONTACT = {
     "pressure": Variable(XY, "Pa", "p", "contact pressure"),
     "shear_traction": Variable(XY, "Pa", "q", "shear traction on the body along +y"),
+    "traction_x": Variable(XY, "Pa", "q_x", "traction on the body along the roller's axis"),
+    "traction_y": Variable(XY, "Pa", "q_y", "traction on the body along +y"),
+    "slip_x": Variable(XY, "", "s_x", "slip of the roller against the body along x, per distance rolled or of a shift"),
+    "slip_y": Variable(XY, "", "s_y", "slip of the roller against the body along y, per distance rolled or of a shift"),
+    "stick": Variable(XY, "1", "", "whether the surfaces stick"),
     "gap": Variable(XY, "m", "g", "gap after deformation"),
     "initial_gap": Variable(XY, "m", "g_0", "gap before deformation"),
     "displacement_z": Variable(XY, "m", "u_z", "normal displacement of the top, into the body"),
@@ -82,6 +87,23 @@ CONTACT = {
         SCALAR, "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
     ),
     "load_position": Variable(SCALAR, "m", "x_W", "position x of the pressure's resultant"),
+    "force_x": Variable(SCALAR, "N", "F_x", "force on the body along the roller's axis"),
+    "force_y": Variable(SCALAR, "N", "F_y", "force on the body along +y"),
+    "moment_z": Variable(SCALAR, "N m", "M_z", "moment on the body about the normal through the roller's middle"),
+    "longitudinal_creepage": Variable(
+        SCALAR, "1", r"\xi", "velocity of the roller against the body along +y, over rolling"
+    ),
+    "lateral_creepage": Variable(SCALAR, "1", r"\eta", "velocity of the roller against the body along x, over rolling"),
+    "spin": Variable(SCALAR, "rad/m", r"\varphi", "angular velocity of the roller about z, over rolling"),
+    "shift_x": Variable(SCALAR, "m", "", "shift of the roller against the body along x"),
+    "shift_y": Variable(SCALAR, "m", "", "shift of the roller against the body along y"),
+    "friction_work": Variable(SCALAR, "", "A", "frictional work per distance rolled, or of a shift"),
+    "friction_steps": Variable(SCALAR, "1", "", "steps of Newton's method for stick and slip"),
+    "bound_error": Variable(SCALAR, "1", "", "largest traction above the friction's bound, over the largest bound"),
+    "slip_error": Variable(
+        SCALAR, "1", "", "largest slip where surfaces stick, or across or against the traction, over the rigid slip"
+    ),
+    "force_error": Variable(SCALAR, "1", "", "resultant of the tractions minus the prescribed one, over the largest"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
+from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -51,7 +52,8 @@ class Case:
     load : float, optional
         Normal load ``W``, N.
     friction : float
-        Coefficient ``f``: the shear traction on the body is ``q = f p`` along +y.
+        Coefficient ``f``: in full sliding the shear traction on the body is ``q = f p`` along +y; in any other motion
+        ``f p`` is the bound on it.
     end_distance : float, optional
         Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
@@ -63,6 +65,8 @@ class Case:
     load_position : float, optional
         Position x on which the load acts, metres: a roller that is free to tilt takes the inclination, beyond `tilt`,
         at which the pressure balances it. Default: the roller keeps its tilt.
+    motion : Sliding, Shift or Rolling
+        How the roller moves against the body. Default: full sliding.
 
     Raises
     ------
@@ -87,6 +91,7 @@ class Case:
     coupled: bool = False
     tilt: float = 0.0
     load_position: float | None = None
+    motion: Motion = field(default=Sliding())
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -95,8 +100,12 @@ class Case:
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
+        checks.instance("motion", self.motion, KINDS, MOTIONS)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         checks.store(self, friction=checks.finite("friction", self.friction), tilt=small_tilt(self.tilt))
+        if self.friction < 0 and not isinstance(self.motion, Sliding):
+            allowed = "not below zero with stick and slip: the slip turns the traction round"
+            raise InvalidInputError("friction", self.friction, allowed)
         self._check_place()
         self._check_load()
 
