@@ -17,6 +17,7 @@ import itertools
 from collections.abc import Mapping
 from concurrent.futures import ProcessPoolExecutor
 from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
@@ -108,12 +109,21 @@ def column(
         return [measured(case_of(profile, model, raceway, length), accuracy) for profile in profiles.values()]
 
 
-def solved(profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float = LENGTH) -> xr.Dataset:
-    """Every quantity (raceway, profile, model); raceways keep their distance from a shorter roller."""
+def solved(
+    profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float = LENGTH, *, workers: int | None = None
+) -> xr.Dataset:
+    """Every quantity (raceway, profile, model); raceways keep their distance from a shorter roller.
+
+    `workers` processes share the work, by default one per core; 0: this one does it.
+    """
     raceways = [each - LENGTH + length for each in RACEWAYS]
     pairs = list(itertools.product(raceways, MODELS))
-    with ProcessPoolExecutor() as workers:
-        columns = list(workers.map(partial(column, profiles, accuracy, length), *zip(*pairs, strict=True)))
+    solve_column = partial(column, profiles, accuracy, length)
+    if workers == 0:
+        columns = list(itertools.starmap(solve_column, pairs))
+    else:
+        with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+            columns = list(pool.map(solve_column, *zip(*pairs, strict=True)))
     found = dict(zip(pairs, columns, strict=True))
     rows = [
         [[found[raceway, model][number] for model in MODELS] for number in range(len(profiles))] for raceway in raceways
