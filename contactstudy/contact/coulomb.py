@@ -158,6 +158,7 @@ def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> C
         traction = start * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
         slip = counted.slip(traction, amplitudes)
     steps, converged, accuracy = 0, False, LINEAR_TOLERANCE
+    seen, one_by_one = {sticks.tobytes()}, False
     while steps < problem.max_steps and not converged:
         steps += 1
         step = _Step(counted, traction, slip, sticks)
@@ -166,21 +167,53 @@ def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> C
         size = np.hypot(*traction)
         slipping = ~sticks
         exceeds = size > bound
+        begins = exceeds & sticks
+        if len(problem.modes):
+            begins = _foremost(begins, size / bound, sticks)
+        if one_by_one:
+            begins = _first(begins)
         # Where a cell slips its traction has grown across; where it stuck and exceeds the bound it begins to slip.
-        traction = traction * np.where(slipping | exceeds, bound / np.where(size > 0, size, 1.0), 1.0)
+        traction = traction * np.where(slipping | begins, bound / np.where(size > 0, size, 1.0), 1.0)
         slip = counted.slip(traction, amplitudes)
         along = (slip * traction).sum(axis=0)
-        sticks = np.where(slipping, along < 0, ~exceeds)
+        ends = slipping & (along < 0)
+        if one_by_one:
+            ends = np.zeros_like(ends) if begins.any() else _first(ends)
+        sticks = (sticks & ~begins) | ends
+        if len(problem.modes) and not sticks.any():
+            sticks[np.where(begins, np.inf, np.hypot(*slip)).argmin()] = True
         scale = _scale(counted, amplitudes)
         missed = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
         whole = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
         violation = max(*law_violation(traction, slip, bound, sticks, scale), float((missed / whole).max(initial=0.0)))
+        converged = violation <= problem.tolerance
         if np.array_equal(sticks, before):
-            converged = violation <= problem.tolerance
             accuracy = max(LINEAR_TOLERANCE * accuracy, 1e-3 * problem.tolerance)
         else:
             accuracy = LINEAR_TOLERANCE
+            # Cells that go round in circles do not if they change one by one, the first of them first (Murty).
+            one_by_one = one_by_one or sticks.tobytes() in seen
+            seen.add(sticks.tobytes())
     return CoulombSolution(traction, slip, sticks, amplitudes, steps, relief.number, converged)
+
+
+def _first(cells: BoolArray) -> BoolArray:
+    """Only the first of some cells."""
+    first = np.zeros_like(cells)
+    first[int(cells.argmax())] = cells.any()
+    return first
+
+
+def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
+    """Half of the cells that stick at most, those farthest above their bound.
+
+    If no cell sticks, the rigid slip that makes a prescribed resultant has no value.
+    """
+    most = max(int(sticks.sum()) // 2, 1)
+    if exceeds.sum() <= most:
+        return exceeds
+    least = np.partition(excess[exceeds], -most)[-most]
+    return exceeds & (excess >= least)
 
 
 def _scale(problem: CoulombProblem, amplitudes: FloatArray) -> float:

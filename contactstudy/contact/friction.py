@@ -142,6 +142,8 @@ def tractions_of(
     weights = grid.cell_area * _rigid_weights(surfaces, grid)
     modes = motion.modes
     _check_forces(motion, bound, grid)
+    if not cells.unknown.size:
+        return _frictionless(motion, grid)
     bent = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
 
     def relative(displaced: Mapping[Load, FloatArray]) -> FloatArray:
@@ -223,6 +225,15 @@ def _completed(
     )
 
 
+def _frictionless(motion: Shift | Rolling, grid: Grid) -> Tractions:
+    """Tractions where the friction is 0 everywhere: none, and the slip of rigid surfaces is of no interest."""
+    none = np.zeros((2, *grid.shape))
+    names = ("x", "y", "spin") if isinstance(motion, Rolling) else ("x", "y")
+    rigid = {name: _amplitude(motion, name) for name in names}
+    sticks = np.zeros(grid.shape, bool)
+    return Tractions(none, none.copy(), sticks, rigid, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0, converged=True)
+
+
 def _all_cells(bound: FloatArray) -> RollingCells:
     """Cells of a contact that is shifted: all those that carry a traction are unknown."""
     unknown = contact_cells(bound > 0)
@@ -266,10 +277,10 @@ def _check_forces(motion: Shift | Rolling, bound: FloatArray, grid: Grid) -> Non
     """Raise if the forces that are prescribed exceed those of full sliding."""
     largest = float(bound.sum() * grid.cell_area)
     force = np.array([motion.force_x or 0.0, motion.force_y or 0.0])
-    if np.hypot(*force) > ALMOST_SLIDING * largest:
+    if motion.modes and np.hypot(*force) >= ALMOST_SLIDING * largest:
         raise InvalidInputError(
             "force_x, force_y",
             tuple(force.tolist()),
-            f"less than full sliding's {largest:.6g} N together",
+            f"together less than full sliding's {largest:.6g} N",
             "full sliding is the motion Sliding()",
         )
