@@ -65,12 +65,12 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
 
     for node in _in_functions(ast.parse(source)):
         match node:
-            case ast.BinOp(left=left, op=op, right=right) if type(op) in OTHER:
+            case ast.BinOp(left=left, op=op) if type(op) in OTHER:
                 own, other = OTHER[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
                     yield mutant(place, place + len(own), other)
-            case ast.Compare(left=left, ops=[op], comparators=[right]) if type(op) in REVERSED:
+            case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED:
                 own, other = REVERSED[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
                 yield mutant(place, place + len(own), other)
