@@ -18,6 +18,7 @@ from contactstudy.analysis.cuts import along_line, in_plane
 from contactstudy.analysis.discretisation import discretisation_error
 from contactstudy.analysis.edges import contact_edges
 from contactstudy.analysis.factors import edge_factors
+from contactstudy.analysis.largest import largest
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.analysis.peaks import peak, section_peak
 from contactstudy.analysis.scaling import normalized
@@ -36,6 +37,7 @@ __all__ = [
     "edge_pressure",
     "half_width",
     "in_plane",
+    "largest",
     "line_load",
     "load_between",
     "measure",

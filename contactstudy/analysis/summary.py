@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import contact_results, peak
-from contactstudy.arrays.variables import named
+from contactstudy.analysis.largest import largest
+from contactstudy.arrays.variables import STRESSES, named
 from contactstudy.errors import InvalidInputError
 
 
@@ -58,7 +59,8 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Scalars `peak_von_mises` (Pa) and `peak_von_mises_x`, ``_y``, ``_z`` (m).
+        Scalars `peak_von_mises` and its error (Pa), and `peak_von_mises_x`, ``_y``, ``_z`` (m), between the points of
+        the stresses, see :func:`contactstudy.analysis.largest`; without the six stresses, at these points.
 
     Raises
     ------
@@ -75,7 +77,9 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
         return xr.Dataset()
     if np.isnan(dataset["von_mises"].values).all():
         raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
-    return peak(dataset, "von_mises").reset_coords(drop=True)
+    known = all(name in dataset for name in STRESSES)
+    found = largest(dataset) if known else peak(dataset, "von_mises")
+    return found.reset_coords(drop=True)
 
 
 def summarize(dataset: xr.Dataset) -> xr.Dataset:

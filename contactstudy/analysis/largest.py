@@ -1,0 +1,162 @@
+"""The largest value of a stress measure between the points where it was sampled, with its error.
+
+The components of the stress are smooth, so polynomials through the points around the largest sample tell them in
+between; the measure follows from them. What polynomials of a lower degree say tells the error of that.
+"""
+
+from __future__ import annotations
+
+from itertools import product
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis.axes import axis_dimensions, positions, single_case
+from contactstudy.analysis.measures import MEASURES, measure
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import named, variable_of
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+
+AROUND = 2
+"""Points on either side of the largest sample that the polynomial goes through. Accuracy."""
+
+FINE = 17
+"""Points along each axis, from one neighbour of the largest sample to the other, where the measure is evaluated."""
+
+POINTWISE = ("von_mises", "tresca", "maximum_shear", "hydrostatic")
+"""Measures of the stress at one point."""
+
+
+def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
+    """Largest value of a stress measure between the points where it is known, its error and its place.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with the six stresses, from :func:`contactstudy.solve` or :func:`contactstudy.stress_field`.
+    variable : {"von_mises", "tresca", "maximum_shear", "hydrostatic"}
+        The measure.
+
+    Returns
+    -------
+    Dataset
+        ``peak_<variable>`` (Pa), its estimated error ``peak_<variable>_error``, and its place ``peak_<variable>_x``,
+        ``_y``, ``_z`` in metres. The error has two parts: what polynomials of two degrees through the points differ by,
+        and the relative error of `peak_pressure` where that is settled. It is infinite, with a `comment` that says why,
+        where the largest sample lies at the edge of the points, beyond which the measure may be larger, or where
+        the pressure is singular. Along an axis with one point the place is that point.
+
+    Raises
+    ------
+    InvalidInputError
+        If there is no such measure or a stress is missing, or there is more than one case.
+
+    Examples
+    --------
+    >>> z = np.linspace(0.0, 2.0, 11)
+    >>> stress = xr.Dataset({name: (("x", "y", "z"), np.zeros((1, 1, 11))) for name in MEASURES["von_mises"][0]},
+    ...                     {"x": [0.0], "y": [0.0], "z": z})
+    >>> stress["tau_yz"] = stress["tau_yz"] + xr.DataArray(z * np.exp(-z / 0.75), dims="z")
+    >>> found = largest(stress, "maximum_shear")
+    >>> round(float(found.peak_maximum_shear_z), 2), round(float(found.peak_maximum_shear), 4)
+    (0.75, 0.2759)
+    """
+    checks.known_name("variable", variable, POINTWISE)
+    names = list(MEASURES[variable][0])
+    require(dataset, *names)
+    one = single_case(dataset)
+    sampled = measure(one, variable)
+    over = axis_dimensions(sampled)
+    if np.isnan(sampled.values).all():
+        raise InvalidInputError(variable, "nan everywhere", "a field with at least one number")
+    field = sampled.transpose(*over.values())
+    at = np.unravel_index(int(np.nanargmax(field.values)), field.shape)
+    places = {axis: np.asarray(positions(field, axis).values, dtype=np.float64) for axis in over}
+    wide, narrow = (_between(one[names], variable, over, places, at, around) for around in (AROUND, 1))
+    value, place = wide
+    error = abs(value - narrow[0])
+    comment = _without_limit(one, places, at)
+    if comment:
+        error = np.inf
+    elif "peak_pressure_error" in one:
+        error += value * float(one["peak_pressure_error"] / one["peak_pressure"])
+    base = variable_of(variable, sampled.attrs)
+    values = {f"peak_{variable}": value, f"peak_{variable}_error": error}
+    values |= {f"peak_{variable}_{axis}": position for axis, position in zip(over, place, strict=True)}
+    # The error's rule is that of any variable: it is told what the peak is.
+    peak = variable_of(f"peak_{variable}", {"units": base.units, "long_name": f"largest {base.long_name}"})
+    result = xr.Dataset(
+        {
+            name: named(name, xr.DataArray(number), peak if name.endswith("_error") else base)
+            for name, number in values.items()
+        }
+    )
+    if comment:
+        result[f"peak_{variable}_error"].attrs["comment"] = comment
+    return result
+
+
+def _without_limit(one: xr.Dataset, places: dict[str, FloatArray], at: tuple[np.intp, ...]) -> str:
+    """Why the largest sample says little about the largest value; empty if it does."""
+    if "peak_pressure" in one and np.isinf(float(one["peak_pressure"])):
+        return "the pressure is singular at an end, and so is the stress"
+    extent = _extent(one)
+    for (axis, place), index in zip(places.items(), at, strict=True):
+        on_body = axis == "z" and place[0] == 0 and index == 0
+        if axis == "x":
+            on_body = any(np.isclose(place[index], end, rtol=0, atol=1e-9 * np.ptp(place)) for end in extent)
+        if place.size > 1 and index in (0, place.size - 1) and not on_body:
+            return f"the largest sample lies at the edge of the points along {axis}"
+    return ""
+
+
+def _extent(one: xr.Dataset) -> tuple[float, ...]:
+    """Return the ends of the cells along x, which are those of a body with ends; none if there are no cells."""
+    if "x_bounds" not in one.coords:
+        return ()
+    bounds = one["x_bounds"].values
+    return float(bounds.min()), float(bounds.max())
+
+
+def _between(
+    stresses: xr.Dataset,
+    variable: str,
+    over: dict[str, str],
+    places: dict[str, FloatArray],
+    at: tuple[np.intp, ...],
+    around: int,
+) -> tuple[float, list[float]]:
+    """Largest value, and its place, of polynomials through the points `around` the largest sample."""
+    window, fine, matrices = {}, [], []
+    for (axis, dim), index in zip(over.items(), at, strict=True):
+        place, centre = places[axis], int(index)
+        # Near an edge the same number of points, all on one side.
+        count = min(2 * around + 1, place.size)
+        start = min(max(centre - around, 0), place.size - count)
+        nodes = place[start : start + count]
+        low, high = place[max(centre - 1, 0)], place[min(centre + 1, place.size - 1)]
+        points = np.unique(np.append(np.linspace(low, high, FINE), place[centre])) if count > 1 else nodes
+        window[dim] = slice(start, start + count)
+        fine.append(points)
+        matrices.append(_lagrange(nodes, points))
+    near = stresses.isel(window)
+    refined = xr.Dataset()
+    for name, component in near.items():
+        values = component.transpose(*over.values()).values
+        for number, matrix in enumerate(matrices):
+            values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
+        refined[name] = (tuple(over.values()), values)
+    found = measure(refined, variable).values
+    best = np.unravel_index(int(np.nanargmax(found)), found.shape)
+    return float(found[best]), [float(points[index]) for points, index in zip(fine, best, strict=True)]
+
+
+def _lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
+    """Matrix (point, node) that interpolates by the polynomial through the nodes."""
+    matrix = np.ones((points.size, nodes.size))
+    for i, j in product(range(nodes.size), repeat=2):
+        if i != j:
+            matrix[:, i] *= (points - nodes[j]) / (nodes[i] - nodes[j])
+    return matrix

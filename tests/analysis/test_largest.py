@@ -1,0 +1,78 @@
+"""The largest stress between the points where it is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, analysis, solve
+from contactstudy.arrays.variables import STRESSES
+
+STEEL = Material(210e9, 0.3)
+A = 2 * 1.5e9 * 5e-3 / STEEL.plane_strain_modulus
+
+
+def shear(values: xr.DataArray) -> xr.Dataset:
+    """Stresses of pure shear: the maximum shear is its size."""
+    zero = xr.zeros_like(values)
+    return xr.Dataset(dict.fromkeys(STRESSES, zero) | {"tau_yz": values})
+
+
+def hill(x: np.ndarray, z: np.ndarray) -> xr.Dataset:
+    """A hill of height 3 at x = 0.3, z = 0.7."""
+    along, down = xr.DataArray(x, dims="x", coords={"x": x}), xr.DataArray(z, dims="z", coords={"z": z})
+    values = 3 * np.exp(-((along - 0.3) ** 2) - (down - 0.7) ** 2)
+    return shear(values.expand_dims(y=[0.0]).transpose("x", "y", "z"))
+
+
+@pytest.mark.parametrize("step", [0.3, 0.2, 0.1])
+def test_the_top_of_a_hill_is_found_between_the_points_with_an_error_that_holds(step: float) -> None:
+    found = analysis.largest(hill(np.arange(-1.0, 2.0, step), np.arange(0.0, 2.0, step)), "maximum_shear")
+    assert abs(float(found.peak_maximum_shear) - 3) <= float(found.peak_maximum_shear_error) < 0.1
+    assert float(found.peak_maximum_shear_x) == pytest.approx(0.3, abs=0.1 * step)
+    assert float(found.peak_maximum_shear_z) == pytest.approx(0.7, abs=0.1 * step)
+    assert found.peak_maximum_shear_error.attrs["units"] == "Pa"
+
+
+@pytest.mark.parametrize(("z", "axis"), [(np.linspace(0.8, 2.0, 9), "z"), (np.linspace(0.0, 0.6, 9), "z")])
+def test_a_largest_sample_at_the_edge_of_the_points_has_no_error(z: np.ndarray, axis: str) -> None:
+    found = analysis.largest(hill(np.linspace(-1.0, 2.0, 9), z), "maximum_shear")
+    assert np.isinf(float(found.peak_maximum_shear_error))
+    assert f"edge of the points along {axis}" in found.peak_maximum_shear_error.attrs["comment"]
+
+
+def test_the_top_of_the_body_is_no_edge() -> None:
+    z = np.linspace(0.0, 2.0, 11)
+    values = xr.DataArray(np.exp(-z)[None, None], dims=("x", "y", "z"), coords={"x": [0.0], "y": [0.0], "z": z})
+    found = analysis.largest(shear(values), "maximum_shear")
+    assert float(found.peak_maximum_shear_z) == 0.0
+    assert float(found.peak_maximum_shear_error) < 0.1
+
+
+def solved(count: int, **roller: object) -> xr.Dataset:
+    body = FiniteLengthSpace(length=12 * A, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=12 * A, **roller), max_pressure=1.5e9, friction=0.1)
+    points = np.linspace(0.0, 6 * A, 2 * count)
+    return solve(case, accuracy=0.05, x=points, y=A * np.linspace(-1, 1, count), z=A * np.linspace(0, 1.5, count))
+
+
+def test_a_coarse_list_of_depths_finds_the_depth_of_a_fine_one() -> None:
+    coarse, fine = (analysis.largest(solved(count)) for count in (9, 25))
+    error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
+    assert error <= float(coarse.peak_von_mises_error)
+    assert error < 0.005 * float(fine.peak_von_mises)
+    assert float(coarse.peak_von_mises_z) == pytest.approx(float(fine.peak_von_mises_z), abs=0.03 * A)
+
+
+def test_a_singular_end_has_no_largest_stress() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=8 * A), max_pressure=1.5e9)
+    depths = A * np.linspace(0.1, 1.0, 5)
+    found = analysis.largest(solve(case, accuracy=0.05, x=[0.0, A, 2 * A], y=[0.0], z=depths))
+    assert np.isinf(float(found.peak_von_mises_error))
+    assert "singular" in found.peak_von_mises_error.attrs["comment"]
+
+
+def test_only_measures_of_a_point() -> None:
+    with pytest.raises(InvalidInputError, match="orthogonal"):
+        analysis.largest(hill(np.arange(3.0), np.arange(3.0)), "orthogonal_shear_range")
