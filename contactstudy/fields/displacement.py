@@ -11,12 +11,13 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions, field_positions, labelled_load
 from contactstudy.kernels.displacement import half_space_displacement
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.displacement import end_displacement
-from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.problem import EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 
 COMPONENTS = ("u_x", "u_y", "u_z")
@@ -115,7 +116,8 @@ def _part_displacement(
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        problem = EndProblem(length, material.poisson, cells, loads, grid, Resolution(), mirrored_once)
+        seen, seen_on = seen_by_ends(cells, grid, z)
+        problem = EndProblem(length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

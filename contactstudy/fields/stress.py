@@ -15,10 +15,11 @@ from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions, labelled_load
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
-from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
+from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
 
@@ -136,7 +137,8 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, FloatArray]:
     fields = {load: half_space_stress(load, cells.values, poisson, grid, x, y, z, extent=part.extent) for load in loads}
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        problem = EndProblem(length, poisson, cells.values, loads, grid, Resolution(), mirrored_once)
+        seen, seen_on = seen_by_ends(cells.values, grid, z)
+        problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         for load, from_ends in end_stress(problem, x, y, z).items():
             # The two auxiliary bodies leave no traction on the top, by construction.
             for component in (2, 4, 5):

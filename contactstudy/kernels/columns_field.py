@@ -6,17 +6,21 @@ sum over corners, each weighted with the mixed jump of the load there.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
-from contactstudy.kernels.images import image_kernel
+from contactstudy.kernels.fine_cells import PARTS_Y, FineCells
+from contactstudy.kernels.images import image_kernel, snapped
 from contactstudy.kernels.influence import Influence
+from contactstudy.kernels.smooth_load import SmoothLoad
 
 IMAGE_POINTS = 16
 """Chebyshev points along x on which the load is gathered for its farther images. Accuracy."""
@@ -28,18 +32,20 @@ FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Columns:
-    """Columns of a load, with the image beside it in each end that mirrors it."""
+WINDOW = 4
+"""Columns on either side of a point that are split where the load is smooth. Accuracy."""
 
-    edges: FloatArray
-    cells: FloatArray
+END_WINDOW = 16
+"""Likewise for a point on an end, of uniform columns. Accuracy."""
 
-    def jumps(self) -> tuple[FloatArray, FloatArray]:
-        """Edges at which the load jumps, and its mixed jumps there: array (edge, edge along y)."""
-        jumps = np.diff(np.diff(np.pad(self.cells, 1), axis=0), axis=1)
-        loaded = jumps.any(axis=1)
-        return self.edges[loaded], jumps[loaded]
+BATCH = 64
+"""Positions along x whose surroundings are made smooth at once. Speed."""
+
+CENTRED = 0.25
+"""Width of the fine column in whose middle a point lies, over that of the fine column around it. Accuracy."""
+
+SAME_END = 1e-9
+"""Part of a column by which a point on an end may miss it. Accuracy."""
 
 
 def columns_field(
@@ -51,60 +57,237 @@ def columns_field(
     z: FloatArray,
     *,
     extent: tuple[float, float],
+    fine: FineCells | None = None,
+    added: bool = False,
 ) -> FloatArray:
-    """Field in the half-space under a load and all its mirror images, as `half_space_field` on uniform cells."""
+    """Field in the half-space under a load and all its mirror images, as `half_space_field` on uniform cells.
+
+    With `fine` the load is smooth where it lies near to a point; `added` asks for what that adds to a load that is
+    smooth along y only.
+    """
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     loaded = np.flatnonzero(load.any(axis=0))
     if not loaded.size:
         return field
-    first, last = int(loaded[0]), int(loaded[-1]) + 1
-    load = load[:, first:last]
-    edges, jumps = _with_images(grid.x_edges, load, influence.load.sign_x, extent).jumps()
+    first, load = int(loaded[0]), load[:, loaded[0] : loaded[-1] + 1]
+    if fine is not None:
+        first, load = fine.first, fine.cells
+    edges, cells = _with_images(grid.x_edges, load, influence.load.sign_x, extent)
     # Corners along y lie half a cell before the first loaded centre, and so on.
-    for column in aligned_points(y, float(grid.y[first]) - 0.5 * grid.dy, grid.dy):
-        lowest = int(column.cells.min()) - load.shape[1]
-        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
-        for number, depth in enumerate(z.tolist()):
-            field[:, :, column.points, number] = _layer(influence, x[:, None] - edges, offsets, depth, jumps, column)
-    if np.isfinite(extent).all():
+    begin = float(grid.y[first]) - 0.5 * grid.dy
+    near = np.zeros(z.size, bool) if fine is None else fine.near(z)
+    layers = [
+        _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], parts)
+        for column in aligned_points(y, begin, grid.dy)
+        for numbers, parts in ((np.flatnonzero(~near), 0), (np.flatnonzero(near), PARTS_Y))
+        if numbers.size
+    ]
+    smooth = fine.along_y(cells) if fine is not None else None
+    base = [cells if smooth is None else layer.loads(smooth) for layer in layers]
+    jumps = [_Jumps.of(edges, loads, layer) for loads, layer in zip(base, layers, strict=True)]
+    for start in range(0, x.size, BATCH):
+        positions = x[start : start + BATCH].tolist()
+        exchanged = iter(()) if fine is None else _exchanged(positions, fine, edges, extent, base, layers, added=added)
+        for i, position in enumerate(positions, start):
+            for layer, own in zip(layers, next(exchanged, jumps), strict=True):
+                for number, corner in zip(layer.numbers.tolist(), layer.corners, strict=True):
+                    field[:, i, layer.points, number] = own.field(corner, position, layer.at)
+    if np.isfinite(extent).all() and not added:
         field += _far_images(load, influence, grid, first, x, y, z, extent)
     return field
 
 
-def _with_images(edges: FloatArray, cells: FloatArray, image: int, extent: tuple[float, float]) -> _Columns:
-    """Columns of a load between its nearest images; each end of the body is a border between columns."""
+def _mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
+    """Edges with those of the nearest images; each end of the body is an edge between columns."""
     low, high = extent
-    all_edges, all_cells = [edges], [cells]
+    all_edges = [edges]
     if np.isfinite(low):
         all_edges.insert(0, (2 * low - edges[::-1])[:-1])
-        all_cells.insert(0, image * cells[::-1])
     if np.isfinite(high):
         all_edges.append((2 * high - edges[::-1])[1:])
-        all_cells.append(image * cells[::-1])
-    return _Columns(np.concatenate(all_edges), np.concatenate(all_cells))
+    return np.concatenate(all_edges)
 
 
-def _layer(
-    influence: Influence, x: FloatArray, offsets: FloatArray, depth: float, jumps: FloatArray, column: Aligned
-) -> FloatArray:
-    """Field (component, x, point) at one depth; `x` are offsets (x, edge), `offsets` those along y, uniform."""
-    corner = _EvenCorner(influence, offsets, depth)
-    count = jumps.shape[1]
-    at = column.cells - int(column.cells.min())
-    layer = np.empty((influence.components, x.shape[0], column.points.size))
-    backwards = jumps[:, ::-1]
-    few = at.size <= FEW_POINTS
-    size = fft.next_fast_len(offsets.size, real=True)
-    spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
-    for i, along in enumerate(x):
-        values = corner(along)
-        if spectrum is None:
-            for number, place in enumerate(at.tolist()):
-                layer[:, i, number] = np.einsum("cef,ef->c", values[:, :, place : place + count], backwards)
+def _with_images(
+    edges: FloatArray, cells: FloatArray, image: int, extent: tuple[float, float]
+) -> tuple[FloatArray, FloatArray]:
+    """Edges and loads of columns between their nearest images."""
+    low, high = (bool(np.isfinite(end)) for end in extent)
+    images = [image * cells[::-1]]
+    return _mirrored(edges, extent), np.concatenate([*images[:low], cells, *images[:high]])
+
+
+class _Surroundings(NamedTuple):
+    """Columns around a point that are split.
+
+    Attributes
+    ----------
+    edges : array
+        Edges of all columns, split or not.
+    inserted : array
+        Edges of those that replace some.
+    lowest, highest : int
+        Which of the columns these are.
+    """
+
+    edges: FloatArray
+    inserted: FloatArray
+    lowest: int
+    highest: int
+
+    def exchanged(self, loads: FloatArray, inserted: FloatArray) -> FloatArray:
+        """Loads of all columns, those of the inserted ones in their place."""
+        return np.concatenate([loads[: self.lowest], inserted, loads[self.highest :]])
+
+    def added(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
+        """Jumps of what the inserted columns add to those that they replace."""
+        new, old = self.inserted, edges[self.lowest : self.highest + 1]
+        both = np.unique(np.concatenate([new, old]))
+        middles = 0.5 * (both[1:] + both[:-1])
+        difference = inserted[np.searchsorted(new, middles) - 1]
+        difference -= loads[self.lowest : self.highest][np.searchsorted(old, middles) - 1]
+        return _Jumps.of(both, difference, layer)
+
+
+def _exchanged(
+    x: list[float],
+    fine: FineCells,
+    edges: FloatArray,
+    extent: tuple[float, float],
+    base: list[FloatArray],
+    layers: list[_Layer],
+    *,
+    added: bool,
+) -> Iterator[list[_Jumps]]:
+    """For each of some positions the jumps that each layer sees, with the columns around it split."""
+    fine_edges = _mirrored(fine.x_edges, extent)
+    around = [_surroundings(position, fine_edges, edges, extent, uniform=fine.grid.uniform) for position in x]
+    smooth = fine.along_y(fine.columns([each.inserted for each in around]))
+    inserted = [layer.loads(smooth) for layer in layers]
+    stop = 0
+    for each in around:
+        start, stop = stop, stop + each.inserted.size - 1
+        own = [loads[start:stop] for loads in inserted]
+        if added:
+            yield [each.added(edges, *given) for given in zip(base, layers, own, strict=True)]
         else:
-            summed = np.einsum("cek,ek->ck", fft.rfft(values, size, axis=2), spectrum)
-            layer[:, i] = fft.irfft(summed, size, axis=1)[:, at]
-    return layer
+            yield [
+                _Jumps.of(each.edges, each.exchanged(loads, columns), layer)
+                for loads, layer, columns in zip(base, layers, own, strict=True)
+            ]
+
+
+def _surroundings(
+    x: float, fine_edges: FloatArray, edges: FloatArray, extent: tuple[float, float], *, uniform: bool
+) -> _Surroundings:
+    """Columns around a point that are split, the point in the middle of one."""
+    count = edges.size - 1
+    column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
+    on_end = min(abs(x - end) for end in extent) < SAME_END * (edges[column + 1] - edges[column])
+    # What the ends carry is compared with what frees them, which knows all of the fine columns.
+    window = (END_WINDOW if uniform else count) if on_end else WINDOW
+    lowest, highest = max(column - window, 0), min(column + 1 + window, count)
+    low, high = edges[lowest], edges[highest]
+    inserted = fine_edges[(fine_edges >= low) & (fine_edges <= high)]
+    if on_end:
+        return _Surroundings(
+            np.concatenate([edges[:lowest], inserted, edges[highest + 1 :]]), inserted, lowest, highest
+        )
+    at = int(np.clip(np.searchsorted(inserted, x, side="right") - 1, 0, inserted.size - 2))
+    step = CENTRED * float(inserted[at + 1] - inserted[at])
+    own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
+    if low < own[0] and own[-1] < high:
+        kept = np.abs(inserted - x) > 2 * step
+        kept[[0, -1]] = True
+        inserted = np.sort(np.concatenate([inserted[kept], own]))
+    return _Surroundings(
+        np.concatenate([edges[:lowest], inserted, edges[highest + 1 :]]), inserted, lowest, highest
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Layer:
+    """Points at some depths that lie alike relative to the cells along y, and the cells that they see.
+
+    Attributes
+    ----------
+    points, at : array of int
+        Positions along y, and where among the offsets each has the first of the corners.
+    numbers : array of int
+        Depths.
+    corners : list of _EvenCorner
+        Corner functions at each.
+    edges : array or None
+        Edges along y of fine cells; None for the cells themselves.
+    """
+
+    points: IntArray
+    at: IntArray
+    numbers: IntArray
+    corners: list[_EvenCorner]
+    edges: FloatArray | None
+
+    @classmethod
+    def of(
+        cls,
+        influence: Influence,
+        column: Aligned,
+        z: FloatArray,
+        numbers: IntArray,
+        start: float,
+        dy: float,
+        count: int,
+        parts: int,
+    ) -> _Layer:
+        """Layer over `count` cells from the edge `start` on, each of so many `parts` or not split."""
+        offset, cells, step, edges = column.offset, column.cells, dy, None
+        if parts:
+            # Fine cells have the points in their middles.
+            step = dy / parts
+            before = int(np.floor(-offset / step - 0.5))
+            begin = offset + step * (before + 0.5)
+            total = int(np.ceil((count * dy - begin) / step - 1e-9))
+            edges = start + begin + step * np.arange(total + 1.0)
+            offset, cells, count = 0.5 * step, parts * cells - before - 1, total
+        lowest = int(cells.min()) - count
+        offsets = offset + step * np.arange(lowest, int(cells.max()) + 1)
+        corners = [_EvenCorner(influence, offsets, float(z[number])) for number in numbers]
+        return cls(column.points, cells - int(cells.min()), numbers, corners, edges)
+
+    def loads(self, smooth: SmoothLoad) -> FloatArray:
+        """Loads of columns on the cells along y that the points see."""
+        return smooth.gathered() if self.edges is None else smooth.means(self.edges)
+
+
+@dataclass(frozen=True, eq=False)
+class _Jumps:
+    """Mixed jumps of a load at the edges along x where there are any: array (edge, corner), backwards along y."""
+
+    edges: FloatArray
+    values: FloatArray
+    spectrum: ComplexArray | None
+    size: int
+    least: float
+
+    @classmethod
+    def of(cls, edges: FloatArray, loads: FloatArray, layer: _Layer) -> _Jumps:
+        """Jumps of `loads` (column, cell), with their spectrum if a layer has many points."""
+        jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
+        loaded = jumps.any(axis=1)
+        backwards = jumps[loaded, ::-1]
+        few = layer.at.size <= FEW_POINTS
+        size = fft.next_fast_len(jumps.shape[1] + int(layer.at.max()), real=True)
+        spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
+        return cls(edges[loaded], backwards, spectrum, size, float(np.diff(edges).min()))
+
+    def field(self, corner: _EvenCorner, x: float, at: IntArray) -> FloatArray:
+        """Field (component, point) of corners that see a point at `x`."""
+        values, count = corner(snapped(x - self.edges, self.least)), self.values.shape[1]
+        if self.spectrum is None:
+            places = (values[:, :, place : place + count] for place in at.tolist())
+            return np.stack([np.einsum("cef,ef->c", seen, self.values) for seen in places], axis=1)
+        summed = np.einsum("cek,ek->ck", fft.rfft(values, self.size, axis=2), self.spectrum)
+        return np.asarray(fft.irfft(summed, self.size, axis=1)[:, at])
 
 
 class _EvenCorner:

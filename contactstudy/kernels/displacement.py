@@ -7,11 +7,11 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.images import FAR_LIMIT
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
+from contactstudy.kernels.smooth_field import smooth_field
 
 UNDER_PRESSURE = ((-1, 1, 1), (1, -1, 1))
 """Parities along x and along y of the components x, y, z under a pressure."""
@@ -57,7 +57,7 @@ def half_space_displacement(
     nu, length = material.poisson, extent[1] - extent[0]
     level = _row_level(load, nu, length, reference) if np.isfinite(length) else None
     influence = Influence.of(DISPLACEMENT_CORNERS[load], nu, load, UNDER_PRESSURE, level)
-    field = half_space_field(cells, influence, grid, x, y, z, extent=extent)
+    field = smooth_field(cells, influence, grid, x, y, z, extent=extent)
     return field / (4 * np.pi * material.shear_modulus)
 
 

@@ -23,6 +23,9 @@ from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_node
 NEGLIGIBLE = 1e-9
 """Part of a load that is left out: a contact that is symmetric but for its tolerance is symmetric. Accuracy."""
 
+LEAST_PRODUCT = 1e-7
+"""Part of the largest product of a load that is left out within a panel. Accuracy."""
+
 POLES_ALONE = 0.01
 """Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and a constant.
 Accuracy. The double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is much lower."""
@@ -179,7 +182,7 @@ def _at_nodes(columns: LateralColumns, nodes: FloatArray, interpolation: FloatAr
     for parity in np.unique(columns.parities):
         own = columns.parities == parity
         left, values, right = np.linalg.svd(columns.along_x[..., own].reshape(cells, -1), full_matrices=False)
-        rank = int((values > NEGLIGIBLE * values[0]).sum())
+        rank = int((values > LEAST_PRODUCT * values[0]).sum())
         along = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
         along_x.append(left[:, :rank])
         parities.append(np.full(rank, parity))
