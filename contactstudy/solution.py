@@ -23,7 +23,7 @@ from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.fields.stress import end_traction_residual, stress_dataset
+from contactstudy.fields.stress import end_traction_residual, stress_and_residual, stress_dataset
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
@@ -124,7 +124,7 @@ def solve(
     _check_balanced(case)
     known = xr.Dataset()
     if grid is None and roughness is None:
-        settled = settled_contact(case, _accuracy(accuracy), checks.positive("tolerance", tolerance))
+        settled = settled_contact(case, check_accuracy(accuracy), checks.positive("tolerance", tolerance))
         contact, known = _checked(case, settled.contact), settled_values(settled)
     elif grid is None:
         contact = _contact(case, choose_grid(case), roughness, tolerance)
@@ -141,24 +141,26 @@ def solve(
         coarse = _labelled(case, _contact(case, grid.coarsened(), None, tolerance))
         result = result.assign(discretisation_error(result, coarse).data_vars)
     half_width = case.hertz_half_width
-    result["initial_gap"] = (("x", "y"), contact.shape.gap.values)
+    result["initial_gap"] = (("x", "y"), contact.shape.gap.values.copy())
     result["hertz_half_width"] = half_width
     result["hertz_max_pressure"] = case.hertz_max_pressure
     loads = sliding(contact.pressure, case.friction)
-    result["end_traction_residual"] = end_traction_residual(
-        case.body, loads, grid, half_width * np.array(RESIDUAL_POSITIONS), half_width * np.array(RESIDUAL_DEPTHS)
-    )
-    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
+    looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z
-        field = stress_dataset(case.body, loads, grid, field_positions(case.body, grid, x, y, depths))
+        positions = field_positions(case.body, grid, x, y, depths)
+        field, residual = stress_and_residual(case.body, loads, grid, positions, *looked_at)
         if x is not None or y is not None:
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
+    else:
+        residual = end_traction_residual(case.body, loads, grid, *looked_at)
+    result["end_traction_residual"] = residual
+    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
     return describe(result, "roller on an elastic body: contact and stresses")
 
 
-def _accuracy(value: object) -> float:
+def check_accuracy(value: object) -> float:
     """Return an accuracy that the refinement can reach, or raise."""
     accuracy = checks.positive("accuracy", value)
     least, most = ACCURACIES

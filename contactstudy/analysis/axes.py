@@ -1,8 +1,8 @@
 """Dimensions and positions along x, y and z, in a result of one case and in an opened study alike.
 
 A result has the dimensions ``x``, ``y``, ``z`` with positions as coordinates; stresses at positions of their own have
-``x_field``, ``y_field``. Where the cases of a study have different positions, the dimension is ``x_index`` and each
-case's own positions are the coordinate ``x``, padded with NaN.
+``x_field``, ``y_field``. Where the cases of a study share positions over the half-width, the dimension is ``x_over_a``;
+where they do not, it is ``x_index``. Each case's positions in metres are then the coordinate ``x``, padded with NaN.
 """
 
 from __future__ import annotations
@@ -83,10 +83,15 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     [0.0, 0.5]
     """
     dim = dimension_along(array, axis)
-    name = dim.removesuffix("_index")
+    name = _axis_of(dim)
     if name not in array.coords:
         raise InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
     return array[name].reset_coords(drop=True)
+
+
+def _axis_of(dim: str) -> str:
+    """Name of the coordinate with the positions along a dimension, metres."""
+    return dim.removesuffix("_index").removesuffix("_over_a")
 
 
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
@@ -111,7 +116,7 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        With positions as dimensions instead of ``x_index`` and its like, and without padding; a result of
+        With positions as dimensions instead of ``x_index`` or ``x_over_a``, and without padding; a result of
         :func:`contactstudy.solve` as it is.
 
     Raises
@@ -132,8 +137,8 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
             "dataset", dict(cases), "a single case", "select one, for example with .isel(...) or .sel(...)"
         )
     one = dataset.isel(dict.fromkeys(cases, 0))
-    for dim in [str(dim) for dim in one.dims if str(dim).endswith("_index")]:
-        name = dim.removesuffix("_index")
+    for dim in [str(dim) for dim in one.dims if str(dim) != _axis_of(str(dim))]:
+        name = _axis_of(dim)
         if name not in one.coords or one[name].dims != (dim,):
             raise InvalidInputError("dataset", dict(one.sizes), "a single case", f"with the positions {name}")
         kept = np.flatnonzero(np.isfinite(one[name].values))

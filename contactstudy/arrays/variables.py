@@ -13,6 +13,7 @@ from contactstudy.arrays.vocabulary import AXES, COORDINATES, RULES, STRESSES, V
 __all__ = [
     "AXES",
     "COORDINATES",
+    "DERIVED",
     "RULES",
     "STRESSES",
     "VARIABLES",
@@ -24,6 +25,9 @@ __all__ = [
     "specification",
     "variable_of",
 ]
+
+DERIVED = "follows from the other parameters"
+"""Comment of a coordinate that a study does not sweep."""
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """What each rule puts before and after a name, the longest first: `peak_gap_x` is where a peak is, not a peak."""

@@ -99,6 +99,8 @@ CONTACT = {
     ),
     "end_pressure_first": Variable(SCALAR, "Pa", r"p_\mathrm{I}", "largest pressure at the end nearer to end I"),
     "end_pressure_last": Variable(SCALAR, "Pa", r"p_\mathrm{II}", "largest pressure at the end nearer to end II"),
+    "end_load_first": Variable(SCALAR, "N", r"W_\mathrm{I}", "load on the last half-width a nearer to end I"),
+    "end_load_last": Variable(SCALAR, "N", r"W_\mathrm{II}", "load on the last half-width a nearer to end II"),
     "end_intensity": Variable(SCALAR, "Pa m0.5", "K", "intensity of the pressure at the sharper singular end"),
     "end_intensity_first": Variable(SCALAR, "Pa m0.5", r"K_\mathrm{I}", "intensity at a singular end nearer to end I"),
     "end_intensity_last": Variable(SCALAR, "Pa m0.5", r"K_\mathrm{II}", "intensity at a singular end nearer to end II"),

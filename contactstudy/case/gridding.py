@@ -15,6 +15,8 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError, WindowError
 
 Result = TypeVar("Result")
+GridOrNone = TypeVar("GridOrNone")
+"""A grid, or None for columns that the solver refines."""
 
 MOST_CELLS = 10**8
 """Of a chosen grid: a wrong unit asks for many more."""
@@ -138,7 +140,7 @@ def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> It
         yield choose_grid(case, cells_x=cells_x, cells_y=cells_y, window=window, margin=2 * window)
 
 
-def first_that_holds(grids: Iterable[Grid], solved: Callable[[Grid], Result]) -> Result:
+def first_that_holds(grids: Iterable[GridOrNone], solved: Callable[[GridOrNone], Result]) -> Result:
     """Return ``solved(grid)`` of the first grid whose window the contact does not leave.
 
     Raises

@@ -66,6 +66,9 @@ class Refined:
         Largest pressure and its estimated error, Pa; both infinite at a singular end.
     ends, end_errors : tuple of float
         Pressure at either end of the shape and its estimated error, Pa; 0 where it is not pressed.
+    loads, load_errors : tuple of float
+        Load on the last half-width at either end of the shape and its estimated error, over the width of a cell along
+        y, N/m.
     laws : tuple of EndLaw or None
         Law of a singular end.
     settled : bool
@@ -78,6 +81,8 @@ class Refined:
     peak_error: float
     ends: tuple[float, float]
     end_errors: tuple[float, float]
+    loads: tuple[float, float]
+    load_errors: tuple[float, float]
     laws: tuple[EndLaw | None, EndLaw | None]
     settled: bool
 
@@ -112,6 +117,7 @@ class _State:
     pressure: FloatArray = field(init=False)
     peaks: list[tuple[float, float]] = field(default_factory=list)
     ends: list[tuple[float, float]] = field(default_factory=list)
+    loads: list[tuple[float, float]] = field(default_factory=list)
     along_y: float = 0.0
     laws: list[EndLaw | None] = field(default_factory=lambda: [None, None])
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
@@ -166,16 +172,22 @@ class _State:
                 marks[list(outermost)] = False
         return marks
 
+    @property
+    def length(self) -> float:
+        """Length along the axis that can be pressed, metres."""
+        return float(self.edges[-1] - self.edges[0])
+
     def _half(self, side: int) -> FloatArray:
         left = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
         own: FloatArray = self.pressure[left if side == 0 else ~left]
         return own
 
     def read(self) -> None:
-        """Note the peak of either half and the pressure at either end."""
+        """Note the peak of either half, and the pressure and the load at either end."""
         peaks, ends, self.along_y = _read(self.edges, self.pressure, (self.laws[0], self.laws[1]))
         self.peaks.append(peaks)
         self.ends.append(ends)
+        self.loads.append(_end_loads(self.edges, self.pressure, self.shape.half_width))
 
     def _unknown_law(self, side: int) -> bool:
         """Whether a rigid end inside the face is pressed, which is always singular, and its law did not show."""
@@ -195,6 +207,10 @@ class _State:
                 if self._half(side).max() <= self.pressure[-side].max():
                     peak_errors[side] = np.inf
         errors = [error for error in (*peak_errors, first, last) if np.isfinite(error)]
+        # Over a half-width under the mean load per length.
+        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
+        load_errors = [_moved([loads[side] for loads in self.loads], usual * floor / scale) for side in (0, 1)]
+        settled = max(errors, default=floor) <= accuracy * scale and max(load_errors) <= accuracy * usual
         side = int(np.argmax(self.peaks[-1]))
         laws = [
             law.with_intensity(*_from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
@@ -207,8 +223,10 @@ class _State:
             peak_errors[side],
             self.ends[-1],
             (first, last),
+            self.loads[-1],
+            (load_errors[0], load_errors[1]),
             (laws[0], laws[1]),
-            max(errors, default=floor) <= accuracy * scale,
+            settled,
         )
 
 
@@ -231,6 +249,7 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
         peak_error=factor * refined.peak_error,
         ends=ends,
         end_errors=(factor * refined.end_errors[0], factor * refined.end_errors[1]),
+        loads=_end_loads(refined.edges, pressure, shape.half_width),
         laws=(first, last),
     )
 
@@ -249,6 +268,16 @@ def _read(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pa
         peaks.append(np.inf if laws[side] else max(largest, end) if own.argmax() == 0 else largest)
         ends.append(np.inf if laws[side] else end)
     return (peaks[0], peaks[1]), (ends[0], ends[1]), along_y
+
+
+def _end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
+    """Load on the last half-width at either end, over the width of a cell along y."""
+    sums = pressure.sum(axis=1)
+    loads = []
+    for side in (0, 1):
+        distances, row = _from_end(side, edges, sums)
+        loads.append(float(row @ np.diff(np.minimum(distances, half_width))))
+    return loads[0], loads[1]
 
 
 def _moved(values: list[float], floor: float) -> float:

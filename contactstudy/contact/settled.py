@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -11,7 +12,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import EndedBody
-from contactstudy.cache import ArrayKey
+from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
 from contactstudy.checks import FloatArray
@@ -26,8 +27,12 @@ from contactstudy.threads import one_blas_thread
 WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn. Speed."""
 
-ROOM, COUPLED_ROOM = 1.2, 1.5
-"""Window over the extent of the contact along y. Speed; what lies outside is not pressed."""
+ROOM, COUPLED_ROOM = 1.1, 1.4
+"""Least window over the extent of the contact along y. Speed; what lies outside is not pressed."""
+
+WINDOW_STEP = 2 ** (1 / 6)
+"""Ratio of the windows that are taken, from the Hertz half-width on: cases of a study share them, and with them the
+kernels of the ends. Speed."""
 
 ROUGHLY = 0.1
 """Accuracy of the contact to which the window is fitted. Speed."""
@@ -43,6 +48,13 @@ class SettledContact:
     contact: Contact
     refined: Refined
 
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        shape = self.contact.shape
+        arrays = (self.contact.pressure, self.contact.displacement, self.refined.pressure, shape.gap.values)
+        return sum(array.nbytes for array in arrays)
+
 
 def settled_contact(case: Case, accuracy: float, tolerance: float) -> SettledContact:
     """Contact of a case, its columns refined until its peak and end pressures are settled.
@@ -52,12 +64,40 @@ def settled_contact(case: Case, accuracy: float, tolerance: float) -> SettledCon
     WindowError
         If the contact is wider than the widest window.
     """
+    request = _Request(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
+    return _kept(request) if _is_value(case) else _settled(request)
+
+
+class _Request(NamedTuple):
+    """What decides a settled contact: friction does not, unless it is coupled."""
+
+    case: Case
+    accuracy: float
+    tolerance: float
+
+
+def _is_value(part: object) -> bool:
+    """Whether something is compared by its values, which cannot change: a profile of the user's own may not be."""
+    if is_dataclass(part):
+        frozen = bool(getattr(type(part), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
+        return frozen and all(_is_value(getattr(part, each.name)) for each in fields(part))
+    if isinstance(part, tuple):
+        return all(_is_value(each) for each in part)
+    return part is None or isinstance(part, (str, int, float, np.number, np.bool_))
+
+
+def _settled(request: _Request) -> SettledContact:
+    """Solve for a settled contact."""
+    case, accuracy, tolerance = request
     cells_y = CELLS_Y if accuracy >= CLOSE else MORE_CELLS_Y
     *narrower, widest = WINDOWS
     for window in narrower:
         with contextlib.suppress(WindowError):
             return _within(case, window * case.hertz_half_width, cells_y, accuracy, tolerance)
     return _within(case, widest * case.hertz_half_width, cells_y, accuracy, tolerance)
+
+
+_kept = kept("settled contacts", lambda settled: settled.nbytes)(_settled)
 
 
 def _within(case: Case, half_window: float, cells_y: int, accuracy: float, tolerance: float) -> SettledContact:
@@ -73,8 +113,7 @@ def _within(case: Case, half_window: float, cells_y: int, accuracy: float, toler
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
-        room = COUPLED_ROOM if case.coupled else ROOM
-        solver = _Solver(case, min(room * reach, half_window), cells_y)
+        solver = _Solver(case, min(_shared_window(case, reach), half_window), cells_y)
         refined = refined_contact(solver, shape, accuracy)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
@@ -83,12 +122,21 @@ def _within(case: Case, half_window: float, cells_y: int, accuracy: float, toler
     return SettledContact(contact, refined)
 
 
+def _shared_window(case: Case, reach: float) -> float:
+    """Half-width of a window that holds a contact up to `reach`, metres, and that similar cases have as well."""
+    least = (COUPLED_ROOM if case.coupled else ROOM) * reach / case.hertz_half_width
+    return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
+
+
 def settled_values(settled: SettledContact) -> xr.Dataset:
     """Label what is settled, each value with its error; the law of a singular end instead of its pressure."""
     refined = settled.refined
     values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
-    for name, value, error, law in zip(("first", "last"), refined.ends, refined.end_errors, refined.laws, strict=True):
+    dy = settled.contact.shape.grid.dy
+    ends = (refined.ends, refined.end_errors, refined.loads, refined.load_errors, refined.laws)
+    for name, value, error, load, load_error, law in zip(("first", "last"), *ends, strict=True):
         values |= {f"end_pressure_{name}": value, f"end_pressure_{name}_error": error}
+        values |= {f"end_load_{name}": dy * load, f"end_load_{name}_error": dy * load_error}
         if law is not None:
             values |= {
                 f"end_exponent_{name}": law.exponent,

@@ -131,11 +131,12 @@ def solve_contact(
 def contact_dataset(contact: Contact, friction: float, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
     """Label a contact; `x` and `y` are the cell centres as the caller wrote them."""
     shape = contact.shape
+    # The contact may be kept for other cases: what the caller does to a result must not change it.
     fields = {
-        "pressure": contact.pressure,
+        "pressure": contact.pressure.copy(),
         "shear_traction": friction * contact.pressure,
-        "gap": contact.gap,
-        "displacement_z": contact.displacement,
+        "gap": contact.gap.copy(),
+        "displacement_z": contact.displacement.copy(),
     }
     scalars: dict[str, float | int | bool] = {
         "load": contact.carried if shape.prescribed.load is None else shape.prescribed.load,

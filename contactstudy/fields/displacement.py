@@ -87,14 +87,15 @@ def displacement_field(
 def displacement_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
     """Displacements (3, x, y, z), metres."""
 
-    def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, FloatArray]:
+    def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         fields: dict[Load, FloatArray] = {load: np.zeros((3, x.size, y.size, z.size)) for load in directions}
         for part in body.parts:
             for load, field in _part_displacement(body, part, directions, cells, grid, x, y, z).items():
                 fields[load] += part.weight * field
-        return fields
+        return {load: [field] for load, field in fields.items()}
 
-    return superposed(loads, unit_fields)
+    (displacement,) = superposed(loads, unit_fields)
+    return displacement
 
 
 def _part_displacement(
@@ -116,7 +117,7 @@ def _part_displacement(
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells, grid, z)
+        seen, seen_on = seen_by_ends(cells, grid)
         problem = EndProblem(length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -49,26 +49,27 @@ def sliding(pressure: FloatArray, friction: float) -> Loads:
 
 
 def superposed(
-    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, FloatArray]]
-) -> FloatArray:
-    """Sum of the fields under all loads.
+    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
+) -> list[FloatArray]:
+    """Sum of the fields under all loads, each at several places.
 
     Parameters
     ----------
     loads : mapping of Load to TopLoad
         At least one.
     unit_fields : callable
-        From some directions and one distribution to the field under it in each of them. Loads with the same
-        distribution are taken together.
+        From some directions and one distribution to the fields under it in each of them, one for each place. Loads with
+        the same distribution are taken together.
     """
     groups: dict[ArrayKey, list[Load]] = {}
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)
-    fields: dict[Load, FloatArray] = {}
+    fields: dict[Load, Sequence[FloatArray]] = {}
     for shared, directions in groups.items():
         fields |= unit_fields(tuple(directions), shared.values)
     first, *others = loads
-    total: FloatArray = np.multiply(loads[first].factor, fields[first], order="K")
+    totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
     for load in others:
-        total += loads[load].factor * fields[load]
-    return total
+        for total, field in zip(totals, fields[load], strict=True):
+            total += loads[load].factor * field
+    return totals

@@ -1,4 +1,4 @@
-"""The cells on which the free ends see a load: finer ones if a point lies near the top."""
+"""The fine cells on which the free ends see a load."""
 
 from __future__ import annotations
 
@@ -7,10 +7,10 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels.fine_cells import FineCells
 
 
-def seen_by_ends(cells: FloatArray, grid: Grid, z: FloatArray) -> tuple[FloatArray, Grid]:
-    """Load that the ends are freed from for points at depths `z`, and the cells that carry it.
+def seen_by_ends(cells: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
+    """Load that the ends are freed from, and the fine cells that carry it.
 
-    It is the one that the half-space carries near the top; what that carries for deeper points has the same field.
+    It is the one that the half-space carries near the top. What that carries for deeper points makes the same field, so
+    one load does for all depths.
     """
-    fine = FineCells(cells, grid)
-    return fine.refined(near=bool(fine.near(z).any()))
+    return FineCells(cells, grid).refined(near=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +20,7 @@ from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions, labelled_load
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
+from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -78,7 +80,11 @@ def stress_field(
 
 def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
     """Stresses under `loads` on the cells of `grid`, labelled."""
-    stresses = stress_under(body, loads, grid, *positions.axes)
+    return _labelled(body, grid, stress_under(body, loads, grid, *positions.axes), positions)
+
+
+def _labelled(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
+    """Label stresses (6, x, y, z)."""
     _free_edge(body, grid, stresses, positions)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
@@ -97,57 +103,93 @@ def _free_edge(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPos
 
 
 def stress_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    """Stresses (6, x, y, z).
+    """Stresses (6, x, y, z)."""
+    (stresses,) = stresses_at(body, loads, grid, [Place(x, y, z)])
+    return stresses
+
+
+def stresses_at(body: Body, loads: Loads, grid: Grid, places: Sequence[Place]) -> list[FloatArray]:
+    """Stresses (6, x, y, z) at each of some places; what frees the ends is solved for once.
 
     The fields under each load's distribution are kept, so that a sweep over the friction computes them once.
     """
-    points = ArrayKey(x), ArrayKey(y), ArrayKey(z)
+    keys = tuple(tuple(ArrayKey(axis) for axis in place) for place in places)
     return superposed(
-        loads, lambda directions, cells: _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), *points))
+        loads, lambda directions, cells: _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), keys))
     )
 
 
 class _StressRequest(NamedTuple):
-    """What decides the stresses under one distribution in some directions."""
+    """What decides the stresses under one distribution in some directions, at some places."""
 
     body: Body
     grid: Grid
     loads: tuple[Load, ...]
     cells: ArrayKey
-    x: ArrayKey
-    y: ArrayKey
-    z: ArrayKey
+    places: tuple[tuple[ArrayKey, ...], ...]
 
 
-@kept("stress fields", lambda fields: sum(field.nbytes for field in fields.values()))
-def _unit_stress(request: _StressRequest) -> dict[Load, FloatArray]:
-    """Stresses (6, x, y, z) under a distribution in each direction."""
-    fields: dict[Load, FloatArray] = {}
+@kept("stress fields", lambda fields: sum(each.nbytes for field in fields.values() for each in field))
+def _unit_stress(request: _StressRequest) -> dict[Load, list[FloatArray]]:
+    """Stresses (6, x, y, z) at each place under a distribution in each direction."""
+    fields: dict[Load, list[FloatArray]] = {}
     for part in request.body.parts:
-        for load, field in _part_stress(part, request).items():
-            fields[load] = fields[load] + field if load in fields else field
+        for load, own in _part_stress(part, request).items():
+            fields[load] = [a + b for a, b in zip(fields[load], own, strict=True)] if load in fields else own
     return fields
 
 
-def _part_stress(part: Part, request: _StressRequest) -> dict[Load, FloatArray]:
+def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatArray]]:
     """Stresses of one part of a body, times its weight."""
-    body, grid, loads, cells, *axes = request
-    x, y, z = (axis.values for axis in axes)
-    poisson = body.material.poisson
-    fields = {load: half_space_stress(load, cells.values, poisson, grid, x, y, z, extent=part.extent) for load in loads}
+    body, grid, loads, cells, keys = request
+    places = [Place(*(axis.values for axis in key)) for key in keys]
+    poisson, extent = body.material.poisson, part.extent
+    fields = {
+        load: [half_space_stress(load, cells.values, poisson, grid, *place, extent=extent) for place in places]
+        for load in loads
+    }
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells.values, grid, z)
+        seen, seen_on = seen_by_ends(cells.values, grid)
         problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
-        for load, from_ends in end_stress(problem, x, y, z).items():
-            # The two auxiliary bodies leave no traction on the top, by construction.
-            for component in (2, 4, 5):
-                from_ends[component][..., z == 0] = 0.0
-            fields[load] += from_ends
+        for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places), strict=True)):
+            for load, from_ends in by_load.items():
+                # The two auxiliary bodies leave no traction on the top, by construction.
+                for component in (2, 4, 5):
+                    from_ends[component][..., place.z == 0] = 0.0
+                fields[load][number] += from_ends
     if part.weight != 1:
-        for field in fields.values():
-            field *= part.weight
+        for own in fields.values():
+            for field in own:
+                field *= part.weight
     return fields
+
+
+def stress_and_residual(
+    body: Body, loads: Loads, grid: Grid, positions: FieldPositions, y: FloatArray, z: FloatArray
+) -> tuple[xr.Dataset, float]:
+    """Labelled stresses at some positions, and the residual on the ends, for less than both cost alone.
+
+    Parameters
+    ----------
+    body : Body
+        The body.
+    loads : mapping of Load to TopLoad
+        Loads on the cells of `grid`, a pressure among them.
+    grid : Grid
+        Cells.
+    positions : FieldPositions
+        Where the stresses are wanted.
+    y, z : array
+        Where to look on the end faces, metres.
+    """
+    places = [Place(*positions.axes)]
+    ends = _ends(body)
+    if ends.size:
+        places.append(Place(ends, y, z))
+    stresses, *at_ends = stresses_at(body, loads, grid, places)
+    residual = _residual(loads, at_ends[0]) if at_ends else 0.0
+    return _labelled(body, grid, stresses, positions), residual
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:
@@ -169,9 +211,16 @@ def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z
     float
         0 for a body without ends.
     """
-    ends = np.array([end for end in body.extent if np.isfinite(end)])
-    pressure = loads[Load.NORMAL].values
-    if not ends.size or not pressure.any():
-        return 0.0
-    traction = stress_under(body, loads, grid, ends, y, z)[[0, 3, 4]]
-    return float(np.sqrt((traction**2).sum(axis=0)).max() / pressure.max())
+    ends = _ends(body)
+    return _residual(loads, stress_under(body, loads, grid, ends, y, z)) if ends.size else 0.0
+
+
+def _ends(body: Body) -> FloatArray:
+    """Positions of the free ends, metres."""
+    return np.array([end for end in body.extent if np.isfinite(end)])
+
+
+def _residual(loads: Loads, stresses: FloatArray) -> float:
+    """Largest traction among stresses (6, ...) on the ends, over the peak pressure."""
+    peak = float(loads[Load.NORMAL].values.max())
+    return float(np.sqrt((stresses[[0, 3, 4]] ** 2).sum(axis=0)).max() / peak) if peak else 0.0

@@ -28,6 +28,10 @@ IMAGE_POINTS = 16
 IMAGE_CELL = 1e-3
 """Width of the cells that stand for these points, over the length. Accuracy."""
 
+IMAGE_DEPTHS, DEEPEST = 6, 0.2
+"""Chebyshev depths at which the farther images are summed for more depths than these, and the largest depth over the
+length for which these suffice: they are a length away. Accuracy: 1e-7 of the pressure."""
+
 FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
@@ -341,14 +345,15 @@ def _far_images(
         (np.add.outer(points, points) - length, 3 * length, influence.load.sign_x),
     )
     level = width * grid.dy * np.array(influence.image_level)[:, None, None]
-    field = np.zeros((influence.components, x.size, y.size, z.size))
+    depths, to_z = _few_depths(z, length)
+    field = np.zeros((influence.components, x.size, y.size, depths.size))
     for column in aligned_points(y, float(grid.y[first]), grid.dy):
         lowest = int(column.cells.min()) - load.shape[1] + 1
         offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
         size = fft.next_fast_len(offsets.size, real=True)
         at = column.cells - int(column.cells.min())
         spectrum = fft.rfft(gathered[:, ::-1], size, axis=1).conj()
-        for number, depth in enumerate(z.tolist()):
+        for number, depth in enumerate(depths.tolist()):
             total = np.zeros((influence.components, points.size, at.size))
             for distances, nearest, sign in patterns:
                 kernel = image_kernel(
@@ -358,4 +363,14 @@ def _far_images(
                 summed = np.einsum("cpgk,gk->cpk", fft.rfft(kernel, size, axis=3), spectrum)
                 total += sign * fft.irfft(summed, size, axis=2)[:, :, at]
             field[:, :, column.points, number] = to_x @ total
-    return field
+    return field if to_z is None else field @ to_z.T
+
+
+def _few_depths(z: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
+    """Depths at which images far away are summed, and the matrix (z, depth) that interpolates; none if it is `z`."""
+    deepest = float(z.max())
+    if z.size <= IMAGE_DEPTHS or deepest > DEEPEST * length:
+        return z, None
+    nodes = chebyshev.chebpts1(IMAGE_DEPTHS)
+    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_DEPTHS - 1))
+    return 0.5 * deepest * (nodes + 1), chebyshev.chebvander(2 * z / deepest - 1, IMAGE_DEPTHS - 1) @ coefficients

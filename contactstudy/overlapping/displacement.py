@@ -7,7 +7,7 @@ import numpy as np
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Harmonics, end_field, real_product
+from contactstudy.overlapping.field import Harmonics, Place, end_fields, real_product
 from contactstudy.overlapping.problem import EndProblem
 
 
@@ -30,7 +30,9 @@ def end_displacement(
     dict of Load to array (3, x, y, z)
         Under the load in each of the problem's directions: along x, y, z in Pa m.
     """
-    return end_field(problem, DISPLACEMENT, x, y, z, reference=reference if np.isfinite(reference) else None)
+    place = Place(x, y, z)
+    (field,) = end_fields(problem, DISPLACEMENT, [place], reference=reference if np.isfinite(reference) else None)
+    return field
 
 
 def _below_equivalent_load(

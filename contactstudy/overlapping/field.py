@@ -7,12 +7,14 @@ rays, where every factor decays with the distance from the loaded corner; the fi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import DECAY_LENGTHS
 from contactstudy.overlapping.equations import EquationSet
@@ -55,33 +57,113 @@ class Harmonics:
         return len(self.even_in_y) + len(self.odd_in_y)
 
 
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """A field that is wanted, at the tensor product of `x`, `y` and `z`."""
+class Place(NamedTuple):
+    """Points where a field is wanted: the tensor product of `x`, `y` and `z`, metres."""
 
-    problem: EndProblem
-    harmonics: Harmonics
     x: FloatArray
     y: FloatArray
     z: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Folded:
+    """A place as its field is summed: at few positions, seen from the nearest end, never on the loaded corner itself.
+
+    Attributes
+    ----------
+    x, y, z : array
+        Points of the sum; the last depth is that a little below the corner if the place has the corner.
+    where, beyond : array
+        Which of `x` each position is, and whether it is nearer to the far end.
+    interpolation : array or None
+        From the positions to the place's own; None where they are the same.
+    corner : tuple of array, or None
+        Numbers of `x` and of the depths that are on the corner; None if the place does not have it.
+    """
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+    where: IntArray
+    beyond: BoolArray
+    interpolation: FloatArray | None
+    corner: tuple[IntArray, IntArray] | None
+
+    @classmethod
+    def of(cls, problem: EndProblem, place: Place) -> _Folded:
+        """Fold a place: many positions along x are interpolated from fewer that are graded towards the ends."""
+        length, offset = problem.length, problem.corner_offset
+        fewer = graded_interpolation(place.x, length, POSITIONS_PER_PANEL)
+        positions, interpolation = (place.x, None) if fewer is None else fewer
+        if np.isinf(length):
+            x, where = positions, np.arange(positions.size)
+        else:
+            half, where = np.unique(np.round(problem.from_end(positions) / length, SAME_POSITION), return_inverse=True)
+            x = length * half
+        on_corner = np.flatnonzero(x < offset), np.flatnonzero(place.z < offset)
+        has_corner = bool(on_corner[0].size and on_corner[1].size)
+        z = np.append(place.z, offset) if has_corner else place.z
+        corner = on_corner if has_corner else None
+        return cls(x, place.y, z, where, positions > 0.5 * length, interpolation, corner)
+
+    @property
+    def distance(self) -> FloatArray:
+        """Distance of the points from the loaded corner: array (x, z)."""
+        distance = np.hypot(self.x[:, None], self.z[None, :])
+        if self.corner is not None:
+            # What is summed there is not used.
+            distance[self.corner[0][:, None], self.corner[1]] = np.inf
+        return distance
+
+    def unfolded(self, fields: Mapping[int, FloatArray], odd_along_x: list[int]) -> FloatArray:
+        """Field (load, component, x, y, z) at the place from the sums by parity (load, component, x, z, y)."""
+        if self.corner is not None:
+            rows, columns = self.corner
+            for field in fields.values():
+                field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
+            fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
+        if 0 in fields:
+            field = fields[0]
+        else:
+            # The other half is the image of this one.
+            shape = next(iter(fields.values())).shape
+            signs = np.ones((shape[1], 1, 1, 1))
+            signs[odd_along_x] = -1.0
+            first, second = np.zeros(shape), np.zeros(shape)
+            for parity, part in fields.items():
+                first += part
+                second += part * (parity * signs)
+            field = np.empty((*shape[:2], self.where.size, *shape[3:]))
+            field[:, :, ~self.beyond] = first[:, :, self.where[~self.beyond]]
+            field[:, :, self.beyond] = second[:, :, self.where[self.beyond]]
+        if self.interpolation is not None:
+            shape = field.shape
+            flat = self.interpolation @ field.reshape(*shape[:3], -1)
+            field = flat.reshape(*shape[:2], -1, *shape[3:])
+        return np.asarray(field.swapaxes(3, 4))
+
+
+@dataclass(frozen=True, eq=False)
+class _Task:
+    """A field that is wanted at several places."""
+
+    problem: EndProblem
+    harmonics: Harmonics
+    places: list[_Folded]
     reference: float | None
 
-    def zeros(self) -> FloatArray:
-        """Field (load, component, x, z, y), in the order in which it is summed."""
-        counts = (len(self.problem.loads), self.harmonics.count)
-        return np.zeros((*counts, self.x.size, self.z.size, self.y.size))
+    @property
+    def y(self) -> FloatArray:
+        """Positions along y of all places, one after another."""
+        return np.concatenate([place.y for place in self.places])
 
 
-def end_field(
-    problem: EndProblem,
-    harmonics: Harmonics,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    *,
-    reference: float | None = None,
-) -> dict[Load, FloatArray]:
-    """Field that the free ends add to the half-space with all mirrored loads.
+def end_fields(
+    problem: EndProblem, harmonics: Harmonics, places: Sequence[Place], *, reference: float | None = None
+) -> list[dict[Load, FloatArray]]:
+    """Field that the free ends add to the half-space with all mirrored loads, at several places.
+
+    What the body answers to the load is solved for once for all places.
 
     Parameters
     ----------
@@ -89,104 +171,89 @@ def end_field(
         Body and load.
     harmonics : Harmonics
         Which field.
-    x, y, z : array
-        Points, as a tensor product, inside the body, metres.
+    places : sequence of Place
+        Points inside the body.
     reference : float, optional
         For a field whose amplitudes have a pole at wavenumber 0 along y, as displacements between two ends have:
         where along y its rigid part is zero, metres.
 
     Returns
     -------
-    dict of Load to array (component, x, y, z)
-        Under the load in each of the problem's directions.
+    list of dict of Load to array (component, x, y, z)
+        At each place, under the load in each of the problem's directions.
     """
     with one_blas_thread():
-        field = _at_few_positions(_Task(problem, harmonics, x, y, z, reference))
-    return dict(zip(problem.loads, field.swapaxes(3, 4), strict=True))
+        folded = [_Folded.of(problem, place) for place in places]
+        cells = problem.columns[1]
+        parts = {0: cells} if np.isinf(problem.length) else parity_parts(cells)
+        sums = _sum_over_wavenumbers(_Task(problem, harmonics, folded, reference), parts)
+        fields = [place.unfolded(own, harmonics.odd_along_x) for place, own in zip(folded, sums, strict=True)]
+    return [dict(zip(problem.loads, field, strict=True)) for field in fields]
 
 
-def _at_few_positions(task: _Task) -> FloatArray:
-    """Field at many positions along x, by interpolation from fewer that are graded towards the ends."""
-    fewer = graded_interpolation(task.x, task.problem.length, POSITIONS_PER_PANEL)
-    if fewer is None:
-        return _by_symmetry(task)
-    positions, interpolation = fewer
-    field = _by_symmetry(replace(task, x=positions))
-    shape = (*field.shape[:2], task.x.size, *field.shape[3:])
-    return np.asarray(interpolation @ field.reshape(*field.shape[:3], -1)).reshape(shape)
-
-
-def _by_symmetry(task: _Task) -> FloatArray:
-    """Field from its parts even and odd about mid-length, of which one half is the other's image."""
-    problem, harmonics, length = task.problem, task.harmonics, task.problem.length
-    if np.isinf(length):
-        return _with_corner(task, {0: problem.columns[1]})[0]
-    half, where = np.unique(np.round(problem.from_end(task.x) / length, SAME_POSITION), return_inverse=True)
-    fields = _with_corner(replace(task, x=length * half), parity_parts(problem.columns[1]))
-    signs = np.ones((harmonics.count, 1, 1, 1))
-    signs[harmonics.odd_along_x] = -1.0
-    first = sum(fields.values())
-    second = sum(field * (parity * signs) for parity, field in fields.items())
-    result = task.zeros()
-    beyond = task.x > 0.5 * length
-    for rows, seen in ((np.flatnonzero(~beyond), first), (np.flatnonzero(beyond), second)):
-        result[:, :, rows] = np.asarray(seen)[:, :, where[rows]]
-    return result
-
-
-def _with_corner(task: _Task, parts: Mapping[int, FloatArray]) -> dict[int, FloatArray]:
-    """Field by parity; points on the loaded corner itself are evaluated a little below it."""
-    offset = task.problem.corner_offset
-    result = _sum_over_wavenumbers(task, parts)
-    rows, columns = np.flatnonzero(task.x < offset), np.flatnonzero(task.z < offset)
-    if rows.size and columns.size:
-        at_corner = _sum_over_wavenumbers(replace(task, x=task.x[rows], z=np.array([offset])), parts)
-        for parity, field in result.items():
-            field[:, :, rows[:, None], columns] = at_corner[parity]
-    return result
-
-
-def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> dict[int, FloatArray]:
-    """Field by parity: the integral over the wavenumber along y."""
-    problem, harmonics = task.problem, task.harmonics
-    distance = np.hypot(task.x[:, None], task.z[None, :])
-    shortest = max(float(distance.min()), problem.corner_offset)
-    result = {parity: task.zeros() for parity in parts}
-    for panel in problem.panels(task.y, shortest, task.reference):
-        if panel.nodes[0] * distance.min() >= DECAY_LENGTHS:
+def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> list[dict[int, FloatArray]]:
+    """Field (load, component, x, z, y) at each place by parity: the integral over the wavenumber along y."""
+    problem, harmonics, places = task.problem, task.harmonics, task.places
+    counts = (len(problem.loads), harmonics.count)
+    result = [
+        {parity: np.zeros((*counts, place.x.size, place.z.size, place.y.size)) for parity in parts} for place in places
+    ]
+    distances, y = [place.distance for place in places], task.y
+    nearest = min(float(distance.min()) for distance in distances)
+    shortest = max(nearest, problem.corner_offset)
+    ends = np.cumsum([place.y.size for place in places])
+    for panel in problem.panels(y, shortest, task.reference):
+        if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
-        for columns in problem.batches(panel, parts, task.y):
-            near = columns.nodes[0] * distance < DECAY_LENGTHS
-            rows, depths = np.flatnonzero(near.any(axis=1)), np.flatnonzero(near.any(axis=0))
-            if not rows.size:
+        for columns in problem.batches(panel, parts, y):
+            # Only points within reach of a corner take part.
+            near = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
+            seen = [(np.flatnonzero(own.any(axis=1)), np.flatnonzero(own.any(axis=0))) for own in near]
+            if not any(rows.size for rows, _ in seen):
                 break
-            amplitudes = _amplitudes(replace(task, x=task.x[rows], z=task.z[depths]), columns, shortest)
-            for parity, field in result.items():
-                own = amplitudes[..., columns.parities == parity]
-                flat = own.reshape(*own.shape[:4], -1)
+            points = [(place.x[rows], place.z[depths]) for place, (rows, depths) in zip(places, seen, strict=True)]
+            amplitudes = _amplitudes(problem, harmonics, points, columns, shortest)
+            for parity in parts:
                 for i, load in enumerate(problem.loads):
                     even, odd = columns.synthesis(load, parity)
-                    for component in range(harmonics.count):
-                        wave = even if component in harmonics.even_in_y else odd
-                        field[i, component, rows[:, None], depths] += flat[i, component] @ wave
+                    for at, (rows, depths), stop, own in zip(result, seen, ends, amplitudes, strict=True):
+                        if not rows.size:
+                            continue
+                        alike = own[i][..., columns.parities == parity]
+                        here = slice(stop - at[parity].shape[-1], stop)
+                        for component in range(harmonics.count):
+                            wave = even if component in harmonics.even_in_y else odd
+                            flat = alike[component].reshape(*alike.shape[1:3], -1)
+                            at[parity][i, component, rows[:, None], depths] += flat @ wave[:, here]
     return result
 
 
-def _amplitudes(task: _Task, columns: LateralColumns, shortest: float) -> FloatArray:
-    """Answers to a batch of columns: array (load, component, x, z, wavenumber, column)."""
-    problem, harmonics, z = task.problem, task.harmonics, task.z
+def _amplitudes(
+    problem: EndProblem,
+    harmonics: Harmonics,
+    points: list[tuple[FloatArray, FloatArray]],
+    columns: LateralColumns,
+    shortest: float,
+) -> list[FloatArray]:
+    """Answers to a batch of columns at the points (x, z): arrays (load, component, x, z, wavenumber, column)."""
     count = len(problem.loads)
-    shape = (task.x.size, z.size, columns.nodes.size, columns.parities.size)
-    amplitudes = np.zeros((count, harmonics.count, *shape))
-    depths = np.arange(z.size)[:, None]
-    for view in views_of(problem, columns, task.x, shortest):
+    amplitudes = [
+        np.zeros((count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size)) for x, z in points
+    ]
+    starts = np.cumsum([0, *(x.size for x, _ in points)])
+    for view in views_of(problem, columns, np.concatenate([x for x, _ in points]), shortest):
+        own = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
         for number, lateral in enumerate(columns.nodes):
             system, (equivalent, depth, face_load) = problem.auxiliary_loads(view, float(lateral), number, shortest)
-            field = harmonics.below_equivalent_load(system, equivalent, view.cosine, view.sine, z)
-            field += harmonics.beside_face_load(system, depth, face_load, view.x, z)
-            by_load = field.reshape(*field.shape[:3], count, -1)
-            for i in range(count):
-                amplitudes[i][:, view.rows[:, None, None], depths, number, view.columns] = by_load[:, :, :, i]
+            for found, (_, z), start, at in zip(amplitudes, points, starts, own, strict=False):
+                if not at.size:
+                    continue
+                field = harmonics.below_equivalent_load(system, equivalent, view.cosine[:, at], view.sine[:, at], z)
+                field += harmonics.beside_face_load(system, depth, face_load, view.x[at], z)
+                by_load = field.reshape(*field.shape[:3], count, -1)
+                rows, depths = (view.rows[at] - start)[:, None, None], np.arange(z.size)[:, None]
+                for i in range(count):
+                    found[i][:, rows, depths, number, view.columns] = by_load[:, :, :, i]
     return amplitudes
 
 

@@ -2,31 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Harmonics, end_field, real_product
+from contactstudy.overlapping.field import Harmonics, Place, end_fields, real_product
 from contactstudy.overlapping.problem import EndProblem
 
 
-def end_stress(problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray) -> dict[Load, FloatArray]:
+def end_stress(problem: EndProblem, places: Sequence[Place]) -> list[dict[Load, FloatArray]]:
     """Stresses that the free ends add to the half-space with all mirrored loads.
 
     Parameters
     ----------
     problem : EndProblem
         Body and load.
-    x, y, z : array
-        Points, as a tensor product, inside the body, metres.
+    places : sequence of Place
+        Points inside the body.
 
     Returns
     -------
-    dict of Load to array (6, x, y, z)
-        Under the load in each of the problem's directions: xx, yy, zz, xy, xz, yz in Pa.
+    list of dict of Load to array (6, x, y, z)
+        At each place, under the load in each of the problem's directions: xx, yy, zz, xy, xz, yz in Pa.
     """
-    return end_field(problem, STRESS, x, y, z)
+    return end_fields(problem, STRESS, places)
 
 
 def _below_equivalent_load(

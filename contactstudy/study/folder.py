@@ -25,8 +25,14 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.manifest import Manifest
+from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS, Plan
 from contactstudy.study.store import read_header, remove_dead_parts, write_text
+
+SCHEMA = 2
+"""Number of the meaning of study.json: 1 had uniform cells where nothing was said, and did not state its number."""
+
+CELLS = ("cells_x", "cells_y")
 
 ID_DIGITS = 16
 """Digits of the identity in a file's name; the file holds all 64."""
@@ -97,7 +103,7 @@ class Folder:
             name = self.read_study().name
             if name != study.name:
                 raise StoreError(f"{self.path} holds the study {name!r}, not {study.name!r}: choose another folder")
-        write_text(existing, study.to_json())
+        write_text(existing, json.dumps({"schema": SCHEMA, **json.loads(study.to_json())}, indent=1))
 
     def read_study(self) -> Study:
         """Return the study's definition.
@@ -115,6 +121,9 @@ class Folder:
         except RecursionError:
             raise StudyFileError(f"{path}: nested too deeply to be a study") from None
         try:
+            if isinstance(content, dict) and content.pop("schema", 1) == 1:
+                # Such a folder was solved before columns were refined: its cases have uniform cells.
+                content["base"] = {name: PARAMETERS[name].default for name in CELLS} | dict(content.get("base", {}))
             return Study.from_mapping(content)
         except InvalidInputError as error:
             raise StudyFileError(f"{path} is not the definition of a study: {error}") from error

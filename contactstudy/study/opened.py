@@ -2,49 +2,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-import dask.array as da
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from contactstudy.arrays.variables import describe, labels
-from contactstudy.study.cube import Cube
+from contactstudy import checks
+from contactstudy.arrays.variables import DERIVED, describe, labels
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Entry, Folder
+from contactstudy.study.lazy_fields import CELLS, Fields, Place
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import Plan
-from contactstudy.study.store import load_variable, read_structure, scalar_attributes
-
-Structure = tuple[dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]], xr.Dataset]
+from contactstudy.study.store import read_structure, scalar_attributes
 
 
-def open_study(folder: str | Path) -> xr.Dataset:
+def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
     """Open the results of a study as one Dataset whose dimensions are the swept parameters.
 
     Parameters
     ----------
     folder : str or Path
         The study's folder; the study may still run or be incomplete.
+    cells : {"common", "own"}
+        Whether surfaces are brought onto cells that all cases share, or stay on each case's own.
 
     Returns
     -------
     Dataset
         * `status` ("ok", "failed", "skipped", "stale", "missing", or "excluded" for what the study leaves out),
           `message` and `case_id` of every case;
-        * every scalar of the cases, in memory, NaN where there is none;
-        * surfaces and fields as dask arrays with one chunk per case. Where all cases have the same positions,
-          these are coordinates ``x``, ``y``, ...; where they differ the dimension is ``x_index``, and the
-          coordinates ``x`` and ``x_over_a`` (distance from the free end over the Hertz half-width, and likewise
-          for y and z) hold each case's own, padded with NaN.
+        * `e_over_a`, `friction`, `gamma` and `profile` of every case, as dimension or as coordinate;
+        * every scalar of the cases, in memory, NaN where there is none. Those that are settled, with their errors,
+          come from the case's own cells;
+        * surfaces and fields as dask arrays with one chunk per case. Where all cases have the same positions, these are
+          coordinates ``x``, ``y``, ... Where they are the same over the Hertz half-width, the dimension is
+          ``x_over_a`` (distance from the free end over the half-width), and ``x`` holds each case's metres. Surfaces on
+          different cells are brought onto common ones along ``x_over_a`` and ``y_over_a``: pressure and traction are
+          averaged, so that loads are kept, and all else is interpolated, as the attribute `comment` says. With
+          ``cells="own"``, and for stresses at different points, the dimension is ``x_index``, and ``x`` and
+          ``x_over_a`` hold each case's own positions, padded with NaN.
 
     Raises
     ------
     StudyFileError
         If the folder holds no study.
+    InvalidInputError
+        If `cells` is neither of the two.
 
     Examples
     --------
@@ -53,15 +60,19 @@ def open_study(folder: str | Path) -> xr.Dataset:
     >>> study = Study(
     ...     name="small",
     ...     base={"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.2e-3, "e_over_a": 0,
-    ...           "body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False},
+    ...           "body": "half-space", "stresses": False},
     ...     sweep={"max_pressure": [1.0e9, 1.5e9]},
     ... )
     >>> folder = tempfile.mkdtemp()
     >>> report = run_study(study, folder, workers=0, progress=False)
     >>> results = open_study(folder)
     >>> results.status.values.tolist(), results.pressure.dims
-    (['ok', 'ok'], ('max_pressure', 'x_index', 'y_index'))
+    (['ok', 'ok'], ('max_pressure', 'x_over_a', 'y_over_a'))
+    >>> own = open_study(folder, cells="own")
+    >>> own.pressure.dims, round(float(own.gamma), 3), str(own.profile.item())
+    (('max_pressure', 'x_index', 'y_over_a'), 0.04, 'cylinder')
     """
+    checks.known_name("cells", cells, CELLS)
     place = Folder(folder)
     study = place.read_study()
     plan = study.plan()
@@ -78,7 +89,8 @@ def open_study(folder: str | Path) -> xr.Dataset:
             structures[position] = read_structure(path)
         except StoreError:  # removed or replaced this very moment by a run that goes on
             continue
-    dataset = _with_fields(dataset, plan.cube, {key: usable[key] for key in structures}, structures)
+    if structures:
+        dataset = Fields(dataset, plan.cube, usable, structures, cells).added()
     dataset.attrs = {"contactstudy_study": study.to_json()}
     return describe(dataset, study.description or f"study {study.name}")
 
@@ -115,90 +127,50 @@ def _summaries(plan: Plan, entries: list[Entry], place: Folder) -> xr.Dataset:
     variables: dict[str, Any] = {name: (cube.dims, array, attributes.get(name, {})) for name, array in scalars.items()}
     for name, text in (("status", status), ("message", message), ("case_id", identity)):
         variables[name] = (cube.dims, text.astype(np.str_))
-    return xr.Dataset(variables, coords=coordinates)
+    return xr.Dataset(variables, coords={**_described(plan), **coordinates})
 
 
-def _with_fields(
-    dataset: xr.Dataset,
-    cube: Cube,
-    paths: dict[tuple[int, ...], Path],
-    structures: dict[tuple[int, ...], Structure],
-) -> xr.Dataset:
-    """Add the variables that are not scalars, lazily, and their coordinates."""
-    if not structures:
-        return dataset
-    positions: dict[str, dict[tuple[int, ...], npt.NDArray[np.float64]]] = {}
-    specifications: dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]] = {}
-    for place, (variables, coordinates) in structures.items():
-        for name, specification in variables.items():
-            specifications.setdefault(name, specification)
-            for dim in specification[0]:
-                values = np.asarray(coordinates[dim].values, dtype=np.float64)
-                positions.setdefault(dim, {})[place] = values
-    renamed: dict[str, str] = {}
-    added: dict[str, Any] = {}
-    for dim, by_case in positions.items():
-        renamed[dim], coordinates_of_dim = _positions(dim, by_case, cube, dataset)
-        added |= coordinates_of_dim
-    sizes = {dim: max(values.size for values in by_case.values()) for dim, by_case in positions.items()}
-    fields = {}
-    for name, (dims, dtype, attributes) in specifications.items():
-        files = np.full(cube.shape, "", dtype=object)
-        for place, (variables, _) in structures.items():
-            if name in variables:
-                files[place] = str(paths[place])
-        array = _lazy(files, name, tuple(sizes[dim] for dim in dims), dtype)
-        fields[name] = ((*cube.dims, *(renamed[dim] for dim in dims)), array, attributes)
-    return dataset.assign_coords(added).assign(fields)
+def _described(plan: Plan) -> dict[str, Any]:
+    """End distance, friction, gamma and profile of the cases, along the dimensions that they change with."""
+    cube, found = plan.cube, {}
+    for name in ("e_over_a", "friction", "gamma", "profile"):
+        known = {case.position: case.described[name] for case in plan.cases if case.described}
+        if not known:
+            continue
+        words = isinstance(next(iter(known.values())), str)
+        table = np.full(cube.shape, "" if words else np.nan, dtype=object if words else np.float64)
+        for position, value in known.items():
+            table[position] = value
+        dims, table = _reduced(cube.dims, table, known)
+        parameter = PARAMETERS[name]
+        units = {"units": parameter.units} if parameter.units else {}
+        attributes = {"long_name": parameter.meaning, "comment": DERIVED} | units
+        found[name] = (dims, table.astype(np.str_) if words else table, attributes)
+    return found
 
 
-def _positions(
-    dim: str, by_case: dict[tuple[int, ...], npt.NDArray[np.float64]], cube: Cube, dataset: xr.Dataset
-) -> tuple[str, dict[str, Any]]:
-    """Name that a dimension of the cases gets, and the coordinates along it."""
-    attributes, over = (labels(name, coordinate=True) for name in (dim, f"{dim}_over_a"))
-    size = max(values.size for values in by_case.values())
-    table = np.full((*cube.shape, size), np.nan)
-    for place, values in by_case.items():
-        table[place][: values.size] = values
-    first = next(iter(by_case.values()))
-    same = all(values.size == first.size and np.array_equal(values, first) for values in by_case.values())
-    name = dim if same else f"{dim}_index"
-    coordinates: dict[str, Any] = {dim: (dim, first, attributes) if same else ((*cube.dims, name), table, attributes)}
-    if "hertz_half_width" in dataset:
-        scaled = table / dataset["hertz_half_width"].values[..., None]
-        rows = np.array([scaled[place] for place in by_case])
-        common = not np.isnan(rows).any() and np.allclose(rows, rows[0], rtol=1e-9, atol=1e-12)
-        # Positions given over a are the same for all cases up to rounding: one coordinate for all.
-        coordinates[f"{dim}_over_a"] = (name, rows[0], over) if common else ((*cube.dims, name), scaled, over)
-    return name, coordinates
+def _reduced(
+    dims: tuple[str, ...], table: npt.NDArray[Any], known: Mapping[Place, object]
+) -> tuple[tuple[str, ...], npt.NDArray[Any]]:
+    """Drop dimensions along which a table does not change, where it is known."""
+    present: npt.NDArray[np.bool_] = np.zeros(table.shape, dtype=bool)
+    for position in known:
+        present[position] = True
+    for axis in range(len(dims) - 1, -1, -1):
+        at = np.expand_dims(present.argmax(axis=axis), axis)
+        first = np.take_along_axis(table, at, axis)
+        same = _alike(table, first)
+        if (same | ~present).all():
+            table, present = first.squeeze(axis), np.asarray(present.any(axis=axis))
+            dims = (*dims[:axis], *dims[axis + 1 :])
+    return dims, table
 
 
-def _load_block(block: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtype: Any) -> npt.NDArray[Any]:
-    """Values of one case, padded with NaN to the largest case's shape."""
-    (path,) = block.ravel().tolist()
-    result = np.full(shape, np.nan if np.dtype(dtype).kind == "f" else 0, dtype=dtype)
-    if path:
-        values = load_variable(Path(path), name)
-        result[tuple(slice(size) for size in values.shape)] = values
-    return result.reshape(block.shape + shape)
-
-
-def _lazy(paths: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> da.Array:
-    """Dask array of a variable over all cases, one chunk per case."""
-    cases = da.from_array(paths, chunks=1)
-    result: da.Array = da.map_blocks(
-        _load_block,
-        cases,
-        name,
-        shape,
-        dtype,
-        dtype=dtype,
-        new_axis=list(range(paths.ndim, paths.ndim + len(shape))),
-        chunks=(*cases.chunks, *((size,) for size in shape)),
-        meta=np.empty((0,) * (paths.ndim + len(shape)), dtype),
-    )
-    return result
+def _alike(table: npt.NDArray[Any], first: npt.NDArray[Any]) -> npt.NDArray[np.bool_]:
+    """Whether values are the same, numbers up to rounding."""
+    if table.dtype == object:
+        return np.asarray(table == first)
+    return np.asarray(np.isclose(table, first, rtol=1e-12, atol=1e-15))
 
 
 def collect(folder: str | Path) -> xr.Dataset:

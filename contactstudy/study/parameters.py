@@ -27,6 +27,12 @@ from contactstudy.study.profile_kinds import profile_table
 # Most points that a table {start, stop, count} may ask for: a wrong digit asks for many more.
 MOST_POINTS = 100_000
 
+ACCURACY = float(inspect.signature(solve).parameters["accuracy"].default)
+"""Accuracy of a case that says nothing about its cells."""
+
+UNIFORM = ("cells_x", "cells_y", "window", "margin", "error_estimate")
+"""Parameters of uniform cells; a case that gives one of them has such cells."""
+
 BODIES = ("finite-length", "quarter-space", "half-space")
 
 # How a roller's ends are treated, by the name of the body that it is; None for a rigid one.
@@ -192,19 +198,41 @@ _WITH_CASE = (
     Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
 )
 _WITH_SOLVER = (
-    Parameter("cells_x", number, "1", "cells per half-width a along x", choose_grid),
-    Parameter("cells_y", number, "1", "cells per half-width a along y", choose_grid),
+    Parameter(
+        "accuracy",
+        number,
+        "1",
+        "error over the peak to which peak, end pressures and end loads are settled",
+        absent=f"{ACCURACY:g}",
+        note="columns are refined until it is reached; without one, if anything is said about cells, these are uniform",
+    ),
+    Parameter("cells_x", number, "1", "cells per half-width a along x", choose_grid, note="uniform cells"),
+    Parameter("cells_y", number, "1", "cells per half-width a along y", choose_grid, note="uniform cells"),
     Parameter(
         "window",
         number,
         "1",
         "half-width of the window in y over a",
         choose_grid,
-        note="the default is widened where the contact needs more; any other value is kept",
+        note="uniform cells; the default is widened where the contact needs more; any other value is kept",
     ),
-    Parameter("margin", number, "1", "distance from roller to grid edge over a, where the body goes on", choose_grid),
+    Parameter(
+        "margin",
+        number,
+        "1",
+        "distance from roller to grid edge over a, where the body goes on",
+        choose_grid,
+        note="uniform cells",
+    ),
     Parameter("tolerance", number, "1", "tolerance of the contact iteration", solve),
-    Parameter("error_estimate", flag, "1", "whether a contact on half the cells gives the discretisation error", solve),
+    Parameter(
+        "error_estimate",
+        flag,
+        "1",
+        "whether a contact on half the cells gives the discretisation error",
+        solve,
+        note="uniform cells",
+    ),
     Parameter("stresses", flag, "1", "whether stresses are calculated", solve),
     Parameter(
         "field_x_over_a",
@@ -260,6 +288,20 @@ def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, An
         for name, parameter in PARAMETERS.items()
         if values.get(name) is not None
     }
+
+
+def completed(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return checked `values` with the accuracy of a case that says nothing about its cells.
+
+    It counts for the identity: a case without it has uniform cells, as every case had before columns were refined.
+
+    Examples
+    --------
+    >>> completed({"friction": 0.1}), completed({"cells_x": 4.0})
+    ({'friction': 0.1, 'accuracy': 0.01}, {'cells_x': 4.0})
+    """
+    said = any(name in values for name in ("accuracy", *UNIFORM))
+    return dict(values) if said else {**values, "accuracy": ACCURACY}
 
 
 def counted(name: str, value: Any) -> Any:

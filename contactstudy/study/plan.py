@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
-from contactstudy.study.parameters import counted
+from contactstudy.study.parameters import completed, counted
 from contactstudy.study.profile_kinds import profile_label
-from contactstudy.study.setup import setup_of
+from contactstudy.study.setup import Described, setup_of
 
 Level = str
 LEVELS: tuple[Level, ...] = ("summary", "surface", "fields")
@@ -44,6 +45,8 @@ class PlannedCase:
         Equal for cases that share the solver's preparation.
     cells, points : int
         Sizes of grid and stress field.
+    described : dict
+        End distance over the half-width, friction, gamma and profile; empty for a skipped case.
     """
 
     id: str
@@ -54,6 +57,7 @@ class PlannedCase:
     operator: str = ""
     cells: int = 0
     points: int = 0
+    described: Described = field(default_factory=dict)
 
     def size(self, level: Level) -> int:
         """Bytes of the case's file before compression."""
@@ -174,6 +178,7 @@ class Planner:
 
     def planned(self, values: Mapping[str, Any], swept: Mapping[str, Any], position: tuple[int, ...]) -> PlannedCase:
         """Return a case with its identity, its size, and why it cannot be solved if so."""
+        values = completed(values)
         fragments = {name: self._said(name, value)[1] for name, value in values.items()}
         identity = identity_of(fragments)
         words = " ".join(self._said(name, value)[2] for name, value in swept.items()) or "the only case"
@@ -182,5 +187,7 @@ class Planner:
             setup = setup_of(parameters)
         except ContactStudyError as error:
             return PlannedCase(identity, parameters, words, position, reason=str(error))
-        cells = setup.grid.cells_x * setup.grid.cells_y
-        return PlannedCase(identity, parameters, words, position, "", setup.operator, cells, setup.points)
+        cells = math.prod(setup.shape)
+        return PlannedCase(
+            identity, parameters, words, position, "", setup.operator, cells, setup.points, setup.described
+        )

@@ -16,12 +16,14 @@ from contactstudy.case.gridding import choose_grid, widening_grids
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.solution import solve
-from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, checked, taken_by, with_defaults
-from contactstudy.study.profile_kinds import Surroundings, build_profile
+from contactstudy.solution import check_accuracy, solve
+from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
+from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
 
-# Points along z of a stress field whose depths the solver chooses, roughly; for forecasts only.
-USUAL_DEPTHS = 32
+USUAL_COLUMNS, USUAL_ROWS, USUAL_DEPTHS = 120, 32, 32
+"""Cells along x and y of a refined contact, and depths that the solver chooses, roughly; for forecasts only."""
+
+Described = dict[str, float | str]
 
 
 @dataclass(frozen=True)
@@ -95,28 +97,38 @@ class Setup:
     ----------
     case : Case
         The case.
-    grid : Grid
-        Its cells, or the first of those that are tried.
+    grid : Grid or None
+        Its uniform cells, or the first of those that are tried; None: columns that the solver refines.
     options : dict
         All other arguments of the solver, by name.
+    described : dict
+        End distance over the half-width, friction, length of the body over the roller's radius, and profile.
     cells : dict
         Cells per half-width, where the window may grow with the contact; empty where `grid` is the only one.
     """
 
     case: Case
-    grid: Grid
+    grid: Grid | None
     options: dict[str, Any]
+    described: Described
     cells: dict[str, float]
 
     @property
-    def grids(self) -> Iterator[Grid]:
+    def grids(self) -> Iterator[Grid | None]:
         """Grids to try in turn until one holds the contact."""
         return widening_grids(self.case, **self.cells) if self.cells else iter((self.grid,))
 
     @property
     def operator(self) -> str:
         """What the solver's expensive preparation depends on: equal for cases that can share it."""
-        return repr((self.case.body, self.case.roller.body, self.grid, self.case.coupled))
+        case = self.case
+        cells = case.hertz_half_width if self.grid is None else self.grid
+        return repr((case.body, case.roller.body, cells, case.coupled))
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Number of cells along x and y, as far as it is known before solving."""
+        return (USUAL_COLUMNS, USUAL_ROWS) if self.grid is None else self.grid.shape
 
     @property
     def points(self) -> int:
@@ -125,7 +137,7 @@ class Setup:
             return 0
         x, y, z = (
             default if (axis := self.options[name]) is None else axis.size
-            for name, default in (("x", self.grid.cells_x), ("y", self.grid.cells_y), ("z", USUAL_DEPTHS))
+            for name, default in zip("xyz", (*self.shape, USUAL_DEPTHS), strict=True)
         )
         return int(x * y * z)
 
@@ -189,7 +201,8 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
 
     With ``a = 2 p0 R / E*`` and ``e = e_over_a a``: a given `gamma` fixes the body, of length ``gamma R``, and the
     roller is shorter by ``2 e``; a given `roller_length` fixes the roller, and the body is longer by ``2 e``. A
-    half-space keeps roller, distance and so the coordinates of the body that it is compared with.
+    half-space keeps roller, distance and so the coordinates of the body that it is compared with. With an `accuracy`
+    the solver refines its columns; without one the cells are uniform.
 
     Parameters
     ----------
@@ -241,13 +254,23 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         **taken_by(Case, values),
     )
     tolerance = checks.positive("tolerance", values["tolerance"])
+    options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solve, values)
+    described: Described = {
+        "e_over_a": sizes.end_distance / sizes.half_width,
+        "friction": case.friction,
+        "gamma": sizes.body_length / sizes.radius,
+        "profile": profile_label(values["profile"]),
+    }
+    if "accuracy" in values:
+        said = [name for name in UNIFORM if name in parameters]
+        if said:
+            given = {name: values[name] for name in ("accuracy", *said)}
+            raise InvalidInputError(
+                ", ".join(given), tuple(given.values()), "given as one of the two, accuracy or uniform cells"
+            )
+        accuracy = check_accuracy(values["accuracy"])
+        return Setup(case, None, options | {"tolerance": tolerance, "accuracy": accuracy}, described, {})
     gridding = taken_by(choose_grid, values)
     usual = all(gridding[name] == PARAMETERS[name].default for name in ("window", "margin"))
-    return Setup(
-        case=case,
-        grid=choose_grid(case, **gridding),
-        options=_stress_points(values, sizes.half_width, case.body.extent)
-        | taken_by(solve, values)
-        | {"tolerance": tolerance},
-        cells={name: gridding[name] for name in ("cells_x", "cells_y")} if usual else {},
-    )
+    cells = {name: gridding[name] for name in ("cells_x", "cells_y")} if usual else {}
+    return Setup(case, choose_grid(case, **gridding), options | {"tolerance": tolerance}, described, cells)

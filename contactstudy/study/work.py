@@ -123,9 +123,9 @@ def single_threaded() -> Iterator[None]:
         pyfftw.config.NUM_THREADS = previous
 
 
-def _solve_on(solver: Solver, setup: Setup, grid: Grid) -> tuple[Grid, xr.Dataset]:
+def _solve_on(solver: Solver, setup: Setup, grid: Grid | None) -> xr.Dataset:
     """Solve a case on one of its grids."""
-    return grid, solver(setup.case, grid, **setup.options)
+    return solver(setup.case, grid, **setup.options)
 
 
 def differences(worker: Mapping[str, Any]) -> str:
@@ -172,7 +172,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
             warnings.simplefilter("always")
             setup = build_setup(job.parameters)
             solve_on = partial(_solve_on, solver or solve, setup)
-            grid, dataset = first_that_holds(setup.grids, solve_on)
+            dataset = first_that_holds(setup.grids, solve_on)
             scalars = summarize(dataset)
     except StoreError:
         raise
@@ -184,7 +184,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
         **circumstances(),
         "study": job.study,
         "time": datetime.now(UTC).isoformat(timespec="seconds"),
-        "settings": {"tolerance": setup.options["tolerance"], "cells": grid.shape},
+        "settings": {"tolerance": setup.options["tolerance"], "cells": tuple(dataset.sizes[axis] for axis in "xy")},
         "warnings": sorted({str(warning.message) for warning in caught}),
         "seconds": seconds,
         "level": job.level,

@@ -21,6 +21,7 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
 from contactstudy.kernels.load import Load
+from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -202,7 +203,9 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     pressure = np.broadcast_to(quartic(grid.y), grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
-    stress = end_stress(EndProblem(8.0, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, resolution), *points)
+    stress = end_stress(
+        EndProblem(8.0, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, resolution), [Place(*points)]
+    )[0]
     operator = SurfaceOperator.of(OperatorRequest(body, grid, resolution=resolution))
     return np.stack([stress[load] for load in stress]), operator({Load.NORMAL: pressure})
 

@@ -29,6 +29,7 @@ from contactstudy.threads import one_blas_thread
 STEEL, BRONZE = Material(210e9, 0.3), Material(110e9, 0.34)
 RADIUS = 5e-3
 VALUES = ("peak_pressure", "end_pressure_first", "end_pressure_last")
+LOADS = ("end_load_first", "end_load_last")
 INTENSITIES = ("end_intensity_first", "end_intensity_last")
 
 
@@ -43,7 +44,8 @@ class Drawn:
 
 @dataclass(frozen=True)
 class Found:
-    """One value of one case, over the Hertz pressure (an intensity: over that and the root of the half-width)."""
+    """One value of one case, over the Hertz pressure (an intensity: over that and the root of the half-width; a load:
+    over that of a half-width under the mean load per length)."""
 
     drawn: Drawn
     value: str
@@ -156,6 +158,10 @@ def compared(drawn: Drawn, accuracy: float, reference: float) -> Iterator[Found]
     for value in VALUES:
         error = float(loose[f"{value}_error"]) / scale
         yield Found(drawn, value, float(loose[value]) / scale, error, float(tight[value]) / scale)
+    usual = case.normal_load * case.hertz_half_width / case.contact_length
+    for value in LOADS:
+        error = float(loose[f"{value}_error"]) / usual
+        yield Found(drawn, value, float(loose[value]) / usual, error, float(tight[value]) / usual)
     for value in INTENSITIES:
         power = float(loose.get(value.replace("intensity", "exponent"), 0.0))
         if value in loose and value in tight and case.roller.material is None and power:
@@ -174,7 +180,7 @@ def _table(found: list[Found], refused: list[str], took: dict[str, float]) -> st
         "| value | cases | covered | % | median difference / p0 | median error / p0 |",
         "|---|---|---|---|---|---|",
     ]
-    for value in (*VALUES, *INTENSITIES):
+    for value in (*VALUES, *LOADS, *INTENSITIES):
         own = [each for each in found if each.value == value]
         finite = [each for each in own if np.isfinite([each.loose, each.tight]).all() and each.loose]
         if own:

@@ -13,6 +13,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -51,7 +52,7 @@ def test_no_internal_setting_matters() -> None:
 
     def stress(resolution: Resolution) -> np.ndarray:
         both = (Load.NORMAL, Load.ALONG_Y)
-        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), *points)
+        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), [Place(*points)])[0]
         return np.stack([fields[load] for load in both])
 
     usual = stress(Resolution())

@@ -23,6 +23,7 @@ from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stress_under
 from contactstudy.kernels.load import Load
+from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
@@ -60,7 +61,7 @@ def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     both = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(4.0, 0.3, eccentric.values, both, grid, Resolution(), mirrored_once=True)
-    fields = end_stress(problem, np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))
+    fields = end_stress(problem, [Place(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[0]
     added = np.stack([fields[load] for load in both])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
     assert np.abs(added[:, 0]).max() > 0.03

@@ -1,0 +1,109 @@
+"""The cells that the cases of a study share."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import open_study
+from contactstudy.analysis import load_between, single_case
+from contactstudy.study import run_study
+from contactstudy.study.common_cells import LEAST_WIDTH, OntoCommon, common_columns, common_rows, resampled
+from tests.small_study import small_study
+
+
+@st.composite
+def edges(draw):
+    """Edges of cells of any widths from 0 on."""
+    widths = draw(st.lists(st.floats(0.01, 2.0), min_size=1, max_size=12))
+    return np.concatenate([[0.0], np.cumsum(widths)])
+
+
+@given(st.lists(edges(), min_size=1, max_size=5))
+def test_common_columns_cover_all_and_are_nowhere_much_narrower_than_needed(cases):
+    common = common_columns(cases)
+    assert common[0] == 0.0
+    assert common[-1] == max(own[-1] for own in cases)
+    narrowest = min(float(np.diff(own).min()) for own in cases)
+    assert np.diff(common).min() >= LEAST_WIDTH * narrowest * (1 - 1e-12)
+
+
+@given(st.lists(edges(), min_size=1, max_size=4), st.integers(0, 2**32 - 1))
+def test_averages_keep_the_load(cases, seed):
+    common = common_columns(cases)
+    for own in cases:
+        values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
+        found = resampled("pressure", values, [OntoCommon(own, common, 0.0)])
+        assert found @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
+
+
+@given(edges(), st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
+    centres = 0.5 * (own[1:] + own[:-1])
+    common = np.linspace(own[0], own[-1], 30)
+    found = resampled("gap", offset + slope * centres, [OntoCommon(own, common, np.nan)])
+    at = 0.5 * (common[1:] + common[:-1])
+    np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
+
+
+def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window():
+    common = np.array([0.0, 1.0, 2.0, 3.0])
+    own = np.array([0.0, 1.0, 2.0])
+    along_x, along_y = OntoCommon(own, common, np.nan), OntoCommon(own, common, 0.0)
+    pressure = resampled("pressure", np.ones((2, 2)), [along_x, along_y])
+    np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
+    assert np.isnan(pressure[2]).all()
+    gap = resampled("gap", np.ones((2, 2)), [along_x, along_y])
+    assert np.isnan(gap[:, 2]).all()
+
+
+def test_an_infinite_gap_stays_where_it_is():
+    own = np.array([0.0, 1.0, 2.0, 3.0])
+    found = resampled("initial_gap", np.array([1.0, np.inf, np.inf]), [OntoCommon(own, own, np.nan)])
+    np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
+
+
+def test_rows_are_uniform_over_the_widest_window():
+    rows = common_rows([np.linspace(-2.0, 2.0, 9), np.linspace(-1.0, 1.0, 11)])
+    np.testing.assert_allclose(np.diff(rows), 0.2)
+    assert rows[[0, -1]].tolist() == [-2.0, 2.0]
+
+
+def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
+    base = {
+        "young": 210e9,
+        "poisson": 0.3,
+        "radius": 5e-3,
+        "roller_length": 1e-3,
+        "stresses": False,
+        "profile": {"kind": "cylinder", "fillet_radius": 1e-4},
+        "friction": 0.1,
+        "accuracy": 0.05,
+    }
+    sweep = {"max_pressure": [1.0e9, 1.5e9], "e_over_a": [0.0, 2.0]}
+    study = small_study(base=base, sweep=sweep, level="surface")
+    assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 4}
+    common, own = open_study(tmp_path), open_study(tmp_path, cells="own")
+    assert common["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
+    assert own["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
+    assert "averaged" in common["pressure"].attrs["comment"]
+    for p0 in (1.0e9, 1.5e9):
+        for e in (0.0, 2.0):
+            on_common, on_own = (each.sel(max_pressure=p0, e_over_a=e) for each in (common, own))
+            # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
+            whole = load_between(on_common, -np.inf, np.inf)
+            assert float(whole) == pytest.approx(float(on_own["load"]), rel=1e-6)
+            a = float(on_own["hertz_half_width"])
+            last = load_between(on_own, e * a, (e + 1) * a)
+            assert float(last) == pytest.approx(float(on_own["end_load_first"]), rel=1e-6, abs=1e-9)
+            alone = single_case(on_own)
+            assert alone["pressure"].dims == ("x", "y")
+            assert alone["x_width"].dims == ("x",)
+            assert float(alone["pressure"].max()) >= float(on_common["pressure"].max())
+    # Everything that a bearing engineer varies is there, swept or not.
+    assert common["gamma"].dims == ("max_pressure", "e_over_a")
+    np.testing.assert_allclose(
+        common["gamma"], (1e-3 + 2 * common["e_over_a"] * common["hertz_half_width"]).T / 5e-3, rtol=1e-12
+    )
+    assert float(common["friction"]) == 0.1
+    assert common["profile"].item().startswith("cylinder")
