@@ -117,7 +117,7 @@ def _part_displacement(
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells, grid)
+        seen, seen_on = seen_by_ends(cells, grid, extent)
         problem = EndProblem(length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)

@@ -17,10 +17,10 @@ from scipy import fft
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
-from contactstudy.kernels.fine_cells import PARTS_Y, FineCells
+from contactstudy.kernels.fine_cells import PARTS_Y, FineCells, mirrored, seen_apart, with_images
 from contactstudy.kernels.images import image_kernel, snapped
 from contactstudy.kernels.influence import Influence
-from contactstudy.kernels.smooth_load import SmoothLoad
+from contactstudy.kernels.smooth_load import Sent, SmoothLoad
 
 IMAGE_POINTS = 16
 """Chebyshev points along x on which the load is gathered for its farther images. Accuracy."""
@@ -36,11 +36,8 @@ FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
 
-WINDOW = 4
-"""Columns on either side of a point that are split where the load is smooth. Accuracy."""
-
-END_WINDOW = 16
-"""Likewise for a point on an end, of uniform columns. Accuracy."""
+NARROW = 0.3
+"""Width of a column, over the least depth, below which it is never split. Accuracy."""
 
 BATCH = 64
 """Positions along x whose surroundings are made smooth at once. Speed."""
@@ -76,24 +73,24 @@ def columns_field(
     first, load = int(loaded[0]), load[:, loaded[0] : loaded[-1] + 1]
     if fine is not None:
         first, load = fine.first, fine.cells
-    edges, cells = _with_images(grid.x_edges, load, influence.load.sign_x, extent)
     # Corners along y lie half a cell before the first loaded centre, and so on.
     begin = float(grid.y[first]) - 0.5 * grid.dy
     near = np.zeros(z.size, bool) if fine is None else fine.near(z)
-    layers = [
-        _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], parts)
-        for column in aligned_points(y, begin, grid.dy)
-        for numbers, parts in ((np.flatnonzero(~near), 0), (np.flatnonzero(near), PARTS_Y))
-        if numbers.size
-    ]
-    smooth = fine.along_y(cells) if fine is not None else None
-    base = [cells if smooth is None else layer.loads(smooth) for layer in layers]
-    jumps = [_Jumps.of(edges, loads, layer) for loads, layer in zip(base, layers, strict=True)]
-    for start in range(0, x.size, BATCH):
-        positions = x[start : start + BATCH].tolist()
-        exchanged = iter(()) if fine is None else _exchanged(positions, fine, edges, extent, base, layers, added=added)
-        for i, position in enumerate(positions, start):
-            for layer, own in zip(layers, next(exchanged, jumps), strict=True):
+    for wanted in (False, True):
+        numbers = np.flatnonzero(near == wanted)
+        if not numbers.size:
+            continue
+        layers = [
+            _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], PARTS_Y if wanted else 0)
+            for column in aligned_points(y, begin, grid.dy)
+        ]
+        seen = (
+            _seen(x, layers, mirrored(grid.x_edges, extent), with_images(load, influence.load.sign_x, extent))
+            if fine is None
+            else _smooth(x, layers, fine, NARROW * float(z[numbers].min()), extent, added=added)
+        )
+        for i, (position, jumps) in enumerate(zip(x.tolist(), seen, strict=True)):
+            for layer, own in zip(layers, jumps, strict=True):
                 for number, corner in zip(layer.numbers.tolist(), layer.corners, strict=True):
                     field[:, i, layer.points, number] = own.field(corner, position, layer.at)
     if np.isfinite(extent).all() and not added:
@@ -101,47 +98,82 @@ def columns_field(
     return field
 
 
-def _mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
-    """Edges with those of the nearest images; each end of the body is an edge between columns."""
-    low, high = extent
-    all_edges = [edges]
-    if np.isfinite(low):
-        all_edges.insert(0, (2 * low - edges[::-1])[:-1])
-    if np.isfinite(high):
-        all_edges.append((2 * high - edges[::-1])[1:])
-    return np.concatenate(all_edges)
+def _seen(x: FloatArray, layers: list[_Layer], edges: FloatArray, cells: FloatArray) -> Iterator[list[_Jumps]]:
+    """For each position the jumps that each layer sees: the same for all."""
+    jumps = [_Jumps.of(edges, cells, layer) for layer in layers]
+    yield from (jumps for _ in x)
 
 
-def _with_images(
-    edges: FloatArray, cells: FloatArray, image: int, extent: tuple[float, float]
-) -> tuple[FloatArray, FloatArray]:
-    """Edges and loads of columns between their nearest images."""
-    low, high = (bool(np.isfinite(end)) for end in extent)
-    images = [image * cells[::-1]]
-    return _mirrored(edges, extent), np.concatenate([*images[:low], cells, *images[:high]])
+def _smooth(
+    x: FloatArray,
+    layers: list[_Layer],
+    fine: FineCells,
+    narrow: float,
+    extent: tuple[float, float],
+    *,
+    added: bool,
+) -> Iterator[list[_Jumps]]:
+    """For each position the jumps that each layer sees, the columns around it split unless they are narrow."""
+    edges = fine.edges
+    smooth = fine.along_y(fine.gathered)
+    base = [layer.loads(smooth) for layer in layers]
+    alone = [_Jumps.of(edges, loads, layer) for loads, layer in zip(base, layers, strict=True)]
+    nothing = [_Jumps.of(edges, np.zeros(loads.shape), layer) for loads, layer in zip(base, layers, strict=True)]
+    for start in range(0, x.size, BATCH):
+        around = [
+            _surroundings(position, fine, narrow, extent) for position in x[start : start + BATCH].tolist()
+        ]
+        exchanged = [each for each in around if each is not None]
+        inserted = []
+        if exchanged:
+            columns = fine.columns([each.inserted for each in exchanged])
+            columns += np.concatenate([each.received(fine) for each in exchanged])
+            smooth = fine.along_y(columns)
+            inserted = [layer.loads(smooth) for layer in layers]
+        stop = 0
+        for each in around:
+            if each is None:
+                yield nothing if added else alone
+                continue
+            first, stop = stop, stop + each.inserted.size - 1
+            own = [loads[first:stop] for loads in inserted]
+            take = each.added if added else each.exchanged
+            yield [take(edges, *given) for given in zip(base, layers, own, strict=True)]
 
 
 class _Surroundings(NamedTuple):
-    """Columns around a point that are split.
+    """Columns around a point that are split, and one more on either side that their moments are not sent to.
 
     Attributes
     ----------
-    edges : array
-        Edges of all columns, split or not.
     inserted : array
-        Edges of those that replace some.
+        Edges of the columns that replace others.
     lowest, highest : int
         Which of the columns these are.
     """
 
-    edges: FloatArray
     inserted: FloatArray
     lowest: int
     highest: int
 
-    def exchanged(self, loads: FloatArray, inserted: FloatArray) -> FloatArray:
-        """Loads of all columns, those of the inserted ones in their place."""
-        return np.concatenate([loads[: self.lowest], inserted, loads[self.highest :]])
+    def received(self, fine: FineCells) -> FloatArray:
+        """Loads on the inserted columns that stand for the moments of those that stay: array (column, y)."""
+        sent, last = fine.sent, self.highest - 1
+        received = np.zeros((self.inserted.size - 1, fine.cells.shape[1]))
+        stay = np.ones(fine.edges.size - 1, bool)
+        stay[self.lowest + 1 : last] = False
+        total = Sent(*(np.where(stay, each, 0.0) for each in sent)).total.T
+        middles = 0.5 * (self.inserted[1:] + self.inserted[:-1])
+        received += total[np.searchsorted(fine.edges, middles) - 1]
+        return received
+
+    def exchanged(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
+        """Jumps of all columns, the inserted ones in their place."""
+        return _Jumps.of(
+            np.concatenate([edges[: self.lowest], self.inserted, edges[self.highest + 1 :]]),
+            np.concatenate([loads[: self.lowest], inserted, loads[self.highest :]]),
+            layer,
+        )
 
     def added(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
         """Jumps of what the inserted columns add to those that they replace."""
@@ -153,60 +185,27 @@ class _Surroundings(NamedTuple):
         return _Jumps.of(both, difference, layer)
 
 
-def _exchanged(
-    x: list[float],
-    fine: FineCells,
-    edges: FloatArray,
-    extent: tuple[float, float],
-    base: list[FloatArray],
-    layers: list[_Layer],
-    *,
-    added: bool,
-) -> Iterator[list[_Jumps]]:
-    """For each of some positions the jumps that each layer sees, with the columns around it split."""
-    fine_edges = _mirrored(fine.x_edges, extent)
-    around = [_surroundings(position, fine_edges, edges, extent, uniform=fine.grid.uniform) for position in x]
-    smooth = fine.along_y(fine.columns([each.inserted for each in around]))
-    inserted = [layer.loads(smooth) for layer in layers]
-    stop = 0
-    for each in around:
-        start, stop = stop, stop + each.inserted.size - 1
-        own = [loads[start:stop] for loads in inserted]
-        if added:
-            yield [each.added(edges, *given) for given in zip(base, layers, own, strict=True)]
-        else:
-            yield [
-                _Jumps.of(each.edges, each.exchanged(loads, columns), layer)
-                for loads, layer, columns in zip(base, layers, own, strict=True)
-            ]
-
-
-def _surroundings(
-    x: float, fine_edges: FloatArray, edges: FloatArray, extent: tuple[float, float], *, uniform: bool
-) -> _Surroundings:
-    """Columns around a point that are split, the point in the middle of one."""
-    count = edges.size - 1
+def _surroundings(x: float, fine: FineCells, narrow: float, extent: tuple[float, float]) -> _Surroundings | None:
+    """Columns around a point that are split, the point in the middle of one; none if all are narrow."""
+    edges, count = fine.edges, fine.edges.size - 1
     column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
     on_end = min(abs(x - end) for end in extent) < SAME_END * (edges[column + 1] - edges[column])
-    # What the ends carry is compared with what frees them, which knows all of the fine columns.
-    window = (END_WINDOW if uniform else count) if on_end else WINDOW
-    lowest, highest = max(column - window, 0), min(column + 1 + window, count)
+    lowest, highest = seen_apart(edges, x, narrow)
+    if lowest == highest:
+        return None
     low, high = edges[lowest], edges[highest]
-    inserted = fine_edges[(fine_edges >= low) & (fine_edges <= high)]
-    if on_end:
-        return _Surroundings(
-            np.concatenate([edges[:lowest], inserted, edges[highest + 1 :]]), inserted, lowest, highest
-        )
-    at = int(np.clip(np.searchsorted(inserted, x, side="right") - 1, 0, inserted.size - 2))
-    step = CENTRED * float(inserted[at + 1] - inserted[at])
-    own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
-    if low < own[0] and own[-1] < high:
-        kept = np.abs(inserted - x) > 2 * step
-        kept[[0, -1]] = True
-        inserted = np.sort(np.concatenate([inserted[kept], own]))
-    return _Surroundings(
-        np.concatenate([edges[:lowest], inserted, edges[highest + 1 :]]), inserted, lowest, highest
-    )
+    inserted = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
+    if not on_end and low < x < high:
+        at = int(np.clip(np.searchsorted(inserted, x, side="right") - 1, 0, inserted.size - 2))
+        step = CENTRED * float(inserted[at + 1] - inserted[at])
+        own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
+        if low < own[0] and own[-1] < high:
+            kept = np.abs(inserted - x) > 2 * step
+            kept[[0, -1]] = True
+            inserted = np.sort(np.concatenate([inserted[kept], own]))
+    first, last = max(lowest - 1, 0), min(highest + 1, count)
+    whole = np.concatenate([edges[first:lowest], inserted, edges[highest + 1 : last + 1]])
+    return _Surroundings(whole, first, last)
 
 
 @dataclass(frozen=True, eq=False)

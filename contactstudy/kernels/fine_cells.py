@@ -13,10 +13,11 @@ import numpy as np
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.kernels.smooth_load import SmoothLoad
+from contactstudy.kernels.smooth_load import Sent, SmoothLoad, sent
 
-REACH = 1.5
-"""Depth, over the size of a cell, down to which cells along y are refined: below, steps have decayed. Accuracy."""
+REACH, REACH_X = 3.0, 1.5
+"""Depth, over the size of a cell along y and along x, down to which cells are refined: steps have decayed below, and
+what is left is the moments of cells. Accuracy."""
 
 PARTS_X = 3
 """Fine cells in one along x. Accuracy."""
@@ -24,10 +25,13 @@ PARTS_X = 3
 PARTS_Y, PARTS_Y_UNIFORM = 5, 3
 """Fine cells in one along y, on columns of any width and on uniform cells, of which there are more. Accuracy."""
 
+WIDE = 0.3
+"""Width of a column, over its distance, from which the distribution of its load is seen. Accuracy."""
+
 FLAT = 3e-3
 """Deviation of a smooth load from its cell's mean, over the largest, that is left alone. Accuracy."""
 
-SPARE = 2
+SPARE = 1
 """Cells kept beyond the loaded ones along y: a smooth load may reach into the first. Accuracy."""
 
 
@@ -66,10 +70,26 @@ class FineCells:
         uneven = deviation > FLAT * np.abs(self.cells).max()
         return np.full(uneven.shape, uneven.any()) if self.grid.uniform else uneven
 
-    @property
+    @cached_property
     def x_edges(self) -> FloatArray:
-        """Edges of the fine cells along x, metres."""
-        return _split(self.grid.x_edges, self.split)
+        """Edges of the fine cells along x, metres, with those of the nearest images."""
+        return mirrored(_split(self.grid.x_edges, self.split), self._extent)
+
+    @cached_property
+    def edges(self) -> FloatArray:
+        """Edges of the cells along x, metres, with those of the nearest images."""
+        return mirrored(self.grid.x_edges, self._extent)
+
+    @cached_property
+    def sent(self) -> Sent:
+        """Loads that stand for the moments along x of the cells and their nearest images: arrays (y, cell)."""
+        moments = with_images(self._along_x.moments.T, -self._image, self._extent).T
+        return sent(self.edges, moments)
+
+    @cached_property
+    def gathered(self) -> FloatArray:
+        """Load on the cells and their nearest images that far away along x makes the field of the smooth one."""
+        return with_images(self.cells, self._image, self._extent) + self.sent.total.T
 
     @property
     def parts(self) -> tuple[int, int]:
@@ -78,10 +98,10 @@ class FineCells:
 
     def near(self, z: FloatArray) -> BoolArray:
         """Depths at which cells along y are refined, and uniform cells along x as well."""
-        size = self.grid.dy
+        reach = REACH * self.grid.dy
         if self.grid.uniform and self.split.any():
-            size = max(size, self.grid.dx)
-        return np.asarray(z < REACH * size)
+            reach = max(reach, REACH_X * self.grid.dx)
+        return np.asarray(z < reach)
 
     def columns(self, edges: list[FloatArray]) -> FloatArray:
         """Means over columns between edges, metres, which may lie among the nearest images: array (column, y).
@@ -107,39 +127,60 @@ class FineCells:
         """Columns (column, y) as smooth functions of y."""
         return SmoothLoad.of(columns, self.y_edges, spilling=True)
 
-    def refined(self, *, near: bool, offset: float = 0.0, along_x: bool = True) -> tuple[FloatArray, Grid]:
-        """Load on fine cells of the whole grid, and these.
+    def far(self) -> FloatArray:
+        """Load on the cells of the grid that makes the field of the smooth one at depths that are not near."""
+        cells = np.zeros(self.grid.shape)
+        columns = self.along_y(self._own(self.gathered)).gathered()
+        cells[:, self.first : self.first + columns.shape[1]] = columns
+        return cells
 
-        Parameters
-        ----------
-        near : bool
-            For depths that are near; for others the cells are split along x only, and uniform ones not at all.
-        offset : float
-            Distance along y of the points from the middles of cells, metres: fine cells are moved so that points
-            are in their middles.
-        along_x : bool
-            Whether to split along x.
+    def for_ends(self) -> tuple[FloatArray, Grid]:
+        """Load on cells that are split along y, and along x where an end sees how their load is distributed."""
+        return self._refined(*self._columns_for_ends(), 0.0)
+
+    def near_top(self, offset: float, *, split: bool) -> tuple[FloatArray, Grid]:
+        """Load on uniform cells that are split along y, and along x if wanted, and these.
+
+        Points at the distance `offset` along y from the middles of cells are in the middles of the fine ones.
         """
+        edges = self.grid.x_edges
+        if not split:
+            return self._refined(edges, self._own(self.gathered), offset)
+        edges = _split(edges, self.split)
+        return self._refined(edges, self.columns([edges]), offset)
+
+    def _refined(self, edges: FloatArray, columns: FloatArray, offset: float) -> tuple[FloatArray, Grid]:
+        """Columns on cells that are split along y, and these."""
         grid = self.grid
-        edges = self.x_edges if along_x and (near or not grid.uniform) else grid.x_edges
-        columns = self.columns([edges])
-        parts = self.parts[1] if near else 1
-        moved = 0.0
-        y_edges = grid.y_range[0] + grid.dy / parts * np.arange(parts * grid.cells_y + 1.0)
-        y_range = grid.y_range
-        if near:
-            step = grid.dy / parts
-            moved = offset - step * np.round(offset / step)
-            y_edges = y_edges + moved
-            if moved:  # one more, for what is left of the first or behind the last
-                y_edges = np.append(y_edges, y_edges[-1] + step) if moved < 0 else np.append(y_edges[0] - step, y_edges)
-                y_range = (float(y_edges[0]), float(y_edges[-1]))
-        cells = self._on(columns, y_edges) if near else np.zeros((edges.size - 1, grid.cells_y))
-        if not near:
-            cells[:, self.first : self.first + columns.shape[1]] = self.along_y(columns).gathered()
-        if grid.uniform:
-            return cells, Grid(grid.x_range, y_range, *cells.shape)
+        step = grid.dy / self.parts[1]
+        moved = offset - step * np.round(offset / step)
+        y_edges = grid.y_range[0] + moved + step * np.arange(self.parts[1] * grid.cells_y + 1.0)
+        if moved:  # one more, for what is left of the first or behind the last
+            y_edges = np.append(y_edges, y_edges[-1] + step) if moved < 0 else np.append(y_edges[0] - step, y_edges)
+        y_range = (float(y_edges[0]), float(y_edges[-1])) if moved else grid.y_range
+        cells = self._on(columns, y_edges)
         return cells, Grid.between(edges, y_range, cells.shape[1])
+
+    def _own(self, columns: FloatArray) -> FloatArray:
+        """Columns without their images."""
+        images = self.grid.cells_x if np.isfinite(self._extent[0]) else 0
+        return columns[images : images + self.grid.cells_x]
+
+    def _columns_for_ends(self) -> tuple[FloatArray, FloatArray]:
+        """Edges and loads of columns, split where an end sees how their load is distributed."""
+        split = np.zeros(self.split.size, bool)
+        for end in self._extent:
+            if np.isfinite(end):
+                split[slice(*seen_apart(self.grid.x_edges, end))] = True
+        split &= self.split
+        edges = _split(self.grid.x_edges, split)
+        columns = self.columns([edges])
+        # Columns that stay send the moments of their load to their neighbours.
+        images = self.grid.cells_x if np.isfinite(self._extent[0]) else 0
+        kept = np.zeros(self.edges.size - 1, bool)
+        kept[images : images + split.size] = ~split
+        received = self._own(Sent(*(np.where(kept, each, 0.0) for each in self.sent)).total.T)
+        return edges, columns + np.repeat(received, np.where(split, PARTS_X, 1), axis=0)
 
     def _on(self, columns: FloatArray, y_edges: FloatArray) -> FloatArray:
         """Means of columns (column, y) on other cells along y: array (column, cell)."""
@@ -149,6 +190,40 @@ class FineCells:
             some = slice(int(seen[0]), int(seen[-1]) + 1)
             cells[:, some] = self.along_y(columns).means(y_edges[some.start : some.stop + 1])
         return cells
+
+
+def mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
+    """Edges with those of the nearest images; each end of the body is an edge between columns."""
+    low, high = extent
+    all_edges = [edges]
+    if np.isfinite(low):
+        all_edges.insert(0, (2 * low - edges[::-1])[:-1])
+    if np.isfinite(high):
+        all_edges.append((2 * high - edges[::-1])[1:])
+    return np.concatenate(all_edges)
+
+
+def with_images(columns: FloatArray, image: int, extent: tuple[float, float]) -> FloatArray:
+    """Columns (column, y) between their nearest images."""
+    low, high = (bool(np.isfinite(end)) for end in extent)
+    images = [image * columns[::-1]]
+    return np.concatenate([*images[:low], columns, *images[:high]])
+
+
+def seen_apart(edges: FloatArray, x: float, narrow: float = 0.0) -> tuple[int, int]:
+    """First column around `x` whose load is seen to be distributed, and the one behind the last; alike if none is.
+
+    Columns wider than a part of their distance, of which `narrow` ones at either end are left out.
+    """
+    widths = np.diff(edges)
+    distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
+    wide = widths > WIDE * distance
+    nearest = int(distance.argmin())
+    before, behind = np.flatnonzero(~wide[:nearest]), np.flatnonzero(~wide[nearest:])
+    lowest = int(before[-1]) + 1 if before.size else 0
+    highest = nearest + int(behind[0]) if behind.size else widths.size
+    seen = np.flatnonzero(widths[lowest:highest] > narrow)
+    return (lowest + int(seen[0]), lowest + int(seen[-1]) + 1) if seen.size else (nearest, nearest)
 
 
 def _split(edges: FloatArray, columns: BoolArray) -> FloatArray:

@@ -32,8 +32,7 @@ def smooth_field(
     near = fine.near(z)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     if not near.all():
-        cells, _ = fine.refined(near=False)
-        field[..., ~near] = half_space_field(cells, influence, grid, x, y, z[~near], extent=extent)
+        field[..., ~near] = half_space_field(fine.far(), influence, grid, x, y, z[~near], extent=extent)
     on_centres = np.zeros(x.size, bool)
     for row in aligned_points(x, float(grid.x[0]), grid.dx):
         on_centres[row.points] = row.offset == 0
@@ -43,7 +42,7 @@ def smooth_field(
         for rows, split in ((np.flatnonzero(centred), True), (np.flatnonzero(~centred), False)):
             if not rows.size:
                 continue
-            cells, grid_near = fine.refined(near=True, offset=column.offset, along_x=split)
+            cells, grid_near = fine.near_top(column.offset, split=split)
             found = half_space_field(cells, influence, grid_near, x[rows], y[column.points], z[near], extent=extent)
             if not split:
                 found += columns_field(

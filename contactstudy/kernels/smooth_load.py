@@ -9,6 +9,7 @@ last cell, where its force puts it; a load that ends without falling, as at a sh
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -85,21 +86,17 @@ class SmoothLoad:
         )
 
     @property
-    def slopes(self) -> FloatArray:
-        """First moment about each cell's centre, over its width squared: array (row, cell)."""
+    def moments(self) -> FloatArray:
+        """First moment about each cell's centre, Pa m2: array (row, cell)."""
         knot = self.knot
         before = knot**2 * _first_moment(self.first, self.middle)
         behind = (1 - knot) ** 2 * _first_moment(self.middle, self.last)
         behind += (1 - knot) * knot * _mean(self.middle, self.last)
-        return np.asarray(self.sign * (before + behind) - 0.5 * self.cell_means)
+        return np.asarray((self.sign * (before + behind) - 0.5 * self.cell_means) * np.diff(self.edges) ** 2)
 
     def gathered(self) -> FloatArray:
-        """Load per area on the same cells, uniform ones, that far away makes the field of the smooth one.
-
-        What a cell carries off its centre is a pair of forces on its neighbours.
-        """
-        pairs = 0.5 * np.pad(self.slopes, ((0, 0), (1, 1)))
-        return np.asarray(self.cell_means + pairs[:, :-2] - pairs[:, 2:])
+        """Load per area on the same cells that far away makes the field of the smooth one: array (row, cell)."""
+        return self.cell_means + sent(self.edges, self.moments).total
 
     def integral(self, at: FloatArray) -> FloatArray:
         """Integral of each row from its first edge to the positions `at`, metres: array (row, position)."""
@@ -117,6 +114,47 @@ class SmoothLoad:
     def means(self, edges: FloatArray) -> FloatArray:
         """Means between other edges, metres: array (row, cell)."""
         return np.asarray(np.diff(self.integral(edges), axis=1) / np.diff(edges))
+
+
+class Sent(NamedTuple):
+    """Loads per area that stand for the moments of cells: arrays (row, cell), by the cell that they stand for.
+
+    Attributes
+    ----------
+    before, own, behind : array (row, cell)
+        On the cell before, on the cell itself and on the one behind.
+    """
+
+    before: FloatArray
+    own: FloatArray
+    behind: FloatArray
+
+    @property
+    def total(self) -> FloatArray:
+        """What every cell receives."""
+        total = self.own.copy()
+        total[:, :-1] += self.before[:, 1:]
+        total[:, 1:] += self.behind[:, :-1]
+        return total
+
+
+def sent(edges: FloatArray, moments: FloatArray) -> Sent:
+    """Forces on a cell and its neighbours with the moment of the cell, without resultant and second moment."""
+    widths = np.diff(edges)
+    if widths.size == 1:
+        return Sent(*(np.zeros(moments.shape) for _ in range(3)))
+    apart = 0.5 * (widths[1:] + widths[:-1])
+    # The first and the last cell have one neighbour.
+    ahead, back = np.append(apart, np.inf), np.append(np.inf, apart)
+    share = np.ones(widths.size)
+    share[1:-1] = back[1:-1] / (ahead[1:-1] + back[1:-1])
+    behind = moments * share / ahead
+    share = np.ones(widths.size)
+    share[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
+    before = -moments * share / back
+    return Sent(
+        before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0)
+    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +201,7 @@ class _Row:
         self.knot[at], self.middle[at], self.last[at], self.fixed[at] = reach[inside], 0.0, 0.0, True
         # Not into a cell at the end of the row, nor beside another contact.
         last = self.widths.size - 1
-        beyond = spilling & (reach > 1) & (reach < 1.5) & (cell + 2 <= last)
+        beyond = spilling & (reach > 1) & (reach < 1.5) & (cell < last)
         beyond &= loads[row, np.minimum(cell + 2, last)] == 0
         full = ~inside & ~beyond
         at = row[full], cell[full]
