@@ -36,7 +36,7 @@ FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
 
-NARROW = 0.3
+NARROW = 0.15
 """Width of a column, over the least depth, below which it is never split. Accuracy."""
 
 BATCH = 64
@@ -159,13 +159,11 @@ class _Surroundings(NamedTuple):
     def received(self, fine: FineCells) -> FloatArray:
         """Loads on the inserted columns that stand for the moments of those that stay: array (column, y)."""
         sent, last = fine.sent, self.highest - 1
-        received = np.zeros((self.inserted.size - 1, fine.cells.shape[1]))
         stay = np.ones(fine.edges.size - 1, bool)
-        stay[self.lowest + 1 : last] = False
+        stay[self.lowest + 1 : last] = fine.stays[self.lowest + 1 : last]
         total = Sent(*(np.where(stay, each, 0.0) for each in sent)).total.T
         middles = 0.5 * (self.inserted[1:] + self.inserted[:-1])
-        received += total[np.searchsorted(fine.edges, middles) - 1]
-        return received
+        return total[np.searchsorted(fine.edges, middles) - 1]
 
     def exchanged(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
         """Jumps of all columns, the inserted ones in their place."""
@@ -196,11 +194,12 @@ def _surroundings(x: float, fine: FineCells, narrow: float, extent: tuple[float,
     low, high = edges[lowest], edges[highest]
     inserted = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
     if not on_end and low < x < high:
-        at = int(np.clip(np.searchsorted(inserted, x, side="right") - 1, 0, inserted.size - 2))
-        step = CENTRED * float(inserted[at + 1] - inserted[at])
+        # On an edge the narrower of both columns decides, so that the mirrored load is treated alike.
+        beside = np.searchsorted(inserted, [x - SAME_END * (high - low), x + SAME_END * (high - low)]) - 1
+        step = CENTRED * float(np.diff(inserted)[beside].min())
         own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
         if low < own[0] and own[-1] < high:
-            kept = np.abs(inserted - x) > 2 * step
+            kept = np.abs(inserted - x) > 1.9 * step
             kept[[0, -1]] = True
             inserted = np.sort(np.concatenate([inserted[kept], own]))
     first, last = max(lowest - 1, 0), min(highest + 1, count)
@@ -259,7 +258,7 @@ class _Layer:
 
     def loads(self, smooth: SmoothLoad) -> FloatArray:
         """Loads of columns on the cells along y that the points see."""
-        return smooth.gathered() if self.edges is None else smooth.means(self.edges)
+        return smooth.gathered() if self.edges is None else smooth.gathered_on(self.edges)
 
 
 @dataclass(frozen=True, eq=False)

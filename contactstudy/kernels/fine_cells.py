@@ -12,10 +12,10 @@ from functools import cached_property
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.checks import Array, BoolArray, FloatArray
 from contactstudy.kernels.smooth_load import Sent, SmoothLoad, sent
 
-REACH, REACH_X = 3.0, 1.5
+REACH, REACH_X = 3.0, 2.0
 """Depth, over the size of a cell along y and along x, down to which cells are refined: steps have decayed below, and
 what is left is the moments of cells. Accuracy."""
 
@@ -81,6 +81,11 @@ class FineCells:
         return mirrored(self.grid.x_edges, self._extent)
 
     @cached_property
+    def stays(self) -> BoolArray:
+        """Columns, with their nearest images, that are never split."""
+        return ~with_images(self.split, 1, self._extent)
+
+    @cached_property
     def sent(self) -> Sent:
         """Loads that stand for the moments along x of the cells and their nearest images: arrays (y, cell)."""
         moments = with_images(self._along_x.moments.T, -self._image, self._extent).T
@@ -118,10 +123,9 @@ class FineCells:
         if behind.any():
             total = self._along_x.integral(self.grid.x_edges[-1:])
             integral[:, behind] = total + self._image * (total - integral[:, behind])
-        means = np.diff(integral, axis=1) / np.diff(at)
         between = np.ones(at.size - 1, bool)
         between[np.cumsum([each.size for each in edges[:-1]], dtype=int) - 1] = False
-        return np.ascontiguousarray(means[:, between].T)
+        return np.asarray(np.diff(integral, axis=1)[:, between].T / np.diff(at)[between, None])
 
     def along_y(self, columns: FloatArray) -> SmoothLoad:
         """Columns (column, y) as smooth functions of y."""
@@ -176,9 +180,7 @@ class FineCells:
         edges = _split(self.grid.x_edges, split)
         columns = self.columns([edges])
         # Columns that stay send the moments of their load to their neighbours.
-        images = self.grid.cells_x if np.isfinite(self._extent[0]) else 0
-        kept = np.zeros(self.edges.size - 1, bool)
-        kept[images : images + split.size] = ~split
+        kept = with_images(~split, 1, self._extent)
         received = self._own(Sent(*(np.where(kept, each, 0.0) for each in self.sent)).total.T)
         return edges, columns + np.repeat(received, np.where(split, PARTS_X, 1), axis=0)
 
@@ -188,7 +190,7 @@ class FineCells:
         seen = np.flatnonzero((y_edges[1:] > self.y_edges[0]) & (y_edges[:-1] < self.y_edges[-1]))
         if seen.size:
             some = slice(int(seen[0]), int(seen[-1]) + 1)
-            cells[:, some] = self.along_y(columns).means(y_edges[some.start : some.stop + 1])
+            cells[:, some] = self.along_y(columns).gathered_on(y_edges[some.start : some.stop + 1])
         return cells
 
 
@@ -203,10 +205,10 @@ def mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
     return np.concatenate(all_edges)
 
 
-def with_images(columns: FloatArray, image: int, extent: tuple[float, float]) -> FloatArray:
+def with_images(columns: Array, image: int, extent: tuple[float, float]) -> Array:
     """Columns (column, y) between their nearest images."""
     low, high = (bool(np.isfinite(end)) for end in extent)
-    images = [image * columns[::-1]]
+    images = [columns[::-1] if image > 0 else -columns[::-1]]
     return np.concatenate([*images[:low], columns, *images[:high]])
 
 

@@ -33,6 +33,8 @@ def smooth_field(
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     if not near.all():
         field[..., ~near] = half_space_field(fine.far(), influence, grid, x, y, z[~near], extent=extent)
+    if not near.any():
+        return field
     on_centres = np.zeros(x.size, bool)
     for row in aligned_points(x, float(grid.x[0]), grid.dx):
         on_centres[row.points] = row.offset == 0

@@ -115,6 +115,27 @@ class SmoothLoad:
         """Means between other edges, metres: array (row, cell)."""
         return np.asarray(np.diff(self.integral(edges), axis=1) / np.diff(edges))
 
+    def gathered_on(self, edges: FloatArray) -> FloatArray:
+        """Load per area between other edges that away from them makes the field of the smooth one."""
+        force, moment = (np.diff(each, axis=1) for each in (self.integral(edges), self._moment(edges)))
+        moment -= (0.5 * (edges[1:] + edges[:-1]) - self.edges[0]) * force
+        return np.asarray(force / np.diff(edges) + sent(edges, moment).total)
+
+    def _moment(self, at: FloatArray) -> FloatArray:
+        """Moment about the first edge of each row's load before the positions `at`."""
+        widths, starts = np.diff(self.edges), self.edges[:-1] - self.edges[0]
+        own = self.moments + (starts + 0.5 * widths) * self.cell_means * widths
+        before = np.zeros((own.shape[0], widths.size + 1))
+        np.cumsum(own, axis=1, out=before[:, 1:])
+        cell = np.clip(np.searchsorted(self.edges, at, side="right") - 1, 0, widths.size - 1)
+        part = np.clip((at - self.edges[cell]) / widths[cell], 0.0, 1.0)
+        first, middle, last, knot = (each[:, cell] for each in (self.first, self.middle, self.last, self.knot))
+        ahead, beyond = np.minimum(part, knot), np.maximum(part - knot, 0.0)
+        force = _part(first, middle, ahead, knot), _part(middle, last, beyond, 1 - knot)
+        local = _part_moment(first, middle, ahead, knot) + _part_moment(middle, last, beyond, 1 - knot)
+        inside = starts[cell] * (force[0] + force[1]) + widths[cell] * (local + knot * force[1])
+        return np.asarray(before[:, cell] + self.sign[:, cell] * inside * widths[cell])
+
 
 class Sent(NamedTuple):
     """Loads per area that stand for the moments of cells: arrays (row, cell), by the cell that they stand for.
@@ -260,6 +281,12 @@ def _part(a: FloatArray, b: FloatArray, along: FloatArray, length: FloatArray) -
     """Integral over the first `along` of such a function's `length`."""
     squared = a * a + (b * b - a * a) * (along / np.where(length > 0, length, 1.0))
     return np.asarray(along * _mean(a, np.sqrt(np.maximum(squared, 0.0))))
+
+
+def _part_moment(a: FloatArray, b: FloatArray, along: FloatArray, length: FloatArray) -> FloatArray:
+    """First moment, about the first end, of the first `along` of such a function's `length`."""
+    squared = a * a + (b * b - a * a) * (along / np.where(length > 0, length, 1.0))
+    return np.asarray(along**2 * _first_moment(a, np.sqrt(np.maximum(squared, 0.0))))
 
 
 def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
