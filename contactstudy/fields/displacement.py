@@ -38,8 +38,10 @@ def displacement_field(
     body : Body
         The elastic body.
     pressure : DataArray (x, y)
-        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+        Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length. Between the centres the pressure
+        is taken as smooth, each cell keeping its force; a load that does not fall towards its end, such as a uniform
+        one, ends in a step.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional
@@ -118,7 +120,9 @@ def _part_displacement(
     if part.freed and cells.any():
         length, mirrored_once = part.freed
         seen, seen_on = seen_by_ends(cells, grid, extent)
-        problem = EndProblem(length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
+        problem = EndProblem(
+            length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid)
+        )
         for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

@@ -41,8 +41,10 @@ def stress_field(
     body : Body
         The elastic body.
     pressure : DataArray (x, y)
-        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+        Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length. Between the centres the pressure
+        is taken as smooth, each cell keeping its force; a load that does not fall towards its end, such as a uniform
+        one, ends in a step.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional

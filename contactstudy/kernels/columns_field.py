@@ -11,30 +11,19 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
+from contactstudy.kernels.far_images import far_images
 from contactstudy.kernels.fine_cells import PARTS_Y, FineCells, mirrored, seen_apart, with_images
-from contactstudy.kernels.images import image_kernel, snapped
+from contactstudy.kernels.images import snapped
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.smooth_load import Sent, SmoothLoad
 
-IMAGE_POINTS = 16
-"""Chebyshev points along x on which the load is gathered for its farther images. Accuracy."""
-
-IMAGE_CELL = 1e-3
-"""Width of the cells that stand for these points, over the length. Accuracy."""
-
-IMAGE_DEPTHS, DEEPEST = 6, 0.2
-"""Chebyshev depths at which the farther images are summed for more depths than these, and the largest depth over the
-length for which these suffice: they are a length away. Accuracy: 1e-7 of the pressure."""
-
 FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
-
 
 NARROW = 0.15
 """Width of a column, over the least depth, below which it is never split. Accuracy."""
@@ -94,7 +83,7 @@ def columns_field(
                 for number, corner in zip(layer.numbers.tolist(), layer.corners, strict=True):
                     field[:, i, layer.points, number] = own.field(corner, position, layer.at)
     if np.isfinite(extent).all() and not added:
-        field += _far_images(load, influence, grid, first, x, y, z, extent)
+        field += far_images(load, influence, grid, first, x, y, z, extent)
     return field
 
 
@@ -120,9 +109,7 @@ def _smooth(
     alone = [_Jumps.of(edges, loads, layer) for loads, layer in zip(base, layers, strict=True)]
     nothing = [_Jumps.of(edges, np.zeros(loads.shape), layer) for loads, layer in zip(base, layers, strict=True)]
     for start in range(0, x.size, BATCH):
-        around = [
-            _surroundings(position, fine, narrow, extent) for position in x[start : start + BATCH].tolist()
-        ]
+        around = [_surroundings(position, fine, narrow, extent) for position in x[start : start + BATCH].tolist()]
         exchanged = [each for each in around if each is not None]
         inserted = []
         if exchanged:
@@ -157,7 +144,7 @@ class _Surroundings(NamedTuple):
     highest: int
 
     def received(self, fine: FineCells) -> FloatArray:
-        """Loads on the inserted columns that stand for the moments of those that stay: array (column, y)."""
+        """Return what the inserted columns receive from those that stay, for their moments: array (column, y)."""
         sent, last = fine.sent, self.highest - 1
         stay = np.ones(fine.edges.size - 1, bool)
         stay[self.lowest + 1 : last] = fine.stays[self.lowest + 1 : last]
@@ -249,15 +236,15 @@ class _Layer:
             before = int(np.floor(-offset / step - 0.5))
             begin = offset + step * (before + 0.5)
             total = int(np.ceil((count * dy - begin) / step - 1e-9))
-            edges = start + begin + step * np.arange(total + 1.0)
+            edges = np.asarray(start + begin + step * np.arange(total + 1.0))
             offset, cells, count = 0.5 * step, parts * cells - before - 1, total
         lowest = int(cells.min()) - count
-        offsets = offset + step * np.arange(lowest, int(cells.max()) + 1)
+        offsets: FloatArray = offset + step * np.arange(lowest, int(cells.max()) + 1.0)
         corners = [_EvenCorner(influence, offsets, float(z[number])) for number in numbers]
         return cls(column.points, cells - int(cells.min()), numbers, corners, edges)
 
     def loads(self, smooth: SmoothLoad) -> FloatArray:
-        """Loads of columns on the cells along y that the points see."""
+        """Return the loads of columns on the cells along y that the points see."""
         return smooth.gathered() if self.edges is None else smooth.gathered_on(self.edges)
 
 
@@ -316,59 +303,3 @@ class _EvenCorner:
         if self._index is None:
             return values
         return np.asarray(values[:, :, self._index] * self._signs)
-
-
-def _far_images(
-    load: FloatArray,
-    influence: Influence,
-    grid: Grid,
-    first: int,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    extent: tuple[float, float],
-) -> FloatArray:
-    """Field of all images but the nearest: they vary smoothly over the body, so few points along x tell it."""
-    low, length = extent[0], extent[1] - extent[0]
-    nodes = chebyshev.chebpts1(IMAGE_POINTS)
-    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_POINTS - 1))
-    to_x = chebyshev.chebvander(2 * (x - low) / length - 1, IMAGE_POINTS - 1) @ coefficients
-    edges = 2 * (grid.x_edges - low) / length - 1
-    primitives = np.array([chebyshev.chebval(edges, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])
-    width = IMAGE_CELL * length
-    gathered = 0.5 * length / width * (coefficients.T @ np.diff(primitives, axis=1)) @ load
-    points = 0.5 * length * (nodes + 1)
-    patterns = (
-        (np.subtract.outer(points, points), 2 * length, 1),
-        (np.add.outer(points, points) - length, 3 * length, influence.load.sign_x),
-    )
-    level = width * grid.dy * np.array(influence.image_level)[:, None, None]
-    depths, to_z = _few_depths(z, length)
-    field = np.zeros((influence.components, x.size, y.size, depths.size))
-    for column in aligned_points(y, float(grid.y[first]), grid.dy):
-        lowest = int(column.cells.min()) - load.shape[1] + 1
-        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
-        size = fft.next_fast_len(offsets.size, real=True)
-        at = column.cells - int(column.cells.min())
-        spectrum = fft.rfft(gathered[:, ::-1], size, axis=1).conj()
-        for number, depth in enumerate(depths.tolist()):
-            total = np.zeros((influence.components, points.size, at.size))
-            for distances, nearest, sign in patterns:
-                kernel = image_kernel(
-                    influence.corner_at(depth), distances.ravel(), offsets, width, grid.dy, length, nearest=nearest
-                )
-                kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
-                summed = np.einsum("cpgk,gk->cpk", fft.rfft(kernel, size, axis=3), spectrum)
-                total += sign * fft.irfft(summed, size, axis=2)[:, :, at]
-            field[:, :, column.points, number] = to_x @ total
-    return field if to_z is None else field @ to_z.T
-
-
-def _few_depths(z: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
-    """Depths at which images far away are summed, and the matrix (z, depth) that interpolates; none if it is `z`."""
-    deepest = float(z.max())
-    if z.size <= IMAGE_DEPTHS or deepest > DEEPEST * length:
-        return z, None
-    nodes = chebyshev.chebpts1(IMAGE_DEPTHS)
-    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_DEPTHS - 1))
-    return 0.5 * deepest * (nodes + 1), chebyshev.chebvander(2 * z / deepest - 1, IMAGE_DEPTHS - 1) @ coefficients

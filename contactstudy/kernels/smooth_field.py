@@ -50,5 +50,6 @@ def smooth_field(
                 found += columns_field(
                     load, influence, grid, x[rows], y[column.points], z[near], extent=extent, fine=fine, added=True
                 )
-            field[np.ix_(range(influence.components), rows, column.points, np.flatnonzero(near))] = found
+            every = np.arange(influence.components)
+            field[np.ix_(every, rows, column.points, np.flatnonzero(near))] = found
     return field

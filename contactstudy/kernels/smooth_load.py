@@ -70,7 +70,8 @@ class SmoothLoad:
         fixed = np.zeros(loads.shape, bool)
         forwards = _Row(loads, sign, widths, first, middle, last, knot, fixed)
         forwards.end(spilling=spilling)
-        backwards = _Row(*(each[..., ::-1] for each in (loads, sign, widths, last, middle, first, knot, fixed)))
+        turned = (each[:, ::-1] for each in (last, middle, first, knot))
+        backwards = _Row(loads[:, ::-1], sign[:, ::-1], widths[::-1], *turned, fixed=fixed[:, ::-1])
         np.subtract(1.0, knot, out=knot)
         backwards.end(spilling=spilling)
         np.subtract(1.0, knot, out=knot)
@@ -160,7 +161,7 @@ class Sent(NamedTuple):
 
 
 def sent(edges: FloatArray, moments: FloatArray) -> Sent:
-    """Forces on a cell and its neighbours with the moment of the cell, without resultant and second moment."""
+    """Put forces on each cell and its neighbours that have its moment, no resultant and no second moment."""
     widths = np.diff(edges)
     if widths.size == 1:
         return Sent(*(np.zeros(moments.shape) for _ in range(3)))
@@ -173,9 +174,7 @@ def sent(edges: FloatArray, moments: FloatArray) -> Sent:
     share = np.ones(widths.size)
     share[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
     before = -moments * share / back
-    return Sent(
-        before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0)
-    )
+    return Sent(before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0))
 
 
 @dataclass(frozen=True, eq=False)
@@ -210,9 +209,8 @@ class _Row:
         one, two, three = before(1), before(2), before(3)
         face, room = self._face(cell, one, two, 1), self.widths[cell]
         falling = np.flatnonzero((two > one) & (one > own) & (face > 0))
-        row, cell, own, one, two, three, face, room = (
-            each[falling] for each in (row, cell, own, one, two, three, face, room)
-        )
+        row, cell = row[falling], cell[falling]
+        own, one, two, three, face, room = (each[falling] for each in (own, one, two, three, face, room))
         self.first[row, cell] = face
         self.last[row, cell - 1] = face
         # The square falls linearly from the face: over 3/2 of the mean over the face's value, if that is in the cell.
@@ -235,15 +233,11 @@ class _Row:
         shared = np.flatnonzero(
             (reach < NARROW) & (three > two) & (face > 0) & (length > width) & (length < width + room)
         )
-        row, cell, face, width, room, length = (each[shared] for each in (row, cell, face, width, room, length))
-        self.last[row, cell - 2] = face
-        for at, start, values in (
-            (cell - 1, 0.0, (self.first, self.middle, self.last)),
-            (cell, 1.0, (self.first,)),
-        ):
-            for number, value in enumerate(values):
-                distance = (start + 0.5 * number) * width
-                value[row, at] = face * np.sqrt(np.maximum(1 - distance / length, 0.0))
+        row, cell = row[shared], cell[shared]
+        face, width, room, length = (each[shared] for each in (face, width, room, length))
+        self.last[row, cell - 2] = self.first[row, cell - 1] = face
+        self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * width / length)
+        self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - width / length)
         self.knot[row, cell - 1], self.fixed[row, cell - 1] = 0.5, True
         self.knot[row, cell] = (length - width) / room
 
