@@ -21,6 +21,9 @@ from .case import Case as Case
 from .case import Roller as Roller
 from .case import choose_grid as choose_grid
 from .case import roughness as roughness
+from .case.motion import Rolling as Rolling
+from .case.motion import Shift as Shift
+from .case.motion import Sliding as Sliding
 from .contact import slices as slices
 from .contact import solve_contact as solve_contact
 from .contact.end_law import edge_peak as edge_peak

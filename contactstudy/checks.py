@@ -29,6 +29,11 @@ def store(checked: object, **values: object) -> None:
         object.__setattr__(checked, name, value)
 
 
+LARGEST = 1e50
+"""Largest number that is taken, and one over the smallest positive one: far beyond every quantity in SI units, and
+small enough for products of a few to be numbers as well."""
+
+
 def _float(value: Real) -> float:
     """Return a real number as a float; one beyond the range of floats is infinite."""
     try:
@@ -39,26 +44,34 @@ def _float(value: Real) -> float:
 
 def finite(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite real number."""
-    suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not np.isfinite(_float(value)):
-        raise InvalidInputError(name, value, f"a finite number{suffix}")
-    return float(value)
+    return _within(name, value, -LARGEST, f"a finite number{_suffix(unit)}")
 
 
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a positive finite number."""
-    suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not 0 < _float(value) < np.inf:
-        raise InvalidInputError(name, value, f"a positive finite number{suffix}")
-    return float(value)
+    return _within(name, value, 1 / LARGEST, f"a positive finite number{_suffix(unit)}")
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite number >= 0."""
-    suffix = f" ({unit})" if unit else ""
-    if isinstance(value, bool) or not isinstance(value, Real) or not 0 <= _float(value) < np.inf:
-        raise InvalidInputError(name, value, f"a finite number not below zero{suffix}")
-    return float(value)
+    return _within(name, value, 0.0, f"a finite number not below zero{_suffix(unit)}")
+
+
+def _suffix(unit: str) -> str:
+    """Return a unit in brackets, if there is one."""
+    return f" ({unit})" if unit else ""
+
+
+def _within(name: str, value: object, least: float, allowed: str) -> float:
+    """Return a real number from `least` to `LARGEST`, or raise."""
+    if not isinstance(value, bool) and isinstance(value, Real):
+        found = _float(value)
+        if least <= found <= LARGEST:
+            return found
+        if np.isfinite(found) and (found > 0 or least < 0):
+            sizes = f"{1 / LARGEST:g} to {LARGEST:g}"
+            raise InvalidInputError(name, value, f"{allowed}, of a size from {sizes}", "units are SI")
+    raise InvalidInputError(name, value, allowed)
 
 
 def count(name: str, value: object, least: int = 1) -> int:
@@ -107,4 +120,8 @@ def coordinates(name: str, values: object, unit: str = "m") -> FloatArray:
     bad = np.flatnonzero(~np.isfinite(array))
     if bad.size:
         raise InvalidInputError(name, f"{array[bad[0]]} at position {bad[0]}", f"finite everywhere ({unit})")
+    large = np.flatnonzero(np.abs(array) > LARGEST)
+    if large.size:
+        allowed = f"at most {LARGEST:g} everywhere ({unit})"
+        raise InvalidInputError(name, f"{array[large[0]]} at position {large[0]}", allowed, "units are SI")
     return array

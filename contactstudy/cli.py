@@ -207,7 +207,7 @@ def _draw(folder: Path) -> list[Path]:
         from contactstudy.study import open_study
 
         paths = []
-        for name, figure in study_figures(open_study(folder)).items():
+        for name, figure in study_figures(open_study(folder, cells="own")).items():
             paths.append(folder / f"{name}.png")
             figure.savefig(paths[-1], dpi=150)
             pyplot.close(figure)

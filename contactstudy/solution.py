@@ -7,23 +7,25 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.discretisation import discretisation_error
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
+from contactstudy.case.motion import Sliding
 from contactstudy.case.roughness import heights_on
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.frictional import FrictionalContact, frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact, settled_values
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
-from contactstudy.fields.loads import sliding
+from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.stress import end_traction_residual, stress_and_residual, stress_dataset
+from contactstudy.kernels.load import Load
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
@@ -74,7 +76,7 @@ def solve(
         Body, roller, load and friction.
     grid : Grid, optional
         Cells of pressure and gap. Default: columns of different widths, refined along the axis until `accuracy` is
-        reached; for rough surfaces, the uniform cells of `choose_grid`.
+        reached; for rough surfaces, and with stick and slip, the uniform cells of `choose_grid`.
     accuracy : float
         Error, over the peak pressure, to which the peak and the pressures at the roller's ends are settled: from 0.001
         to 0.1. Where a sharp end makes the pressure singular, its law is stated instead.
@@ -98,8 +100,9 @@ def solve(
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
         `end_traction_residual`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
-        instead of ``(x, y, z)``. On refined columns also `peak_pressure`, `end_pressure_first` and
-        `end_pressure_last`, each with its error ``<name>_error``. At a singular end both are infinite, and
+        instead of ``(x, y, z)``. On refined columns also `peak_pressure` (and ``_first`` and ``_last``, of either
+        half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
+        `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
         or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end.
 
@@ -123,7 +126,8 @@ def solve(
     checks.instance("case", case, Case, "a Case")
     _check_balanced(case)
     known = xr.Dataset()
-    if grid is None and roughness is None:
+    slides = isinstance(case.motion, Sliding)
+    if grid is None and roughness is None and slides:
         settled = settled_contact(case, check_accuracy(accuracy), checks.positive("tolerance", tolerance))
         contact, known = _checked(case, settled.contact), settled_values(settled)
     elif grid is None:
@@ -133,6 +137,10 @@ def solve(
         contact = _contact(case, grid, roughness, tolerance)
     grid = contact.shape.grid
     result = _labelled(case, contact).assign(known.data_vars)
+    loads = sliding(contact.pressure, case.friction)
+    if not slides:
+        found = _with_tractions(case, contact)
+        result, loads = labelled(_labelled(case, found.contact), found), found.loads
     if error_estimate and not known:
         if min(grid.shape) < LEAST_CELLS:
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
@@ -144,7 +152,6 @@ def solve(
     result["initial_gap"] = (("x", "y"), contact.shape.gap.values.copy())
     result["hertz_half_width"] = half_width
     result["hertz_max_pressure"] = case.hertz_max_pressure
-    loads = sliding(contact.pressure, case.friction)
     looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z
@@ -191,7 +198,7 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         ArrayKey(gap),
         Prescribed(case.normal_load, case.load_position).checked(gap, grid),
         case.counterbody,
-        case.friction if case.coupled else 0.0,
+        case.friction if case.coupled and isinstance(case.motion, Sliding) else 0.0,
     )
     try:
         contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))
@@ -201,6 +208,17 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
             raise WindowError(advice) from error
         raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
     return _checked(case, contact)
+
+
+def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
+    """Tractions of a case that does not slide fully."""
+    assert not isinstance(case.motion, Sliding)
+    middle = case.roller_start + 0.5 * case.roller.length
+    found = frictional_contact(
+        contact.shape, contact.settings, case.motion, case.friction, middle, coupled=case.coupled
+    )
+    found.warn_unless_converged(stacklevel=3)
+    return found
 
 
 def _checked(case: Case, contact: Contact) -> Contact:
@@ -266,6 +284,9 @@ def roller_stress(
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
+    *,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Stresses in an elastic roller.
 
@@ -279,6 +300,8 @@ def roller_stress(
         Positions, metres: x from the roller's own end I, y as on the body; default: the roller's cell centres.
     z : sequence of float
         Depths into the roller, metres, not negative.
+    traction_x, traction_y : DataArray (x, y), optional
+        Tractions on the body, as in the result, if the roller does not slide fully.
 
     Returns
     -------
@@ -304,8 +327,16 @@ def roller_stress(
     checks.instance("case", case, Case, "a Case")
     if case.counterbody is None:
         raise InvalidInputError("case.roller.material", None, "a Material: a rigid roller has no stresses")
-    pressure = in_si("pressure", pressure, "Pa")
-    values, grid = labelled_cells("pressure", pressure, extent=case.body.extent)
+    slides = isinstance(case.motion, Sliding)
+    if not slides and (traction_x is None or traction_y is None):
+        raise InvalidInputError(
+            "traction_x, traction_y", None, "those of the result: they do not follow from the pressure"
+        )
+    friction = case.friction if slides and traction_y is None else 0.0
+    grid, on_body, _ = prescribed_loads(case.body, pressure, friction, traction_x, traction_y)
     body, own = case.counterbody.body, case.counterbody.own_grid(grid)
-    loads = sliding(case.counterbody.load_on(grid, values), -case.friction)
+    loads = {
+        load: TopLoad(case.counterbody.load_on(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor)
+        for load, top in on_body.items()
+    }
     return stress_dataset(body, loads, own, field_positions(body, own, x, y, z))

@@ -1,22 +1,28 @@
 """One real roller on real raceways: what each profile and each model of the ends makes of it.
 
-Usage: ``python studies/real_roller.py [--out FOLDER] [--cells N]``; about three minutes. Prints Markdown
+Usage: ``python studies/real_roller.py [--out FOLDER] [--accuracy A]``; about a minute on two cores. Prints Markdown
 tables and writes ``real_roller.nc``. Radius 5 mm, length 10 mm, steel on steel, 1.5 GPa Hertz pressure; raceways 14 mm
 wide and as wide as the roller.
 
 Each profile is pressed with the same load and the same contact modulus: half-space on half-space; as a rigid roller on
 a raceway with free ends, which then has half of Young's modulus; as an elastic half-space on a raceway of steel; and
-with both bodies of finite length. A second table follows the pressure at the roller's end as the cells shrink.
+with both bodies of finite length. Columns are refined until every pressure is settled; where an end is singular its
+intensity is stated instead.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
+from functools import partial
+from multiprocessing import get_context
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from threadpoolctl import threadpool_limits
 
 import contactstudy as cs
 
@@ -39,12 +45,12 @@ PROFILES: dict[str, cs.profiles.Profile] = {
     "partial crown": cs.profiles.PartialCrown(6e-3, 0.6),
 }
 MODELS = ("half-spaces", "finite raceway, rigid roller", "finite raceway, half-space roller", "both finite")
-QUANTITIES = ("peak_pressure", "peak_pressure_error", "edge_pressure", "edge_pressure_error", "peak_von_mises")
-UNRESOLVED = 0.2
-"""Two grids that differ by more than this fraction say nothing about the limit."""
-
-FOLLOWED = "Lundberg"
-"""Profile whose edge pressure is followed as the cells shrink."""
+QUANTITIES = (
+    *("peak_pressure", "peak_pressure_error", "end_pressure", "end_pressure_error"),
+    *("end_intensity", "end_intensity_error", "end_exponent", "end_load", "end_load_error", "peak_von_mises"),
+)
+PRESSURES = ("peak_pressure", "peak_pressure_error", "end_pressure", "end_pressure_error", "peak_von_mises")
+"""Quantities over p0; loads are over that of a half-width, intensities over p0 and the half-width to the exponent."""
 
 
 def case_of(profile: cs.profiles.Profile, model: str, raceway: float, length: float = LENGTH) -> cs.Case:
@@ -65,55 +71,62 @@ def case_of(profile: cs.profiles.Profile, model: str, raceway: float, length: fl
     return cs.Case(body=body, roller=roller, max_pressure=PRESSURE, end_distance=0.5 * (raceway - length))
 
 
-def edge_pressure(result: xr.Dataset) -> float:
-    """Largest pressure within half a width of the roller's ends, over p0."""
-    along = result["pressure"].max("y")
-    facing = result["x"][np.isfinite(result["initial_gap"]).any("y")]
-    near = (result["x"] < facing[0] + 0.5 * HALF_WIDTH) | (result["x"] > facing[-1] - 0.5 * HALF_WIDTH)
-    return float(along.where(near).max()) / PRESSURE
-
-
-def edge_error(case: cs.Case, grid: cs.Grid, result: xr.Dataset) -> float:
-    """Error of the edge pressure from a contact on half the cells; infinite if a sharp end carries load there.
-
-    Two grids may agree by chance, so it is never less, relatively, than the peak's.
-    """
-    for end in ("first", "last"):
-        if float(result[f"end_pressure_{end}"]) > 0 and np.isinf(result[f"end_pressure_{end}_error"]):
-            return np.inf
-    fine, coarse = edge_pressure(result), edge_pressure(cs.solve(case, grid.coarsened(), stresses=False))
-    if fine == 0 and coarse == 0:
-        return 0.0
-    least = fine * float(result["peak_pressure_error"] / result["peak_pressure"])
-    return max(abs(fine - coarse), least) if abs(fine - coarse) <= UNRESOLVED * fine else np.inf
-
-
-def measured(case: cs.Case, cells: float) -> dict[str, float]:
-    """Peak and edge pressure with their errors and the largest von Mises stress in the body, over p0."""
-    grid = cs.choose_grid(case, cells_x=cells, cells_y=2 * cells, window=2.2)
+def measured(case: cs.Case, accuracy: float) -> dict[str, float]:
+    """Peak, pressure and load at the end with their errors, law of a singular end, largest von Mises stress."""
     from_end = HALF_WIDTH * np.linspace(0.0, 20.0, 81)
     from_end = np.append(from_end[from_end < 0.5 * case.roller.length], 0.5 * case.roller.length)
-    x = case.roller_start + np.unique(np.concatenate([from_end, case.roller.length - from_end]))
+    # Everything is symmetric about mid-length.
+    x = np.clip(case.roller_start + from_end, *case.body.extent)
     z = HALF_WIDTH * np.linspace(0.1, 1.2, 23)
-    result = cs.solve(case, grid, x=np.clip(x, *case.body.extent), y=[0.0], z=z, error_estimate=True)
+    result = cs.solve(case, accuracy=accuracy, x=np.unique(x), y=[0.0], z=z)
+    exponent = float(result.get("end_exponent_first", np.nan))
+    over_intensity = PRESSURE * HALF_WIDTH ** np.nan_to_num(exponent)
+    over_load = case.normal_load * HALF_WIDTH / case.contact_length
+    nothing = xr.DataArray(np.nan)
+
+    def over(name: str, scale: float) -> float:
+        return float(result.get(name, nothing)) / scale
+
     return {
-        "peak_pressure": float(result["peak_pressure"]) / PRESSURE,
-        "peak_pressure_error": float(result["peak_pressure_error"]) / PRESSURE,
-        "edge_pressure": edge_pressure(result),
-        "edge_pressure_error": edge_error(case, grid, result),
+        "peak_pressure": over("peak_pressure", PRESSURE),
+        "peak_pressure_error": over("peak_pressure_error", PRESSURE),
+        "end_pressure": over("end_pressure_first", PRESSURE),
+        "end_pressure_error": over("end_pressure_first_error", PRESSURE),
+        "end_intensity": over("end_intensity_first", over_intensity),
+        "end_intensity_error": over("end_intensity_first_error", over_intensity),
+        "end_exponent": exponent,
+        "end_load": over("end_load_first", over_load),
+        "end_load_error": over("end_load_first_error", over_load),
         "peak_von_mises": float(result["von_mises"].max()) / PRESSURE,
     }
 
 
-def solved(profiles: Mapping[str, cs.profiles.Profile], cells: float, length: float = LENGTH) -> xr.Dataset:
-    """Every quantity (raceway, profile, model); raceways keep their distance from a shorter roller."""
+def column(
+    profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float, raceway: float, model: str
+) -> list[dict[str, float]]:
+    """All profiles with one raceway and model, which share what frees the ends."""
+    with threadpool_limits(1):
+        return [measured(case_of(profile, model, raceway, length), accuracy) for profile in profiles.values()]
+
+
+def solved(
+    profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float = LENGTH, *, workers: int | None = None
+) -> xr.Dataset:
+    """Every quantity (raceway, profile, model); raceways keep their distance from a shorter roller.
+
+    `workers` processes share the work, by default one per core; 0: this one does it.
+    """
     raceways = [each - LENGTH + length for each in RACEWAYS]
+    pairs = list(itertools.product(raceways, MODELS))
+    solve_column = partial(column, profiles, accuracy, length)
+    if workers == 0:
+        columns = list(itertools.starmap(solve_column, pairs))
+    else:
+        with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
+            columns = list(pool.map(solve_column, *zip(*pairs, strict=True)))
+    found = dict(zip(pairs, columns, strict=True))
     rows = [
-        [
-            [measured(case_of(profile, model, raceway, length), cells) for model in MODELS]
-            for profile in profiles.values()
-        ]
-        for raceway in raceways
+        [[found[raceway, model][number] for model in MODELS] for number in range(len(profiles))] for raceway in raceways
     ]
     dims = ("raceway", "profile", "model")
     return xr.Dataset(
@@ -121,7 +134,7 @@ def solved(profiles: Mapping[str, cs.profiles.Profile], cells: float, length: fl
             name: (
                 dims,
                 [[[cell[name] for cell in row] for row in table] for table in rows],
-                {"units": "1", "long_name": f"{name.replace('_', ' ')} over p0"},
+                {"units": "1", "long_name": f"{name.replace('_', ' ')}{' over p0' if name in PRESSURES else ''}"},
             )
             for name in QUANTITIES
         },
@@ -134,47 +147,46 @@ def solved(profiles: Mapping[str, cs.profiles.Profile], cells: float, length: fl
     )
 
 
-def convergence(
-    profile: cs.profiles.Profile, counts: tuple[float, ...], raceway: float, length: float = LENGTH
-) -> xr.DataArray:
-    """Edge pressure over p0 (model, cells) on ever smaller cells along x."""
-    found = []
-    for model in MODELS:
-        case = case_of(profile, model, raceway, length)
-        grids = [cs.choose_grid(case, cells_x=cells, cells_y=16, window=2.2) for cells in counts]
-        found.append([edge_pressure(cs.solve(case, grid, stresses=False)) for grid in grids])
-    coords = {"model": list(MODELS), "cells": ("cells", list(counts), {"long_name": "cells per half-width along x"})}
-    attributes = {"units": "1", "long_name": "edge pressure over p0"}
-    return xr.DataArray(found, coords, ("model", "cells"), name="edge_pressure_by_cells", attrs=attributes)
-
-
 def with_error(value: float, error: float) -> str:
-    """Value with its error, "grid" where the cells decide, "open" where nothing touches."""
-    if value == 0:
+    """Value with its error."""
+    return f"{value:.3f} ± {error:.3f}"
+
+
+def end_in_words(one: Mapping[str, float]) -> str:
+    """Pressure at the roller's end, the law of a singular one, or that nothing touches there."""
+    if one["end_pressure"] == 0:
         return "open"
-    return f"{value:.3f} ± {error:.3f}" if np.isfinite(error) else f"{value:.2f} (grid)"
+    if np.isfinite(one["end_pressure"]):
+        return with_error(one["end_pressure"], one["end_pressure_error"])
+    if not np.isfinite(one["end_intensity"]):
+        return "singular (logarithm)"
+    return (
+        f"singular, K = {with_error(one['end_intensity'], one['end_intensity_error'])}, m = {one['end_exponent']:.2f}"
+    )
 
 
 def table(found: xr.Dataset) -> str:
     """Markdown, one table: a row for each profile, pressures and stresses over p0."""
-    names = " | ".join(f"{model}: peak, edge, von Mises" for model in found["model"].values)
+    names = " | ".join(f"{model}: peak, end, von Mises" for model in found["model"].values)
     lines = [f"| profile | {names} |", "|---" * (found.sizes["model"] + 1) + "|"]
     for profile in found["profile"].values:
         cells = []
         for model in found["model"].values:
             one = {name: float(found[name].sel(profile=profile, model=model)) for name in QUANTITIES}
-            pressures = (with_error(one[name], one[f"{name}_error"]) for name in ("peak_pressure", "edge_pressure"))
-            cells.append(f"{', '.join(pressures)}, {one['peak_von_mises']:.3f}")
+            singular = np.isinf(one["peak_pressure"])
+            peak = "singular" if singular else with_error(one["peak_pressure"], one["peak_pressure_error"])
+            cells.append(f"{peak}, {end_in_words(one)}, {one['peak_von_mises']:.3f}")
         lines.append(f"| {profile} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def convergence_table(found: xr.DataArray) -> str:
-    """Markdown: edge pressure over p0, a column for each number of cells."""
-    counts = " | ".join(f"{count:g} cells per a" for count in found["cells"].values)
-    lines = [f"| {FOLLOWED}: edge pressure | {counts} |", "|---" * (found.sizes["cells"] + 1) + "|"]
-    for model in found["model"].values:
-        lines.append(f"| {model} | {' | '.join(f'{value:.3f}' for value in found.sel(model=model).values)} |")
+def load_table(found: xr.Dataset) -> str:
+    """Markdown: load on the last half-width of the roller, over the mean load of a half-width."""
+    lines = [f"| profile | {' | '.join(found['model'].values)} |", "|---" * (found.sizes["model"] + 1) + "|"]
+    for profile in found["profile"].values:
+        one = found.sel(profile=profile)
+        pairs = zip(one["end_load"].values, one["end_load_error"].values, strict=True)
+        lines.append(f"| {profile} | {' | '.join(with_error(*pair) for pair in pairs)} |")
     return "\n".join(lines)
 
 
@@ -182,14 +194,14 @@ def main() -> None:
     """Solve, print and write."""
     parser = argparse.ArgumentParser(description="One real roller: profiles and models of the ends.")
     parser.add_argument("--out", type=Path, default=Path("results/real_roller"))
-    parser.add_argument("--cells", type=float, default=8, help="cells per half-width along x; default 8")
+    parser.add_argument(
+        "--accuracy", type=float, default=0.01, help="error to which pressures are settled; default 0.01"
+    )
     options = parser.parse_args()
-    found = solved(PROFILES, options.cells)
+    found = solved(PROFILES, options.accuracy)
     for raceway in found["raceway"].values:
-        print(f"Raceway {1e3 * raceway:g} mm wide\n\n{table(found.sel(raceway=raceway))}\n")
-    counts = (0.5 * options.cells, options.cells, 2 * options.cells)
-    found["edge_pressure_by_cells"] = convergence(PROFILES[FOLLOWED], counts, RACEWAYS[0])
-    print(convergence_table(found["edge_pressure_by_cells"]))
+        one = found.sel(raceway=raceway)
+        print(f"Raceway {1e3 * raceway:g} mm wide\n\n{table(one)}\n\nLoad on the last a:\n\n{load_table(one)}\n")
     options.out.mkdir(parents=True, exist_ok=True)
     found.to_netcdf(options.out / "real_roller.nc")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -14,9 +16,11 @@ from contactstudy import (
     InvalidInputError,
     Material,
     Roller,
+    Rolling,
     WindowError,
     choose_grid,
     profiles,
+    roller_stress,
     solve,
 )
 from contactstudy.arrays.variables import STRESSES, specification
@@ -48,7 +52,11 @@ def test_everything_the_interface_promises_is_there_with_its_unit(result) -> Non
         "end_traction_residual",
         *(
             name + error
-            for name in ("peak_pressure", "end_pressure_first", "end_pressure_last")
+            for name in (
+                *("peak_pressure", "peak_pressure_first", "peak_pressure_last"),
+                *("end_pressure_first", "end_pressure_last"),
+                *("end_load_first", "end_load_last"),
+            )
             for error in ("", "_error")
         ),
     )
@@ -133,3 +141,29 @@ def test_rough_surfaces_keep_the_window_they_cover() -> None:
     smooth = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     with pytest.raises(WindowError, match="choose_grid"):
         solve(case, stresses=False, roughness=smooth)
+
+
+def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
+    """Of two equal bodies with free ends: opposite tractions make equal stresses but for a reflection along y."""
+    steel = Material(210e9, 0.3)
+    body = FiniteLengthSpace(length=0.5e-3, material=steel)
+    roller = Roller(radius=5e-3, length=0.5e-3, material=steel)
+    motion = Rolling(longitudinal_creepage=1e-3, spin=1.0)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1, motion=motion)
+    grid = choose_grid(case, cells_x=3, cells_y=10, window=1.5)
+    result = solve(case, grid, z=[0.0, 5e-5])
+    assert result.converged
+    assert 0 < int(result.stick.sum()) < int((result.pressure > 0).sum())
+    top = result.isel(z=0)
+    inner = {"x": slice(2, -2)}
+    peak = float(result.pressure.max())
+    for stress, load in (("tau_yz", "traction_y"), ("tau_xz", "traction_x"), ("sigma_zz", "pressure")):
+        assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
+    assert float(result.end_traction_residual) < 1e-4
+    tractions = {name: result[name] for name in ("traction_x", "traction_y")}
+    inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
+    reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
+    other = solve(reversed_case, grid, z=[5e-5])
+    assert np.allclose(inside.von_mises.values, other.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
+        roller_stress(case, result.pressure, z=[5e-5])

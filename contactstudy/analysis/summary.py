@@ -21,9 +21,9 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Scalars `peak_pressure` with ``_x`` and ``_y``, `end_pressure_over_p0_first` and ``_last`` (in the first and the
-        last loaded cells along the axis), their mean `end_pressure_over_p0`, `contact_length` and `contact_width` (m,
-        over whole cells).
+        Scalars `peak_pressure` with ``_x`` and ``_y``, `end_pressure_over_p0_first` and ``_last`` (at the roller's ends
+        if they are settled, infinite where they are singular; else in the first and the last loaded cells along the
+        axis), their mean `end_pressure_over_p0`, `contact_length` and `contact_width` (m, over whole cells).
 
     Examples
     --------
@@ -35,7 +35,10 @@ def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
     contact = contact_results(dataset).reset_coords(drop=True)
     kept = ["peak_pressure", "peak_pressure_x", "peak_pressure_y", "contact_length", "contact_width"]
     scale = float(dataset["hertz_max_pressure"])
-    first, last = (contact[f"edge_pressure_{end}"] / scale for end in ("first", "last"))
+    # Settled ends count; the outermost loaded cells say less the narrower they are.
+    first, last = (
+        dataset.get(f"end_pressure_{end}", contact[f"edge_pressure_{end}"]) / scale for end in ("first", "last")
+    )
     ends = {
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,

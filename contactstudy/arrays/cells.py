@@ -7,7 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid, uniform_range
-from contactstudy.checks import REAL, FloatArray
+from contactstudy.checks import LARGEST, REAL, FloatArray
 from contactstudy.errors import InvalidInputError
 
 
@@ -54,7 +54,7 @@ def labelled_cells(
         values = np.ascontiguousarray(array.transpose("x", "y").values, dtype=np.float64)
     except (TypeError, ValueError):
         raise InvalidInputError(f"{name}.dtype", array.dtype, "real numbers") from None
-    bad = ~np.isfinite(values)
+    bad = ~(np.abs(values) <= LARGEST)
     if infinite:
         bad &= values != np.inf
     if bad.any():
@@ -62,7 +62,7 @@ def labelled_cells(
         raise InvalidInputError(
             name,
             f"{values[i, j]} at x = {grid.x[i]:g}, y = {grid.y[j]:g}",
-            "finite everywhere",
+            f"finite everywhere, of a size up to {LARGEST:g}",
             f"{bad.sum()} values are not",
         )
     return values, grid

@@ -23,6 +23,10 @@ LEAST_WIDTH = 1e-12
 """Least width of a cell over the grid's length: narrower ones are lost in rounding. Accuracy."""
 
 
+MOST_CELLS = 10**8
+"""A wrong unit asks for many more."""
+
+
 @dataclass(frozen=True)
 class Grid:
     """Rectangular cells that tile ``x_min..x_max`` by ``y_min..y_max``; `from_edges` makes cells of different widths.
@@ -61,11 +65,14 @@ class Grid:
             except (TypeError, ValueError):
                 raise InvalidInputError(name, getattr(self, name), "an increasing pair (metres)") from None
             low, high = checks.finite(name, low, "metres"), checks.finite(name, high, "metres")
-            if not low < high:
-                raise InvalidInputError(name, (low, high), "an increasing pair (metres)")
+            if not high - low > max(1 / checks.LARGEST, LEAST_WIDTH * max(abs(low), abs(high))):
+                raise InvalidInputError(name, (low, high), "an increasing pair (metres), not closer than rounding is")
             checks.store(self, **{name: (low, high)})
         for name in ("cells_x", "cells_y"):
             checks.store(self, **{name: checks.count(name, getattr(self, name))})
+        if self.cells_x * self.cells_y > MOST_CELLS:
+            counts = (self.cells_x, self.cells_y)
+            raise InvalidInputError("cells_x, cells_y", counts, f"at most {MOST_CELLS:.0e} cells")
 
     @classmethod
     def from_edges(cls, x_edges: object, y_range: tuple[float, float], cells_y: int) -> Grid:

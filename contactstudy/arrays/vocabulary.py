@@ -70,9 +70,16 @@ COORDINATES = {
 CONTACT = {
     "pressure": Variable(XY, "Pa", "p", "contact pressure"),
     "shear_traction": Variable(XY, "Pa", "q", "shear traction on the body along +y"),
+    "traction_x": Variable(XY, "Pa", "q_x", "traction on the body along the roller's axis"),
+    "traction_y": Variable(XY, "Pa", "q_y", "traction on the body along +y"),
+    "slip_x": Variable(XY, "", "s_x", "slip of the roller against the body along x, per distance rolled or of a shift"),
+    "slip_y": Variable(XY, "", "s_y", "slip of the roller against the body along y, per distance rolled or of a shift"),
+    "stick": Variable(XY, "1", "", "whether the surfaces stick"),
     "gap": Variable(XY, "m", "g", "gap after deformation"),
     "initial_gap": Variable(XY, "m", "g_0", "gap before deformation"),
     "displacement_z": Variable(XY, "m", "u_z", "normal displacement of the top, into the body"),
+    "displacement_x": Variable(XY, "m", "u_x", "displacement of the top along the roller's axis"),
+    "displacement_y": Variable(XY, "m", "u_y", "displacement of the top along rolling"),
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
     "load": Variable(SCALAR, "N", "W", "normal load"),
     "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
@@ -80,6 +87,23 @@ CONTACT = {
         SCALAR, "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
     ),
     "load_position": Variable(SCALAR, "m", "x_W", "position x of the pressure's resultant"),
+    "force_x": Variable(SCALAR, "N", "F_x", "force on the body along the roller's axis"),
+    "force_y": Variable(SCALAR, "N", "F_y", "force on the body along +y"),
+    "moment_z": Variable(SCALAR, "N m", "M_z", "moment on the body about the normal through the roller's middle"),
+    "longitudinal_creepage": Variable(
+        SCALAR, "1", r"\xi", "velocity of the roller against the body along +y, over rolling"
+    ),
+    "lateral_creepage": Variable(SCALAR, "1", r"\eta", "velocity of the roller against the body along x, over rolling"),
+    "spin": Variable(SCALAR, "rad/m", r"\varphi", "angular velocity of the roller about z, over rolling"),
+    "shift_x": Variable(SCALAR, "m", "", "shift of the roller against the body along x"),
+    "shift_y": Variable(SCALAR, "m", "", "shift of the roller against the body along y"),
+    "friction_work": Variable(SCALAR, "", "A", "frictional work per distance rolled, or of a shift"),
+    "friction_steps": Variable(SCALAR, "1", "", "steps of Newton's method for stick and slip"),
+    "bound_error": Variable(SCALAR, "1", "", "largest traction above the friction's bound, over the largest bound"),
+    "slip_error": Variable(
+        SCALAR, "1", "", "largest slip where surfaces stick, or across or against the traction, over the rigid slip"
+    ),
+    "force_error": Variable(SCALAR, "1", "", "resultant of the tractions minus the prescribed one, over the largest"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),
@@ -97,6 +121,8 @@ CONTACT = {
     "hertz_max_pressure": Variable(
         SCALAR, "Pa", "p_0", "peak pressure of the Hertz line contact of the same load per length"
     ),
+    "peak_pressure_first": Variable(SCALAR, "Pa", "", "largest pressure on the half nearer to end I"),
+    "peak_pressure_last": Variable(SCALAR, "Pa", "", "largest pressure on the half nearer to end II"),
     "end_pressure_first": Variable(SCALAR, "Pa", r"p_\mathrm{I}", "largest pressure at the end nearer to end I"),
     "end_pressure_last": Variable(SCALAR, "Pa", r"p_\mathrm{II}", "largest pressure at the end nearer to end II"),
     "end_load_first": Variable(SCALAR, "N", r"W_\mathrm{I}", "load on the last half-width a nearer to end I"),
@@ -164,8 +190,8 @@ ANALYSIS = {
     "contact_length_loss": Variable(SCALAR, "m", "", "length where roller and body face each other without load"),
     "edge_pressure_first": Variable(SCALAR, "Pa", "", "pressure in the first loaded cells along x"),
     "edge_pressure_last": Variable(SCALAR, "Pa", "", "pressure in the last loaded cells along x"),
-    "end_pressure_over_p0_first": Variable(SCALAR, "1", "", "pressure in the first loaded cells, over p0"),
-    "end_pressure_over_p0_last": Variable(SCALAR, "1", "", "pressure in the last loaded cells, over p0"),
+    "end_pressure_over_p0_first": Variable(SCALAR, "1", "", "pressure at the end nearer to end I, over p0"),
+    "end_pressure_over_p0_last": Variable(SCALAR, "1", "", "pressure at the end nearer to end II, over p0"),
     "end_pressure_over_p0": Variable(SCALAR, "1", "", "mean of the pressures at both ends, over p0"),
     "resultant": Variable(SCALAR, "N", "W", "resultant of the pressure"),
     "moment": Variable(SCALAR, "N m", "M", "moment of the pressure, positive for a load at larger x"),

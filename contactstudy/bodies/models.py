@@ -55,6 +55,9 @@ class Part(NamedTuple):
 END_TOLERANCE = 1e-3
 """Distance, over a cell, between the grid's edge and the body's end that rounding may leave. Accuracy."""
 
+LONGEST_CELL, WIDEST_WINDOW = 1e6, 1e4
+"""Ratio of a cell's sides, and width of the window over the body's length, beyond which a unit is wrong."""
+
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
@@ -71,7 +74,9 @@ class Body:
     material: Material
 
     def __post_init__(self) -> None:
-        """Check the material."""
+        """Check the material, and that it is one of the kinds: this one has no ends and no model."""
+        if type(self) in (Body, EndedBody):
+            raise InvalidInputError("body", type(self).__name__, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
         checks.instance("material", self.material, Material, "a Material")
 
     @property
@@ -85,7 +90,7 @@ class Body:
         return (Part(1.0, self.extent),)
 
     def check_span(self, grid: Grid) -> None:
-        """Raise unless a grid covers the body's x from its end, or from end to end."""
+        """Raise unless a grid covers the body's x from its end, or from end to end, and is in proportion."""
         low, high = self.extent
         start, stop = grid.x_range
         tolerance = END_TOLERANCE * grid.dx
@@ -93,6 +98,13 @@ class Body:
             raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
         if np.isfinite(high) and abs(stop - high) > tolerance:
             raise InvalidInputError("x", f"cells up to {stop:g} m", f"cells that end at the free end, {high:g} m")
+        if not 1 / LONGEST_CELL <= grid.dx / grid.dy <= LONGEST_CELL:
+            sides = f"{grid.dx:.3g} by {grid.dy:.3g} m"
+            raise InvalidInputError("grid", f"cells of {sides}", f"with sides in a ratio of at most {LONGEST_CELL:g}")
+        window = grid.y_range[1] - grid.y_range[0]
+        if window > WIDEST_WINDOW * (high - low):
+            allowed = f"a window along y of at most {WIDEST_WINDOW:g} times the body's length, {high - low:.3g} m"
+            raise InvalidInputError("y", f"a window of {window:.3g} m", allowed)
 
     @property
     def unbounded_row(self) -> float:

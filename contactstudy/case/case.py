@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
+from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -25,8 +26,12 @@ INCLINED_POINTS = 41
 GAP_NODES = 6
 """Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
 
-LARGEST_HALF_WIDTH = 0.5
-"""Hertz half-width over the roller's radius beyond which a unit is wrong rather than the load high."""
+SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-10, 0.5
+"""Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
+means 10 Pa on steel."""
+
+SHORTEST, LONGEST = 1e-4, 1e10
+"""Lengths of contact and body over the Hertz half-width outside which, likewise, a unit is wrong."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +52,8 @@ class Case:
     load : float, optional
         Normal load ``W``, N.
     friction : float
-        Coefficient ``f``: the shear traction on the body is ``q = f p`` along +y.
+        Coefficient ``f``: in full sliding the shear traction on the body is ``q = f p`` along +y; in any other motion
+        ``f p`` is the bound on it.
     end_distance : float, optional
         Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
@@ -59,6 +65,8 @@ class Case:
     load_position : float, optional
         Position x on which the load acts, metres: a roller that is free to tilt takes the inclination, beyond `tilt`,
         at which the pressure balances it. Default: the roller keeps its tilt.
+    motion : Sliding, Shift or Rolling
+        How the roller moves against the body. Default: full sliding.
 
     Raises
     ------
@@ -83,6 +91,7 @@ class Case:
     coupled: bool = False
     tilt: float = 0.0
     load_position: float | None = None
+    motion: Motion = field(default=Sliding())
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -91,8 +100,12 @@ class Case:
         )
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
+        checks.instance("motion", self.motion, KINDS, MOTIONS)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         checks.store(self, friction=checks.finite("friction", self.friction), tilt=small_tilt(self.tilt))
+        if self.friction < 0 and not isinstance(self.motion, Sliding):
+            allowed = "not below zero with stick and slip: the slip turns the traction round"
+            raise InvalidInputError("friction", self.friction, allowed)
         self._check_place()
         self._check_load()
 
@@ -146,14 +159,25 @@ class Case:
         name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
         value = checks.positive(name, getattr(self, name), unit)
         checks.store(self, **{name: value})
-        if self.hertz_half_width > LARGEST_HALF_WIDTH * self.roller.radius:
+        if not SMALLEST_HALF_WIDTH <= self.hertz_half_width / self.roller.radius <= LARGEST_HALF_WIDTH:
             raise InvalidInputError(
                 name,
                 value,
                 f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
-                f"of the roller's radius, {self.roller.radius:g} m",
+                f"and at least {SMALLEST_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
                 f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
             )
+
+        low, high = self.body.extent
+        lengths = {"roller.length": self.contact_length, "body.length": high - low}
+        for longest, length in lengths.items():
+            if np.isfinite(length) and not SHORTEST <= length / self.hertz_half_width <= LONGEST:
+                raise InvalidInputError(
+                    longest,
+                    length,
+                    f"between {SHORTEST:g} and {LONGEST:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
+                    "lengths are in metres, pressures and moduli in Pa, loads in N",
+                )
 
     @property
     def roller_start(self) -> float:

@@ -8,7 +8,7 @@ from typing import TypeVar
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.grid import Grid, growing_edges
+from contactstudy.arrays.grid import MOST_CELLS, Grid, growing_edges
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
@@ -17,9 +17,6 @@ from contactstudy.errors import InvalidInputError, WindowError
 Result = TypeVar("Result")
 GridOrNone = TypeVar("GridOrNone")
 """A grid, or None for columns that the solver refines."""
-
-MOST_CELLS = 10**8
-"""Of a chosen grid: a wrong unit asks for many more."""
 
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn where none is given: a short or a tilted

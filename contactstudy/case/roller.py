@@ -12,6 +12,7 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
+from contactstudy.profiles.base import checked_drop
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,9 +61,8 @@ class Roller:
         checks.known_name("ends", self.ends, ("free", "none"))
         tried = np.array([0.0, 0.25 * self.length])
         local_radius(self.profile, tried, self.length, self.radius)
-        drop = self.profile.drop(tried, self.length)
-        if drop.shape != (2,) or not np.all(drop >= 0):
-            raise InvalidInputError("profile", self.profile, "a profile with a drop not below zero")
+        if np.isinf(checked_drop(self.profile, tried, self.length)).all():
+            raise InvalidInputError("profile", self.profile, "a profile whose drop is finite but at the very ends")
 
     @property
     def body(self) -> Body | None:
@@ -91,6 +91,6 @@ class Roller:
         """
         inside = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)
-        drop[inside] = self.profile.drop(x[inside], self.length)
+        drop[inside] = checked_drop(self.profile, x[inside], self.length)
         radius = local_radius(self.profile, x, self.length, self.radius)
         return np.asarray(drop[:, None] + y[None, :] ** 2 / (2 * radius[:, None]))

@@ -44,8 +44,8 @@ class AxialShape:
         Height along the axis over the plane that the shape touches, metres.
     room : tuple of float
         How far the face of the body goes on beyond either end, metres; 0 or less where it does not.
-    rigid : bool
-        Whether it is rigid.
+    stiff : bool
+        Whether it has no free ends of its own: rigid, or a half-space.
     """
 
     start: float
@@ -54,7 +54,11 @@ class AxialShape:
     depth: float
     height: Callable[[FloatArray], FloatArray]
     room: tuple[float, float]
-    rigid: bool = True
+    stiff: bool = True
+
+    def sharp(self, side: int) -> bool:
+        """Whether an end is singular with the exponent 0.5 if it is pressed: a stiff one on a face that goes on."""
+        return self.stiff and self.room[side] > 0
 
 
 def first_edges(shape: AxialShape) -> FloatArray:

@@ -167,7 +167,8 @@ def solve_complementarity(
         residual = np.where(state.contact, opening, 0.0)
         violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
         scale = np.ptp(state.sunk)
-        history.append(float(violation / scale))
+        # On a few coarse cells, all of which touch, everything may sink alike.
+        history.append(float(violation / scale) if scale > 0 else np.inf)
         step, along, curvature = state.search(residual)
         moved = state.pressure - step * state.direction
         change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())

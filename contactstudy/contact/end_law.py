@@ -57,7 +57,7 @@ class EndLaw:
     kind : str
         "power" or "logarithm".
     exponent : float
-        ``m`` of ``p = K d**-m``: 0.5 at a rigid end, fitted at an elastic one (NaN until then), 0 for a logarithm.
+        ``m`` of ``p = K d**-m``: 0.5 at a stiff end inside a face, else fitted (NaN until then), 0 for a logarithm.
     intensity, intensity_error : float
         ``K`` and its estimated error, Pa m**m; NaN for a logarithm.
     """
@@ -87,7 +87,7 @@ class EndLaw:
         return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error)
 
 
-def law_of(samples: list[Sample], *, rigid: bool) -> EndLaw | None:
+def law_of(samples: list[Sample], *, stiff: bool) -> EndLaw | None:
     """Decide on the law of an end from its outermost column between splittings; None if it settles."""
     if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
         return None
@@ -98,7 +98,7 @@ def law_of(samples: list[Sample], *, rigid: bool) -> EndLaw | None:
         for before, after in pairwise(samples[-3:])
     ]
     if min(growth) > LEAST_GROWTH:
-        return EndLaw("power", 0.5 if rigid else np.nan)
+        return EndLaw("power", 0.5 if stiff else np.nan)
     steps = [
         (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
     ]

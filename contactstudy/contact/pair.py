@@ -1,8 +1,8 @@
-"""Two elastic bodies pressed on each other: their displacements add up, each on cells along x that suit it."""
+"""Two elastic bodies pressed on each other: how far they move apart, each on cells along x that suit it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -37,16 +37,22 @@ class Shares:
         return Shares(_joined(self.to), _joined(self.back))
 
 
+def _opposed(direction: Load, values: FloatArray) -> FloatArray:
+    """Reverse a load or a displacement along the surface, as the second body has it."""
+    return values if direction is Load.NORMAL else -values
+
+
 def _joined(shares: FloatArray) -> FloatArray:
     rows, columns = shares.shape
     return np.asarray(0.5 * shares.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)))
 
 
 class PairOperator:
-    """Displacement of two bodies towards each other, as one operator on the first one's grid.
+    """Displacement of two bodies relative to each other, as one operator on the first one's grid.
 
-    With the loads carried over to the second body's cells and its displacements back by the same overlaps, the sum is
-    symmetric as each part is. A traction acts on the second body the other way round.
+    Normal displacements, each into its own body, add up; along the surface it is the first body's less the second
+    one's. With the loads carried over to the second body's cells and its displacements back by the same overlaps, the
+    sum is symmetric as each part is. A traction acts on the second body the other way round.
 
     Parameters
     ----------
@@ -62,22 +68,33 @@ class PairOperator:
         self._softer = 1 + first / second
 
     @classmethod
-    def of(cls, body: Body, counterbody: Counterbody, grid: Grid, loads: tuple[Load, ...]) -> PairOperator:
-        """Operator of two bodies for `loads` of the given directions, on the cells of the first."""
+    def of(
+        cls,
+        body: Body,
+        counterbody: Counterbody,
+        grid: Grid,
+        loads: tuple[Load, ...],
+        directions: tuple[Load, ...] = (Load.NORMAL,),
+    ) -> PairOperator:
+        """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
         own = counterbody.own_grid(grid)
         return cls(
-            surface_operator(OperatorRequest(body, grid, loads)),
-            surface_operator(OperatorRequest(counterbody.body, own, loads)),
+            surface_operator(OperatorRequest(body, grid, loads, directions=directions)),
+            surface_operator(OperatorRequest(counterbody.body, own, loads, directions=directions)),
             Shares.of(counterbody, grid),
         )
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Displacement (m) of the cell centres under `loads` on the first body (Pa)."""
-        reaction = {
-            load: self._carried(cells) if load is Load.NORMAL else -self._carried(cells)
-            for load, cells in loads.items()
-        }
-        return self.body(loads) + self._returned(self.counterbody(reaction))
+        """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
+        return self.displaced(loads, (Load.NORMAL,))[Load.NORMAL]
+
+    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
+        reaction = {load: _opposed(load, self._carried(cells)) for load, cells in loads.items()}
+        relative = self.body.displaced(loads, directions)
+        for direction, other in self.counterbody.displaced(reaction, directions).items():
+            relative[direction] = relative[direction] + _opposed(direction, self._returned(other))
+        return relative
 
     def _carried(self, load: FloatArray) -> FloatArray:
         return load if self._shares is None else np.asarray(self._shares.to @ load)

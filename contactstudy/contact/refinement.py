@@ -62,8 +62,8 @@ class Refined:
         Edges of the columns, metres.
     pressure : array (column, y)
         Pressure, Pa.
-    peak, peak_error : float
-        Largest pressure and its estimated error, Pa; both infinite at a singular end.
+    peaks, peak_errors : tuple of float
+        Largest pressure of either half and its estimated error, Pa; both infinite at a singular end.
     ends, end_errors : tuple of float
         Pressure at either end of the shape and its estimated error, Pa; 0 where it is not pressed.
     loads, load_errors : tuple of float
@@ -77,14 +77,24 @@ class Refined:
 
     edges: FloatArray
     pressure: FloatArray
-    peak: float
-    peak_error: float
+    peaks: tuple[float, float]
+    peak_errors: tuple[float, float]
     ends: tuple[float, float]
     end_errors: tuple[float, float]
     loads: tuple[float, float]
     load_errors: tuple[float, float]
     laws: tuple[EndLaw | None, EndLaw | None]
     settled: bool
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, Pa."""
+        return max(self.peaks)
+
+    @property
+    def peak_error(self) -> float:
+        """Estimated error of the largest pressure, Pa."""
+        return self.peak_errors[int(np.argmax(self.peaks))]
 
 
 def refined_contact(solve: Solve, shape: AxialShape, accuracy: float) -> Refined:
@@ -147,7 +157,7 @@ class _State:
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
                 if self.laws[side] is None and width <= SHARPEST * self.shape.half_width:
-                    self.laws[side] = law_of(samples, rigid=self.shape.rigid)
+                    self.laws[side] = law_of(samples, stiff=self.shape.sharp(side))
 
     def _marks(self, theta: float) -> BoolArray:
         """Columns to split."""
@@ -190,9 +200,9 @@ class _State:
         self.loads.append(_end_loads(self.edges, self.pressure, self.shape.half_width))
 
     def _unknown_law(self, side: int) -> bool:
-        """Whether a rigid end inside the face is pressed, which is always singular, and its law did not show."""
+        """Whether a stiff end inside the face is pressed, which is always singular, and its law did not show."""
         pressed = bool(self.pressure[-side].any())
-        return pressed and self.shape.rigid and self.shape.room[side] > 0 and self.laws[side] is None
+        return pressed and self.shape.sharp(side) and self.laws[side] is None
 
     def stated(self, theta: float, accuracy: float) -> Refined:
         """Values with their errors."""
@@ -211,7 +221,6 @@ class _State:
         usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
         load_errors = [_moved([loads[side] for loads in self.loads], usual * floor / scale) for side in (0, 1)]
         settled = max(errors, default=floor) <= accuracy * scale and max(load_errors) <= accuracy * usual
-        side = int(np.argmax(self.peaks[-1]))
         laws = [
             law.with_intensity(*_from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
             for side, law in enumerate(self.laws)
@@ -219,8 +228,8 @@ class _State:
         return Refined(
             self.edges,
             self.pressure,
-            self.peaks[-1][side],
-            peak_errors[side],
+            self.peaks[-1],
+            (peak_errors[0], peak_errors[1]),
             self.ends[-1],
             (first, last),
             self.loads[-1],
@@ -236,8 +245,8 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
     The errors grow with the peak.
     """
     peaks, ends, _ = _read(refined.edges, pressure, refined.laws)
-    peak = max(peaks)
-    factor = peak / refined.peak if np.isfinite(peak) else float(pressure.max() / refined.pressure.max())
+    largest = max(peaks)
+    factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())
     first, last = (
         law.with_intensity(*_from_end(side, refined.edges, pressure), shape.room[side]) if law else None
         for side, law in enumerate(refined.laws)
@@ -245,8 +254,8 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
     return replace(
         refined,
         pressure=pressure,
-        peak=peak,
-        peak_error=factor * refined.peak_error,
+        peaks=peaks,
+        peak_errors=(factor * refined.peak_errors[0], factor * refined.peak_errors[1]),
         ends=ends,
         end_errors=(factor * refined.end_errors[0], factor * refined.end_errors[1]),
         loads=_end_loads(refined.edges, pressure, shape.half_width),

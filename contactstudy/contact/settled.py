@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
-from contactstudy.bodies.models import EndedBody
+from contactstudy.bodies.models import EndedBody, HalfSpace
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
@@ -37,8 +37,12 @@ kernels of the ends. Speed."""
 ROUGHLY = 0.1
 """Accuracy of the contact to which the window is fitted. Speed."""
 
-CELLS_Y, MORE_CELLS_Y, CLOSE = 32, 64, 0.005
-"""Cells along y, and the number for accuracies below the last one. Accuracy."""
+CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
+"""Numbers of cells along y, of which the first that suffices is taken, and that of the first contact. Accuracy."""
+
+BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
+"""Part of the peak that lies between its cells along y, times the square of their number across the contact, and the
+part of the accuracy that it may take. Accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,31 +93,32 @@ def _is_value(part: object) -> bool:
 def _settled(request: _Request) -> SettledContact:
     """Solve for a settled contact."""
     case, accuracy, tolerance = request
-    cells_y = CELLS_Y if accuracy >= CLOSE else MORE_CELLS_Y
     *narrower, widest = WINDOWS
     for window in narrower:
         with contextlib.suppress(WindowError):
-            return _within(case, window * case.hertz_half_width, cells_y, accuracy, tolerance)
-    return _within(case, widest * case.hertz_half_width, cells_y, accuracy, tolerance)
+            return _within(case, window * case.hertz_half_width, accuracy, tolerance)
+    return _within(case, widest * case.hertz_half_width, accuracy, tolerance)
 
 
 _kept = kept("settled contacts", lambda settled: settled.nbytes)(_settled)
 
 
-def _within(case: Case, half_window: float, cells_y: int, accuracy: float, tolerance: float) -> SettledContact:
+def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -> SettledContact:
     """Contact in a window that is first fitted to it."""
     shape = _axial_shape(case)
     with one_blas_thread():
         # How wide the contact is depends on what frees the ends by little, and that is what takes longest to prepare.
         body = case.body
         mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
-        first = _Solver(replace(case, body=mirrored), half_window, cells_y // 2)
+        first = _Solver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
         rough = refined_contact(first, shape, ROUGHLY)
         touched = np.flatnonzero(rough.pressure.any(axis=0))
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
-        solver = _Solver(case, min(_shared_window(case, reach), half_window), cells_y)
+        window = min(_shared_window(case, reach), half_window)
+        at_peak = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
+        solver = _Solver(case, window, _cells_across(float(at_peak.sum()) * cells.dy / (2 * window), accuracy))
         refined = refined_contact(solver, shape, accuracy)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
@@ -128,15 +133,27 @@ def _shared_window(case: Case, reach: float) -> float:
     return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
 
 
+def _cells_across(part: float, accuracy: float) -> int:
+    """Return how many cells along y resolve a peak where the contact takes this `part` of the window."""
+    needed = np.sqrt(BETWEEN_CELLS / (SHARE_OF_Y * accuracy)) / part
+    return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
+
+
 def settled_values(settled: SettledContact) -> xr.Dataset:
     """Label what is settled, each value with its error; the law of a singular end instead of its pressure."""
     refined = settled.refined
     values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = settled.contact.shape.grid.dy
-    ends = (refined.ends, refined.end_errors, refined.loads, refined.load_errors, refined.laws)
-    for name, value, error, load, load_error, law in zip(("first", "last"), *ends, strict=True):
-        values |= {f"end_pressure_{name}": value, f"end_pressure_{name}_error": error}
-        values |= {f"end_load_{name}": dy * load, f"end_load_{name}_error": dy * load_error}
+    for name, side in (("first", 0), ("last", 1)):
+        law = refined.laws[side]
+        values |= {
+            f"peak_pressure_{name}": refined.peaks[side],
+            f"peak_pressure_{name}_error": refined.peak_errors[side],
+            f"end_pressure_{name}": refined.ends[side],
+            f"end_pressure_{name}_error": refined.end_errors[side],
+            f"end_load_{name}": dy * refined.loads[side],
+            f"end_load_{name}_error": dy * refined.load_errors[side],
+        }
         if law is not None:
             values |= {
                 f"end_exponent_{name}": law.exponent,
@@ -227,5 +244,5 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width**2 / (2 * case.roller.radius),
         height,
         (_room(case.roller_start - low, near), _room(high - end, near)),
-        rigid=case.roller.material is None,
+        stiff=case.roller.body is None or isinstance(case.roller.body, HalfSpace),
     )

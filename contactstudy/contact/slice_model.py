@@ -14,7 +14,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles import local_radius
+from contactstudy.profiles.base import checked_drop, local_radius
 
 SPRING = 35948e6
 """The standard's spring constant 35948 N / mm**2 in N / m**2; the powers of its lengths add up to 2."""
@@ -91,7 +91,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     length, roller = case.contact_length, case.roller
     x = start + length * (np.arange(slices) + 0.5) / slices
     from_middle = x - (case.roller_start + 0.5 * roller.length)
-    height = roller.profile.drop(from_middle, roller.length) - np.tan(tilt) * from_middle
+    height = checked_drop(roller.profile, from_middle, roller.length) - np.tan(tilt) * from_middle
     stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL)
     approach, deflection = _equilibrium(height, stiffness, case.normal_load)
     load_per_length = stiffness * (2 * deflection) ** EXPONENT * slices / length

@@ -14,12 +14,17 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
+from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.frictional import frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.surface import displacement_reference
+
+FULL_SLIDING = Sliding()
+"""The default motion."""
 
 
 def solve_contact(
@@ -32,6 +37,7 @@ def solve_contact(
     approach: float | None = None,
     load_position: float | None = None,
     counterbody: Counterbody | None = None,
+    motion: Motion = FULL_SLIDING,
     tolerance: float = 1e-6,
     max_iterations: int = 500,
 ) -> xr.Dataset:
@@ -48,7 +54,8 @@ def solve_contact(
     load : float, optional
         Normal load, N. Either this or `approach` is given.
     friction : float
-        Coefficient ``f``; the shear traction on the body is ``f`` times the pressure along +y.
+        Coefficient ``f``: in full sliding the shear traction on the body is ``f`` times the pressure along +y; in any
+        other motion that is the bound on it.
     coupled : bool
         Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
         Poisson's ratio is 1/2, nor between half-spaces of one material).
@@ -59,6 +66,8 @@ def solve_contact(
         keeps its inclination, whatever moment that takes.
     counterbody : Counterbody, optional
         Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
+    motion : Sliding, Shift or Rolling
+        How the shape moves against the body. Default: full sliding.
     tolerance : float
         Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
         of the pressure, over its sum.
@@ -70,7 +79,11 @@ def solve_contact(
     Dataset
         `pressure`, `shear_traction`, `gap`, `displacement_z` (of `body`) (x, y); `load`, `approach` (where the load
         acts, or at ``x = 0``), `tilt`, `load_position` of the resultant, `iterations`, `converged`; and the
-        certificate, recomputed from the pressure alone: `load_error`, `penetration_error`, `open_pressure_error`.
+        certificate, recomputed from the pressure alone: `load_error`, `penetration_error`, `open_pressure_error`. With
+        stick and slip, instead of `shear_traction`: `traction_x`, `traction_y`, `slip_x`, `slip_y`, `stick` (x, y);
+        `force_x`, `force_y`, `moment_z` on the body about the middle of the shape; `longitudinal_creepage`,
+        `lateral_creepage`, `spin`, or `shift_x`, `shift_y`; `friction_work`; and the certificate of the tractions,
+        `bound_error`, `slip_error` and `force_error`.
 
     Raises
     ------
@@ -112,6 +125,7 @@ def solve_contact(
     # Where nothing can be pressed, cells may be as narrow as the room that is left to an end.
     grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
+    checks.instance("motion", motion, KINDS, MOTIONS)
     friction = checks.finite("friction", friction)
     shape = Shape(
         body,
@@ -120,12 +134,19 @@ def solve_contact(
         Prescribed(load, load_position, approach).checked(clearance, grid),
         counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        friction if coupled else 0.0,
+        friction if coupled and isinstance(motion, Sliding) else 0.0,
     )
     settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
-    contact = contact_of(shape, settings)
-    contact.warn_unless_converged(stacklevel=2)
-    return contact_dataset(contact, friction, x=gap["x"].values, y=gap["y"].values)
+    x, y = gap["x"].values, gap["y"].values
+    if isinstance(motion, Sliding):
+        contact = contact_of(shape, settings)
+        contact.warn_unless_converged(stacklevel=2)
+        return contact_dataset(contact, friction, x=x, y=y)
+    facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
+    middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
+    found = frictional_contact(shape, settings, motion, friction, middle, coupled=bool(coupled))
+    found.warn_unless_converged(stacklevel=2)
+    return labelled(contact_dataset(found.contact, friction, x=x, y=y), found)
 
 
 def contact_dataset(contact: Contact, friction: float, *, x: FloatArray, y: FloatArray) -> xr.Dataset:

@@ -1,4 +1,4 @@
-"""Displacement of the top of one part of a body on cells of any width along x."""
+"""Displacements of the top of one part of a body on cells of any width along x."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from scipy import fft, linalg
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Extent, Part
-from contactstudy.checks import FloatArray
-from contactstudy.fields.part import factor_of, reference_of
-from contactstudy.kernels.columns import columns_kernel
-from contactstudy.kernels.load import Load
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.fields.part import check_freed, displaced_by_unit, reference_of
+from contactstudy.kernels.columns import ColumnsRequest
+from contactstudy.kernels.load import SINKS, Load, Response
 from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
@@ -24,7 +24,7 @@ LEAST_EIGENVALUE = 1e-3
 
 
 class ColumnsOperator:
-    """Normal displacement of the top of one part of a body, averaged over the width of each cell.
+    """Displacements of the top of one part of a body, averaged over the width of each cell.
 
     Parameters
     ----------
@@ -32,31 +32,32 @@ class ColumnsOperator:
         Where the mirrors stand, metres; infinite for none.
     grid : Grid
         Cells.
-    kernels : mapping of Load to array (wavenumber, cell, cell)
-        Displacement per force along y, for each load that the operator takes, ends included.
+    kernels : mapping of Response to array (wavenumber, cell, cell)
+        Displacement per force along y, for each pair that the operator takes, ends included.
     """
 
-    def __init__(self, extent: Extent, grid: Grid, kernels: Mapping[Load, FloatArray]) -> None:
+    def __init__(self, extent: Extent, grid: Grid, kernels: Mapping[Response, FloatArray]) -> None:
         self.extent, self.grid, self._kernels = extent, grid, kernels
         self._widths = grid.widths[:, None]
 
     @classmethod
     def of(
-        cls, material: Material, part: Part, grid: Grid, loads: Sequence[Load], resolution: Resolution
+        cls, material: Material, part: Part, grid: Grid, responses: Sequence[Response], resolution: Resolution
     ) -> ColumnsOperator:
-        """Operator of a part of a body made of `material`, for `loads` of the given directions."""
+        """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_of(part.extent)
+        check_freed(part, responses)
+        columns = ColumnsRequest(edges, grid.dy, grid.cells_y, part.extent, reference)
         with one_blas_thread():
             kernels = {
-                load: factor_of(load, material)
-                * columns_kernel(load, edges, grid.dy, grid.cells_y, part.extent, reference)
-                for load in loads
+                response: displaced_by_unit(material) * columns.kernel(response, material.poisson)
+                for response in responses
             }
             if part.freed:
-                request = EndRequest.of(part.freed, material, grid, tuple(loads), reference, resolution)
+                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
                 ends = end_kernel(request)
-                for load, kernel in kernels.items():
-                    kernel += ends.between(load, edges)
+                for response, kernel in kernels.items():
+                    kernel += ends.between(response, edges)
         return cls(part.extent, grid, kernels)
 
     @property
@@ -65,40 +66,46 @@ class ColumnsOperator:
         return reference_of(self.extent)
 
     def coarsened(self, material: Material) -> ColumnsOperator:
-        """Return the operator on cells joined in twos, under pressure alone: good enough for a first guess."""
+        """Return the operator on cells joined in twos: good enough for a first guess."""
         grid = self.grid.coarsened()
         fine = self.grid.widths
         joined = np.zeros((grid.cells_x, fine.size))
         joined[np.minimum(np.arange(fine.size) // 2, grid.cells_x - 1), np.arange(fine.size)] = fine
         joined /= grid.widths[:, None]
-        lower = self._kernels[Load.NORMAL][: grid.cells_y + 1]
-        return ColumnsOperator(self.extent, grid, {Load.NORMAL: joined @ lower @ joined.T})
+        lower = {response: joined @ kernel[: grid.cells_y + 1] @ joined.T for response, kernel in self._kernels.items()}
+        return ColumnsOperator(self.extent, grid, lower)
 
-    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Displacement (m) of the cells under `loads` (Pa): array (x, y)."""
-        return np.asarray(
-            sum(self._product(self._kernels[load], self._widths * cells, load) for load, cells in loads.items())
-        )
+    def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
+        spectra = {load: self._along_y(self._widths * cells) for load, cells in loads.items()}
+        displacements = {}
+        for direction in directions:
+            parts = (self._product(Response(direction, load), spectrum) for load, spectrum in spectra.items())
+            displacements[direction] = self._back(sum(parts, np.zeros(1, np.complex128)))
+        return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that sinks the cells by `gap`."""
-        return self._product(self._inverse, gap, Load.NORMAL) / self._widths
+        return self._back(_times(self._inverse, self._along_y(gap))) / self._widths
 
-    def _product(self, matrices: FloatArray, values: FloatArray, load: Load) -> FloatArray:
-        """Convolve along y and multiply along x."""
+    def _along_y(self, values: FloatArray) -> ComplexArray:
+        """Transform along y: array (wavenumber, cell)."""
+        return np.ascontiguousarray(fft.rfft(values, n=2 * self.grid.cells_y, axis=1).T)
+
+    def _product(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
+        """Multiply along x, for each wavenumber along y."""
+        product = _times(self._kernels[response], spectrum)
+        return product if response.sign_y > 0 else 1j * product
+
+    def _back(self, spectrum: ComplexArray) -> FloatArray:
+        """Values on the cells from their transform along y (wavenumber, cell)."""
         cells_y = self.grid.cells_y
-        spectrum = np.ascontiguousarray(fft.rfft(values, n=2 * cells_y, axis=1).T)
-        # Real products on pairs of real and imaginary part.
-        pairs = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
-        product = np.ascontiguousarray(np.matmul(matrices, pairs)).view(np.complex128)[..., 0]
-        if load.sign_y < 0:
-            product = 1j * product
-        return np.asarray(fft.irfft(product.T, n=2 * cells_y, axis=1)[:, :cells_y])
+        return np.asarray(fft.irfft(spectrum.T, n=2 * cells_y, axis=1)[:, :cells_y])
 
     @cached_property
     def _inverse(self) -> FloatArray:
         """Inverse of the pressure's matrix, per wavenumber."""
-        kernel = self._kernels[Load.NORMAL]
+        kernel = self._kernels[SINKS]
         inverse = np.empty_like(kernel)
         with one_blas_thread():
             for matrix, found in zip(kernel, inverse, strict=True):
@@ -108,7 +115,14 @@ class ColumnsOperator:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes, with the inverse that preconditioning adds."""
-        return sum(kernel.nbytes for kernel in self._kernels.values()) + self._kernels[Load.NORMAL].nbytes
+        sizes = [kernel.nbytes for kernel in self._kernels.values()]
+        return sum(sizes) + max(sizes)
+
+
+def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
+    """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell), as real products on pairs."""
+    pairs = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
+    return np.ascontiguousarray(np.matmul(matrices, pairs)).view(np.complex128)[..., 0]
 
 
 def _inverted(matrix: FloatArray) -> FloatArray:

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.loads import Loads, superposed
 from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import REFERENCE_LENGTHS
-from contactstudy.fields.positions import Positions, field_positions, labelled_load
+from contactstudy.fields.positions import Positions, field_positions
+from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.kernels.displacement import half_space_displacement
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.displacement import end_displacement
@@ -30,6 +30,9 @@ def displacement_field(
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
+    *,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Displacements at the tensor product of any x, y and z.
 
@@ -48,14 +51,16 @@ def displacement_field(
         Positions in metres, inside the body and in any order; default: the pressure's own.
     z : sequence of float
         Depths in metres, not negative.
+    traction_x, traction_y : DataArray (x, y), optional
+        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
 
     Returns
     -------
     Dataset
         `u_x`, `u_y`, `u_z` (x, y, z) in metres. A half-space and a quarter space are at rest far away. A finite-length
         space is not, for the displacement along its load grows like a logarithm: its rigid motion, and with an
-        eccentric load its tilt, is zero on the top far away, at the distance along y stated in the attribute
-        ``reference_distance``, as in `surface_displacement`.
+        eccentric load its tilt and with a force along x its bending, is zero on the top far away, at the distance along
+        y stated in the attribute ``reference_distance``, as in `surface_displacement`.
 
     Raises
     ------
@@ -73,9 +78,8 @@ def displacement_field(
     >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
     True
     """
-    grid, values, own = labelled_load(body, pressure)
+    grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     positions = field_positions(body, grid, x, y, z, own)
-    loads = sliding(values, checks.finite("friction", friction))
     displacement = displacement_under(body, loads, grid, *positions.axes)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     reference = REFERENCE_LENGTHS * body.unbounded_row

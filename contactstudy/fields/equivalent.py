@@ -8,16 +8,27 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.loads import sliding
+from contactstudy.fields.loads import grouped
 from contactstudy.fields.part import REFERENCE_LENGTHS
-from contactstudy.fields.positions import Positions, labelled_load
-from contactstudy.overlapping.equivalent import equivalent_loads_of
+from contactstudy.fields.positions import Positions
+from contactstudy.fields.prescribed import prescribed_loads
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.equivalent import EquivalentLoads, equivalent_loads_of
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
 
-def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, z: Positions = (0.0,)) -> xr.Dataset:
+def equivalent_loads(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = 0.0,
+    z: Positions = (0.0,),
+    *,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
+) -> xr.Dataset:
     """Compute the loads on the auxiliary bodies whose stresses together are those of a body with free ends.
 
     Parameters
@@ -30,6 +41,8 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
         Coefficient ``f`` of the traction along +y.
     z : sequence of float
         Depths on the end faces, metres, not negative.
+    traction_x, traction_y : DataArray (x, y), optional
+        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
 
     Returns
     -------
@@ -59,17 +72,22 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
     freed = next((part.freed for part in body.parts if part.freed), None)
     if freed is None:
         raise InvalidInputError("body", body, "a body with a free end: a half-space needs no equivalent loads")
-    grid, values, (label_x, label_y) = labelled_load(body, pressure)
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
+    grid, loads, (label_x, label_y) = prescribed
     body.check_span(grid)
-    loads = sliding(values, checks.finite("friction", friction))
     depths = checks.coordinates("z", z)
     if (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
     length, mirrored_once = freed
     relative = np.isfinite(length) and not mirrored_once
     reference = REFERENCE_LENGTHS * length if relative else None
-    problem = EndProblem(length, body.material.poisson, values, tuple(loads), grid, Resolution(), mirrored_once)
-    unit = equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
+    poisson, resolution = body.material.poisson, Resolution()
+
+    def unit_loads(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, EquivalentLoads]:
+        problem = EndProblem(length, poisson, cells, directions, grid, resolution, mirrored_once)
+        return equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
+
+    unit = grouped(loads, unit_loads)
     added, first, second = (
         np.asarray(sum(top.factor * unit[load][i] for load, top in loads.items())) for i in range(3)
     )
@@ -80,7 +98,7 @@ def equivalent_loads(body: Body, pressure: xr.DataArray, friction: float = 0.0, 
             "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
         }
     fields = {
-        "P_h1": (("x", "y"), values + added, attributes),
+        "P_h1": (("x", "y"), prescribed.pressure + added, attributes),
         "P_v1": (("y", "z"), first, attributes),
     }
     if np.isfinite(length):

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
+
+Result = TypeVar("Result")
 
 
 class TopLoad(NamedTuple):
@@ -48,25 +50,30 @@ def sliding(pressure: FloatArray, friction: float) -> Loads:
     return loads | {Load.ALONG_Y: TopLoad(pressure, friction)} if friction else loads
 
 
-def superposed(
-    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
-) -> list[FloatArray]:
-    """Sum of the fields under all loads, each at several places.
+def grouped(loads: Loads, unit: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Result]]) -> dict[Load, Result]:
+    """Return what `unit` gives for each load; it is asked for loads with the same distribution together.
 
     Parameters
     ----------
     loads : mapping of Load to TopLoad
         At least one.
-    unit_fields : callable
-        From some directions and one distribution to the fields under it in each of them, one for each place. Loads with
-        the same distribution are taken together.
+    unit : callable
+        From some directions and one distribution to what it makes in each of them.
     """
     groups: dict[ArrayKey, list[Load]] = {}
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)
-    fields: dict[Load, Sequence[FloatArray]] = {}
+    found: dict[Load, Result] = {}
     for shared, directions in groups.items():
-        fields |= unit_fields(tuple(directions), shared.values)
+        found |= unit(tuple(directions), shared.values)
+    return found
+
+
+def superposed(
+    loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
+) -> list[FloatArray]:
+    """Sum of the fields under all loads at each of several places, from those under a distribution, see `grouped`."""
+    fields = grouped(loads, unit_fields)
     first, *others = loads
     totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
     for load in others:

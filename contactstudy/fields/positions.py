@@ -10,9 +10,7 @@ import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -96,19 +94,11 @@ def field_positions(
     return FieldPositions(at_x, at_y, at_z, own_x if x is None else at_x, own_y if y is None else at_y)
 
 
-def labelled_load(body: Body, pressure: xr.DataArray) -> tuple[Grid, FloatArray, Labels]:
-    """Grid, values and labels of a pressure on a body, checked."""
-    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    pressure = in_si("pressure", pressure, "Pa")
-    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
-    return grid, values, (pressure["x"].values, pressure["y"].values)
-
-
 def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
-    """Positions clipped by rounding errors to the body; raise for any outside."""
+    """Positions of which those within rounding of an end lie on it; raise for any outside."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
     outside = (x < low - rounding) | (x > high + rounding)
     if outside.any():
         raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
-    return np.clip(x, low, high)
+    return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))

@@ -8,16 +8,17 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.invariants import von_mises
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import Loads, sliding, superposed
+from contactstudy.fields.loads import Loads, superposed
 from contactstudy.fields.near_top import seen_by_ends
-from contactstudy.fields.positions import FieldPositions, Positions, field_positions, labelled_load
+from contactstudy.fields.part import reference_of
+from contactstudy.fields.positions import FieldPositions, Positions, field_positions
+from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping.field import Place
@@ -33,6 +34,9 @@ def stress_field(
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
+    *,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
 ) -> xr.Dataset:
     """Stresses at the tensor product of any x, y and z.
 
@@ -51,13 +55,17 @@ def stress_field(
         Positions in metres, inside the body and in any order; default: the pressure's own.
     z : sequence of float
         Depths in metres, not negative.
+    traction_x, traction_y : DataArray (x, y), optional
+        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
 
     Returns
     -------
     Dataset
         `sigma_xx`, `sigma_yy`, `sigma_zz`, `tau_xy`, `tau_xz`, `tau_yz` and `von_mises` (x, y, z) in Pa, positive in
         tension. On the free ends they hold the traction that the quadratures leave there, but for the
-        edge at the top, which carries none.
+        edge at the top, which carries none. A net force along x bends a finite-length space by an amount that grows
+        like the logarithm of the distance: the curvature along y is zero on the top at ten lengths, as in
+        `surface_displacement`.
 
     Raises
     ------
@@ -75,9 +83,9 @@ def stress_field(
     >>> abs(float(stress.sigma_xx[0, 0, 0])) < 1e-5, round(float(stress.sigma_zz[1, 0, 0]), 3)
     (True, -0.954)
     """
-    grid, values, own = labelled_load(body, pressure)
+    grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     positions = field_positions(body, grid, x, y, z, own)
-    return stress_dataset(body, sliding(values, checks.finite("friction", friction)), grid, positions)
+    return stress_dataset(body, loads, grid, positions)
 
 
 def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
@@ -154,7 +162,8 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
         length, mirrored_once = part.freed
         seen, seen_on = seen_by_ends(cells.values, grid, extent)
         problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
-        for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places), strict=True)):
+        reference = reference_of(part.extent)
+        for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places, reference), strict=True)):
             for load, from_ends in by_load.items():
                 # The two auxiliary bodies leave no traction on the top, by construction.
                 for component in (2, 4, 5):

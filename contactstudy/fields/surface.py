@@ -1,26 +1,25 @@
-"""Normal displacement of the top of a body under pressure and traction: the operator of every contact solution."""
+"""Displacements of the top of a body under pressure and traction: the operator of every contact solution."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import cached_property
-from typing import NamedTuple
+from typing import NamedTuple, overload
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import in_si
-from contactstudy.arrays.variables import named
+from contactstudy.arrays.variables import describe, named
 from contactstudy.bodies.models import Body
 from contactstudy.cache import kept
 from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
 from contactstudy.fields.columns import ColumnsOperator
-from contactstudy.fields.loads import sliding
 from contactstudy.fields.part import PartOperator
-from contactstudy.kernels.load import Load
+from contactstudy.fields.prescribed import prescribed_loads
+from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
 
@@ -38,16 +37,24 @@ class OperatorRequest(NamedTuple):
         Directions of the loads that it takes, the pressure first.
     resolution : Resolution
         Quadrature settings of the free ends' part.
+    directions : tuple of Load
+        Directions of the displacements that it gives.
     """
 
     body: Body
     grid: Grid
     loads: tuple[Load, ...] = (Load.NORMAL,)
     resolution: Resolution = Resolution()
+    directions: tuple[Load, ...] = (Load.NORMAL,)
+
+    @property
+    def responses(self) -> tuple[Response, ...]:
+        """All pairs of displacement and load."""
+        return tuple(Response(direction, load) for direction in self.directions for load in self.loads)
 
 
 class SurfaceOperator:
-    """Displacement of the top from pressure and traction, for one body and one grid.
+    """Displacements of the top from pressure and traction, for one body and one grid.
 
     Parameters
     ----------
@@ -69,19 +76,29 @@ class SurfaceOperator:
         InvalidInputError
             If the grid does not fit the body.
         """
-        body, grid, loads, resolution = request
+        body, grid = request.body, request.grid
         body.check_span(grid)
         kind = PartOperator if grid.uniform else ColumnsOperator
-        parts = [(part.weight, kind.of(body.material, part, grid, loads, resolution)) for part in body.parts]
+        responses = request.responses
+        parts = [
+            (part.weight, kind.of(body.material, part, grid, responses, request.resolution)) for part in body.parts
+        ]
         return cls(body, parts)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
-        """Displacement (m) of the cell centres under `loads` (Pa): array (x, y)."""
+        """Sink the cells by `loads` (Pa): normal displacement (m), array (x, y)."""
+        return self.displaced(loads, (Load.NORMAL,))[Load.NORMAL]
+
+    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
         weight, first = self._parts[0]
-        displacement = weight * first(loads)
+        displacements = first(loads, directions)
+        if weight != 1:
+            displacements = {direction: weight * each for direction, each in displacements.items()}
         for weight, part in self._parts[1:]:
-            displacement += weight * part(loads)
-        return displacement
+            for direction, each in part(loads, directions).items():
+                displacements[direction] += weight * each
+        return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that sinks the cells by `gap`."""
@@ -115,8 +132,40 @@ def surface_operator(request: OperatorRequest) -> SurfaceOperator:
     return SurfaceOperator.of(request)
 
 
-def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0.0) -> xr.DataArray:
-    """Compute how a prescribed pressure, and the friction that goes with it, sink the top of a body.
+@overload
+def surface_displacement(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = ...,
+    *,
+    traction_x: xr.DataArray | None = ...,
+    traction_y: xr.DataArray | None = ...,
+    components: None = ...,
+) -> xr.DataArray: ...
+
+
+@overload
+def surface_displacement(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = ...,
+    *,
+    traction_x: xr.DataArray | None = ...,
+    traction_y: xr.DataArray | None = ...,
+    components: Sequence[str],
+) -> xr.Dataset: ...
+
+
+def surface_displacement(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = 0.0,
+    *,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
+    components: Sequence[str] | None = None,
+) -> xr.DataArray | xr.Dataset:
+    """Compute how a prescribed pressure, and the tractions that go with it, displace the top of a body.
 
     Parameters
     ----------
@@ -127,17 +176,24 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
         cells begin at ``x = 0``, and on a finite-length space they end at its length.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
+    traction_x, traction_y : DataArray (x, y), optional
+        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
+    components : sequence of str, optional
+        Which of "x", "y" and "z" are wanted; default: the normal displacement alone, not in a Dataset.
 
     Returns
     -------
-    DataArray (x, y)
-        `displacement_z` in metres, positive into the body. A finite-length space has no absolute displacement: its
-        value is relative to the top far away, at the distance along y stated in the attribute ``reference_distance``.
+    DataArray (x, y) or Dataset
+        `displacement_z`, positive into the body, in metres; of several components a Dataset of `displacement_x`,
+        `displacement_y` and `displacement_z`. A finite-length space has no absolute displacement: its value is relative
+        to the top far away, at the distance along y stated in the attribute ``reference_distance``. A net force along
+        x bends it, by an amount that depends on the distance: its curvature along y is zero there as well.
 
     Raises
     ------
     InvalidInputError
-        If the pressure is not a DataArray of finite numbers on a uniform grid that fits the body.
+        If a load is not a DataArray of finite numbers on a grid that fits the body, the loads' cells differ, or
+        `friction` and `traction_y` are both given.
 
     Examples
     --------
@@ -145,19 +201,42 @@ def surface_displacement(body: Body, pressure: xr.DataArray, friction: float = 0
     >>> from contactstudy import HalfSpace, Material
     >>> centres = np.linspace(-0.95, 0.95, 20)
     >>> pressure = xr.DataArray(np.ones((20, 20)), coords={"x": centres, "y": centres}, dims=("x", "y"))
-    >>> sunk = surface_displacement(HalfSpace(material=Material(1.0, 0.0)), pressure)
-    >>> round(float(sunk.max()), 2)
+    >>> body = HalfSpace(material=Material(1.0, 0.0))
+    >>> round(float(surface_displacement(body, pressure).max()), 2)
     2.24
+    >>> dragged = surface_displacement(body, 0 * pressure, traction_x=pressure, components="xy")
+    >>> round(float(dragged.displacement_x.max()), 2), round(float(abs(dragged.displacement_y).max()), 2)
+    (2.24, 0.0)
     """
-    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
-    pressure = in_si("pressure", pressure, "Pa")
-    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
-    loads = sliding(values, checks.finite("friction", friction))
-    operator = surface_operator(OperatorRequest(body, grid, tuple(loads)))
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
+    directions = (Load.NORMAL,) if components is None else _directions(components)
+    grid, loads = prescribed.grid, prescribed.loads
+    operator = surface_operator(OperatorRequest(body, grid, tuple(loads), directions=directions))
     with one_blas_thread():
-        displacement = operator({load: top.values for load, top in loads.items()})
-    sunk = xr.DataArray(displacement, coords={"x": pressure["x"], "y": pressure["y"]}, dims=("x", "y"))
-    return named("displacement_z", sunk).assign_attrs(displacement_reference(operator.reference))
+        displaced = operator.displaced({load: top.values for load, top in loads.items()}, directions)
+    attributes = displacement_reference(operator.reference)
+    coords = {"x": pressure["x"], "y": pressure["y"]}
+    labelled = {
+        name: named(name, xr.DataArray(displaced[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
+        for name, direction in DISPLACEMENTS.items()
+        if direction in displaced
+    }
+    if components is None:
+        return labelled["displacement_z"]
+    return describe(xr.Dataset(labelled), "displacements of the top under a prescribed load")
+
+
+DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
+"""Variables of the top's displacement."""
+
+
+def _directions(components: Sequence[str]) -> tuple[Load, ...]:
+    """Directions of displacements that are wanted."""
+    known = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
+    found = tuple(dict.fromkeys(known[checks.known_name("components", each, known)] for each in components))
+    if not found:
+        raise InvalidInputError("components", components, "at least one of x, y and z, or None")
+    return found
 
 
 def displacement_reference(reference: float) -> dict[str, str | float]:

@@ -135,14 +135,15 @@ def centred_field(
     array (component, row, column, z)
     """
     cells_x, cells_y = load.shape
-    reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()), 1)
+    reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
     if not mirrored:
         half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x - int(rows.min())), real=True)
     elif np.isinf(length):
         half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x) + cells_x, real=True)
     else:
         half = cells_x
-    shape = (half, fft.next_fast_len(reach_y, real=True))
+    # At half a period an odd kernel has no place: it would be positive on one side and negative on the other.
+    shape = (half, fft.next_fast_len(reach_y + 1, real=True))
     transformed = _load_spectrum(load, shape, mirrored=mirrored)
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):

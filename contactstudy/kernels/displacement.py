@@ -7,11 +7,11 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.images import FAR_LIMIT
 from contactstudy.kernels.influence import Influence
-from contactstudy.kernels.load import Load
+from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
 from contactstudy.kernels.smooth_field import smooth_field
+from contactstudy.kernels.surface import row_level
 
 UNDER_PRESSURE = ((-1, 1, 1), (1, -1, 1))
 """Parities along x and along y of the components x, y, z under a pressure."""
@@ -55,19 +55,15 @@ def half_space_displacement(
         Along x, y, z in metres.
     """
     nu, length = material.poisson, extent[1] - extent[0]
-    level = _row_level(load, nu, length, reference) if np.isfinite(length) else None
-    influence = Influence.of(DISPLACEMENT_CORNERS[load], nu, load, UNDER_PRESSURE, level)
+    influence = displacement_influence(load, nu, length, reference)
     field = smooth_field(cells, influence, grid, x, y, z, extent=extent)
     return field / (4 * np.pi * material.shear_modulus)
 
 
-def _row_level(load: Load, poisson: float, length: float, reference: float) -> tuple[float, ...]:
-    """Displacement times ``4 pi G`` that a row of unit loads without end is relieved of, so that it is 0 far away."""
-    # Beside a row of loads 4 pi G u is 2 (1 - nu) / r in their direction, and for a traction along y the term
-    # y**2 / r**3 adds a constant. Images of a traction along x alternate in sign, so their row has no net load.
-    row = 2 * (1 - poisson) * np.log(2 * FAR_LIMIT * length / reference)
-    return {
-        Load.NORMAL: (0.0, 0.0, float(-row / length)),
-        Load.ALONG_X: (0.0, 0.0, 0.0),
-        Load.ALONG_Y: (0.0, float(-(row + 2 * poisson) / length), 0.0),
-    }[load]
+def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:
+    """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
+    level = None
+    if np.isfinite(length):
+        along = (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
+        level = tuple(row_level(Response(direction, load), poisson, length, reference) for direction in along)
+    return Influence.of(DISPLACEMENT_CORNERS[load], poisson, load, UNDER_PRESSURE, level)

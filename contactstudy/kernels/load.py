@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import Enum
+from typing import NamedTuple
 
 
 class Load(Enum):
@@ -31,3 +32,43 @@ class Load(Enum):
         self.meaning = meaning
         self.sign_x = sign_x
         self.sign_y = sign_y
+
+
+class Response(NamedTuple):
+    """What a load in one direction displaces in the same or another one: one of nine pairs.
+
+    Attributes
+    ----------
+    displacement : Load
+        Direction of the displacement: that of the load which does work on it.
+    load : Load
+        Direction of the load.
+
+    Examples
+    --------
+    >>> across = Response(Load.ALONG_X, Load.ALONG_Y)
+    >>> across.sign_x, across.sign_y, across.reciprocal == Response(Load.ALONG_Y, Load.ALONG_X)
+    (-1, -1, True)
+    """
+
+    displacement: Load
+    load: Load
+
+    @property
+    def sign_x(self) -> int:
+        """1 if the kernel is even along x, -1 if it is odd."""
+        return self.displacement.sign_x * self.load.sign_x
+
+    @property
+    def sign_y(self) -> int:
+        """1 if the kernel is even along y, -1 if it is odd."""
+        return self.displacement.sign_y * self.load.sign_y
+
+    @property
+    def reciprocal(self) -> Response:
+        """The pair whose kernel is this one seen backwards."""
+        return Response(self.load, self.displacement)
+
+
+SINKS = Response(Load.NORMAL, Load.NORMAL)
+"""How far a pressure sinks the top."""

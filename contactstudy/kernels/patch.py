@@ -1,4 +1,4 @@
-"""Uniformly loaded rectangle on a half-space: stresses below and displacement of the surface, in closed form.
+"""Uniformly loaded rectangle on a half-space: the stresses below, in closed form.
 
 Every quantity is a second mixed difference, over the rectangle's corners, of a corner function of the offset
 ``(X, Y, z)`` from corner to observer. The corner functions follow from the Boussinesq and Cerruti potentials
@@ -115,30 +115,3 @@ def axial_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> Floa
 
 STRESS_CORNERS = {Load.NORMAL: normal_corner, Load.ALONG_X: axial_corner, Load.ALONG_Y: tangential_corner}
 """Corner functions of the six stresses, by the direction of the load."""
-
-
-def normal_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Corner function of the surface's ``2 pi G u_z / (1 - nu)`` under unit pressure (Love's rectangle).
-
-    Examples
-    --------
-    >>> edge = np.array([-0.5, 0.5])
-    >>> corner = normal_displacement_corner(edge[:, None], edge[None, :])
-    >>> round(float(np.diff(np.diff(corner, axis=0), axis=1)[0, 0]), 6)
-    3.525494
-    """
-    return np.asarray(x * _inverse_sinh_ratio(y, x, 0.0) + y * _inverse_sinh_ratio(x, y, 0.0))
-
-
-def tangential_displacement_corner(x: FloatArray, y: FloatArray) -> FloatArray:
-    """Corner function of the surface's ``4 pi G u_z / (1 - 2 nu)`` under unit shear traction along +y.
-
-    Examples
-    --------
-    >>> edge = np.array([-0.5, 0.5])
-    >>> ahead = tangential_displacement_corner(edge[:, None], edge[None, :] + 1.0)
-    >>> bool(np.diff(np.diff(ahead, axis=0), axis=1)[0, 0] > 0)
-    True
-    """
-    log_r = 0.5 * np.log(np.maximum(x * x + y * y, TINY))
-    return np.asarray(x * log_r + y * np.arctan2(x, np.abs(y)) * np.sign(y))

@@ -70,8 +70,16 @@ class SmoothLoad:
         fixed = np.zeros(loads.shape, bool)
         forwards = _Row(loads, sign, widths, first, middle, last, knot, fixed)
         forwards.end(spilling=spilling)
-        turned = (each[:, ::-1] for each in (last, middle, first, knot))
-        backwards = _Row(loads[:, ::-1], sign[:, ::-1], widths[::-1], *turned, fixed=fixed[:, ::-1])
+        backwards = _Row(
+            loads[:, ::-1],
+            sign[:, ::-1],
+            widths[::-1],
+            last[:, ::-1],
+            middle[:, ::-1],
+            first[:, ::-1],
+            knot[:, ::-1],
+            fixed[:, ::-1],
+        )
         np.subtract(1.0, knot, out=knot)
         backwards.end(spilling=spilling)
         np.subtract(1.0, knot, out=knot)

@@ -22,6 +22,7 @@ import numpy as np
 
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 from contactstudy.overlapping.slab import slab_factors
 
@@ -129,10 +130,16 @@ class AxialModes:
         """Return what stands for ``sin(k x)`` at positions `x`: array (wavenumber, x)."""
         return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._seen_from_both_ends(x, -1)])
 
-    def cell_integrals(self, edges: FloatArray) -> ComplexArray:
-        """Integrals of `cosine` over the cells between `edges`: array (wavenumber, cell)."""
+    def wave(self, load: Load, x: FloatArray) -> ComplexArray:
+        """Waves that a load in one direction is a sum of: `cosine`, or `sine` for one that its image reverses."""
+        return self.cosine(x) if load.sign_x > 0 else self.sine(x)
+
+    def cell_integrals(self, load: Load, edges: FloatArray) -> ComplexArray:
+        """Integrals of `wave` over the cells between `edges`: array (wavenumber, cell)."""
         edges = np.minimum(edges, self.reach)
         k = np.where(self.wavenumbers == 0, 1.0, self.wavenumbers)[:, None]
+        if load.sign_x < 0:
+            return np.asarray(-np.diff(self.cosine(edges), axis=1) / k)
         integral = np.diff(self.sine(edges), axis=1) / k
         integral[self.wavenumbers == 0] = np.diff(edges)
         return np.asarray(integral)

@@ -1,19 +1,25 @@
-"""What the free ends add to the normal displacement of the top, between positions graded towards the ends.
+"""What the free ends add to the displacements of the top, between positions graded towards the ends.
 
 V leaves no normal displacement on the top, so the body sinks as H does under ``P_h = p + R``. Of this the part under
 ``p`` is the mirrored half-space; the part under ``R`` is, for each wavenumber along y and each parity,
 
     u(x) = C p,   C(x, x') = c at(x)^T (1 / scale - N)^-1 at(x'),   at(x; k_z) = (4/pi) sum M cosine(x) / k
 
-(equations.py): a symmetric operator, smooth but for the ends. C is sampled at positions graded towards them and
-transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Far along y a finite-length
-body is a plate in plane stress, so C grows like ``1 / k_y``: the displacement is stated relative to the top far away,
-at ``|y| = reference``.
+(equations.py): a symmetric operator, smooth but for the ends. The same holds for all nine pairs of displacements and
+loads. Let the mirrored half-space under load i leave the normal stress ``s_i`` on the ends, where it has no shear and
+no displacement along x. By the reciprocity of that state and of the one that frees the ends from ``s_j``, the work of
+load i on what freeing the ends from load j adds to the top is ``s_i^T G s_j``, with the symmetric compliance G of the
+ends: the same ``c (1 / scale - N)^-1``, between the sources of load i and load j.
+
+C is sampled at positions graded towards the ends and transformed along y to the wavenumbers of the zero-padded grid,
+once per body and window. Far along y a finite-length body is a plate in plane stress, so C grows like ``1 / k_y``: the
+displacement is stated relative to the top far away, at ``|y| = reference``. A force along x bends that plate, and the
+displacement along x grows like ``1 / k_y**3``: its curvature is zero there as well.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
 from typing import NamedTuple
@@ -25,10 +31,10 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.cache import kept
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.load import Load
+from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.lateral import POLES_ALONE, LateralPanel, lateral_panels
+from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, LateralPanel, lateral_panels
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, graded_positions
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
@@ -57,8 +63,8 @@ class EndRequest(NamedTuple):
         Length that the cells cover from ``x = 0``, metres.
     finest : float
         Distance from the ends down to which the kernel is resolved, metres.
-    loads : tuple of Load
-        Directions of the loads that it will be applied to.
+    responses : tuple of Response
+        Pairs of displacement and load that it will be asked for.
     reference : float
         Distance along y at which the displacement of a finite-length body is zero, metres.
     resolution : Resolution
@@ -71,7 +77,7 @@ class EndRequest(NamedTuple):
     cells_y: int
     span: float
     finest: float
-    loads: tuple[Load, ...]
+    responses: tuple[Response, ...]
     reference: float
     resolution: Resolution
 
@@ -81,7 +87,7 @@ class EndRequest(NamedTuple):
         freed: FreedEnds,
         material: Material,
         grid: Grid,
-        loads: tuple[Load, ...],
+        responses: tuple[Response, ...],
         reference: float,
         resolution: Resolution,
     ) -> EndRequest:
@@ -91,7 +97,8 @@ class EndRequest(NamedTuple):
             # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
             at_ends = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
             finest = grid.dy / FINER if at_ends <= 2 * grid.dy else grid.dy
-        return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, loads, reference, resolution)
+        resolution = resolution.for_loads(chain.from_iterable(responses))
+        return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, responses, reference, resolution)
 
     @property
     def parities(self) -> tuple[int, ...]:
@@ -109,31 +116,30 @@ class EndKernel:
         What it was made for.
     edges, positions : array
         Panels along x, from end I to mid-length (or over the span), and Gauss positions in them.
-    samples : dict of Load to list of array (wavenumber, position, position)
-        Per parity, displacement at the positions from a load there, without the factor i of a load along y.
+    samples : dict of Response to list of array (wavenumber, position, position)
+        Per parity, displacement at the positions from a load there, without the factor i of kernels odd along y.
     """
 
     request: EndRequest
     edges: FloatArray
     positions: FloatArray
-    samples: Mapping[Load, list[FloatArray]]
+    samples: Mapping[Response, list[FloatArray]]
 
-    def moments(self, parity: int, cell_edges: FloatArray) -> FloatArray:
+    def moments(self, parity: int, direction: Load, cell_edges: FloatArray) -> FloatArray:
         """Integrals over the cells of the polynomials on the positions: array (position, cell)."""
         one_side = cell_moments(self.edges, self.positions, cell_edges)
         if not parity:
             return one_side
         length = self.request.freed.length
-        return np.asarray(
-            one_side + parity * cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1]
-        )
+        other_side = cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1]
+        return np.asarray(one_side + parity * direction.sign_x * other_side)
 
-    def between(self, load: Load, cell_edges: FloatArray) -> FloatArray:
+    def between(self, response: Response, cell_edges: FloatArray) -> FloatArray:
         """Displacement averaged over cells from forces on cells: array (wavenumber, cell, cell)."""
         total: FloatArray = np.zeros(())
-        for parity, kernel in zip(self.request.parities, self.samples[load], strict=True):
-            means = self.moments(parity, cell_edges) / np.diff(cell_edges)
-            total = total + means.T @ kernel @ means
+        for parity, kernel in zip(self.request.parities, self.samples[response], strict=True):
+            seen, loaded = (self.moments(parity, direction, cell_edges) / np.diff(cell_edges) for direction in response)
+            total = total + seen.T @ kernel @ loaded
         return total
 
     @property
@@ -142,26 +148,38 @@ class EndKernel:
         return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
 
 
-def _sampled(
-    modes: AxialModes,
-    wavenumber: float,
-    positions: FloatArray,
-    material: Material,
-    shortest: float,
-    resolution: Resolution,
-    loads: Sequence[Load],
+def sampled_kernel(
+    modes: AxialModes, wavenumber: float, positions: FloatArray, request: EndRequest, shortest: float
 ) -> list[FloatArray]:
-    """Correction between the graded positions at one wavenumber, from each of the loads."""
-    sources = modes.load_weights[:, None] * modes.cosine(positions)
+    """Correction between the graded positions at one wavenumber, for each of the responses."""
+    material, responses = request.material, request.responses
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
-    system = EquationSet.build(modes, wavenumber, material.poisson, shortest, resolution)
-    by_load = {load: system.source(load, sources) for load in dict.fromkeys((Load.NORMAL, *loads))}
+    system = EquationSet.build(modes, wavenumber, material.poisson, shortest, request.resolution)
+    loads = dict.fromkeys(response.load for response in responses)
+    weights = modes.load_weights[:, None]
     if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)
         sunk = modes.cosine(positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
-        return [np.real(sunk.T @ system.on_top(system.solve(by_load[load]))) for load in loads]
-    # By reciprocity, what a unit pressure leaves on the ends tells how far they sink the top.
-    return [factor * by_load[Load.NORMAL].T @ system.solve(by_load[load]) for load in loads]
+        top = {
+            load: system.on_top(system.solve(system.source(load, weights * modes.wave(load, positions))))
+            for load in loads
+        }
+        return [np.real(sunk.T @ top[response.load]) for response in responses]
+    directions = dict.fromkeys(chain(loads, (response.displacement for response in responses)))
+    left = {load: system.source(load, weights * modes.wave(load, positions)) for load in directions}
+    freed = {load: system.solve(left[load]) for load in loads}
+    kernels = []
+    for displacement, load in responses:
+        kernel = left[displacement].T @ freed[load]
+        if displacement in freed:  # rounding is all that reciprocity lacks, but between two ends it is amplified
+            kernel = 0.5 * (kernel + (left[load].T @ freed[displacement]).T)
+        kernels.append(factor * _phase(Response(displacement, load)) * kernel)
+    return kernels
+
+
+def _phase(response: Response) -> int:
+    """Sign of a kernel without its factor i: work is done by the conjugate of what leaves ``i s`` on the ends."""
+    return -1 if response.displacement.sign_y < 0 < response.load.sign_y else 1
 
 
 @kept("end kernels", lambda kernel: kernel.nbytes)
@@ -171,40 +189,50 @@ def end_kernel(request: EndRequest) -> EndKernel:
     relative = np.isfinite(length) and not mirrored_once
     window = 2 * request.dy * request.cells_y
     shortest = 0.5 * request.finest
-    first = POLES_ALONE / min(length, 4 * max(request.span, window))
     # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
     last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
     finer = replace(request.resolution, lateral_nodes=request.resolution.lateral_nodes + MORE_NODES)
-    panels = lateral_panels(first, 0.5 * window, last, finer, request.reference if relative else None)
+    reference = request.reference if relative else None
     half = 0.5 * length if np.isfinite(length) else request.span
     edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
-    samples = _samples(request, panels, positions, shortest)
-    even, odd = _lateral_transforms(panels, request.dy, request.cells_y)
-    spread = {
-        load: [np.tensordot(even if load.sign_y > 0 else odd, own, axes=1) for own in samples[:, i]]
-        for i, load in enumerate(request.loads)
-    }
+    spread: dict[Response, list[FloatArray]] = {}
+    beyond: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
+    for poles in sorted({_poles(response) for response in request.responses}):
+        first = ALONE[poles] / min(length, 4 * max(request.span, window))
+        panels = lateral_panels(first, 0.5 * window, last, finer, reference, poles)
+        samples = np.stack(list(_samples(request, panels, positions, shortest, beyond)), axis=2)
+        even, odd = _lateral_transforms(panels, request.dy, request.cells_y)
+        for i, response in enumerate(request.responses):
+            if _poles(response) == poles:
+                matrix = even if response.sign_y > 0 else odd
+                spread[response] = [np.tensordot(matrix, each, axes=1) for each in samples[:, i]]
     return EndKernel(request, edges, positions, spread)
 
 
-def _samples(request: EndRequest, panels: Sequence[LateralPanel], positions: FloatArray, shortest: float) -> FloatArray:
-    """Sample the kernel at the panels' wavenumbers: array (parity, load, wavenumber, position, position)."""
-    (length, mirrored_once), material, resolution = request.freed, request.material, request.resolution
-    count = sum(panel.nodes.size for panel in panels)
-    samples = np.empty((len(request.parities), len(request.loads), count, positions.size, positions.size))
-    i = 0
+def _poles(response: Response) -> int:
+    """Order of a response's pole at wavenumber 0 along y."""
+    return BENDING_POLES if Load.ALONG_X in response else POLES
+
+
+def _samples(
+    request: EndRequest,
+    panels: Sequence[LateralPanel],
+    positions: FloatArray,
+    shortest: float,
+    known: dict[float, FloatArray],
+) -> Iterator[FloatArray]:
+    """Kernel at each of the panels' wavenumbers, if not yet `known`: arrays (parity, response, position, position)."""
+    length, mirrored_once = request.freed
     for panel in panels:
         smallest = float(panel.nodes[0])
-        modes = modes_between_ends(length, smallest, shortest, resolution, mirrored_once=mirrored_once)
-        for wavenumber in panel.nodes:
-            for number, (parity, mode) in enumerate(zip(request.parities, modes, strict=False)):
-                sampled = _sampled(mode, float(wavenumber), positions, material, shortest, resolution, request.loads)
-                if mode.parity == parity:
-                    samples[number, :, i] = sampled
-                else:  # ends that know nothing of each other: both parities see half of either quarter space
-                    samples[:, :, i] = 0.5 * np.array(sampled)
-            i += 1
-    return samples
+        modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
+        for wavenumber in panel.nodes.tolist():
+            if wavenumber not in known:
+                sampled = np.array([sampled_kernel(mode, wavenumber, positions, request, shortest) for mode in modes])
+                # Ends that know nothing of each other: both parities see half of either quarter space.
+                alone = len(request.parities) > len(modes)
+                known[wavenumber] = 0.5 * np.repeat(sampled, 2, axis=0) if alone else sampled
+            yield known[wavenumber]
 
 
 def _lateral_transforms(panels: Sequence[LateralPanel], dy: float, cells_y: int) -> tuple[FloatArray, FloatArray]:

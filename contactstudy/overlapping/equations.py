@@ -63,7 +63,20 @@ def lateral_on_end(
     return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
 
 
-ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_Y: lateral_on_end}
+def axial_on_end(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float) -> ComplexArray:
+    """Face load that frees the end from a unit top traction along x, a sine series: array (depth, axial).
+
+    The traction leaves ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (the column of
+    `lateral_on_end` with x and y exchanged), of which this is the cosine transform along z, reversed.
+    """
+    axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
+    k2 = axial2 + lateral**2
+    inverse = 1.0 / (k2 + depth2)
+    bracket = 2 * (k2 + poisson * lateral**2) * inverse - axial2 * (k2 - depth2) * inverse**2
+    return np.asarray(-(2 / np.pi) * axial / k2 * bracket)
+
+
+ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_X: axial_on_end, Load.ALONG_Y: lateral_on_end}
 """Face load that frees the end from a unit load on the top, by its direction."""
 
 
@@ -148,7 +161,7 @@ class EquationSet:
     def source(self, load: Load, spectrum: ComplexArray) -> FloatArray:
         """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone.
 
-        That of a traction along y lacks its factor i.
+        That of a traction along y lacks its factor i; the spectrum of one along x is that of a sine series.
         """
         axial = self.modes.wavenumbers
         if load is Load.NORMAL:  # as normal_on_end, from the core that is at hand

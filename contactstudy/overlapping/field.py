@@ -182,13 +182,16 @@ def end_fields(
     list of dict of Load to array (component, x, y, z)
         At each place, under the load in each of the problem's directions.
     """
+    fields: list[dict[Load, FloatArray]] = [{} for _ in places]
     with one_blas_thread():
-        folded = [_Folded.of(problem, place) for place in places]
-        cells = problem.columns[1]
-        parts = {0: cells} if np.isinf(problem.length) else parity_parts(cells)
-        sums = _sum_over_wavenumbers(_Task(problem, harmonics, folded, reference), parts)
-        fields = [place.unfolded(own, harmonics.odd_along_x) for place, own in zip(folded, sums, strict=True)]
-    return [dict(zip(problem.loads, field, strict=True)) for field in fields]
+        for alike in problem.alike():
+            folded = [_Folded.of(alike, place) for place in places]
+            cells = alike.columns[1]
+            parts = {0: cells} if np.isinf(alike.length) else parity_parts(cells, alike.sign_x)
+            sums = _sum_over_wavenumbers(_Task(alike, harmonics, folded, reference), parts)
+            for found, place, own in zip(fields, folded, sums, strict=True):
+                found |= dict(zip(alike.loads, place.unfolded(own, harmonics.odd_along_x), strict=True))
+    return fields
 
 
 def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> list[dict[int, FloatArray]]:

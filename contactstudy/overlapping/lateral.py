@@ -8,7 +8,7 @@ nodes that follow the phase. Within a panel a load is a sum of few products of a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -26,15 +26,19 @@ NEGLIGIBLE = 1e-7
 LEAST_PRODUCT = 1e-7
 """Part of the largest product of a load that is left out within a panel. Accuracy."""
 
-POLES_ALONE = 0.01
-"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and a constant.
-Accuracy. The double pole (a sliding load off-centre turns the body) amplifies rounding errors if it is much lower."""
+POLES, BENDING_POLES = 2, 3
+"""Order of an amplitude's pole at wavenumber 0: 3 under a force along x, which bends the body as a plate."""
 
-POLE_SAMPLES = (1 / 3, 2 / 3, 1.0)
-"""Where the poles are found, over that wavenumber. Accuracy."""
+ALONE, TERMS = {POLES: 0.01, BENDING_POLES: 1.0}, {POLES: 1, BENDING_POLES: 6}
+"""Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and this number of
+powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
+the more it amplifies what the quadratures leave, if the wavenumber is much lower."""
 
 PHASE_PER_NODE = 1.8
 """Phase that one Gauss node follows, radians. Accuracy."""
+
+MOMENT_ORDER, MOMENT_PHASE = 16, 10.0
+"""Gauss nodes, and the phase that they follow, for the integrals of powers. Accuracy."""
 
 BATCH = 16
 """Columns, over all their wavenumbers, that share one set of points and one product along y. Speed."""
@@ -53,8 +57,11 @@ class LateralPanel:
     interpolation : array (fine, node), or None
         From `nodes` to `fine`; None where they are the same.
     reference : float or None
-        If given, the nodes (`POLE_SAMPLES` of the panel's end) stand for an answer ``b / k**2 + c / k + d`` from 0 to
-        the panel's end, whose integral is taken in closed form; the poles' are relative to ``|y| = reference``.
+        If given, the nodes stand for an answer ``b / k**2 + c / k + d`` (more of them, for one with higher powers, and
+        a higher pole) from 0 to the panel's end, whose integral is taken in closed form; the poles' are relative to
+        ``|y| = reference``.
+    poles : int
+        Highest order of these poles.
     """
 
     nodes: FloatArray
@@ -62,14 +69,20 @@ class LateralPanel:
     weights: FloatArray
     interpolation: FloatArray | None = None
     reference: float | None = None
+    poles: int = POLES
 
     def waves(self, y: FloatArray) -> tuple[FloatArray, FloatArray]:
         """``cos(k y)`` and ``sin(k y)`` times the weights of the integral: arrays (fine, y)."""
         if self.reference is not None:
-            powers = np.vander(1 / self.nodes, 3)
-            moments = (function(self.nodes[-1], y, self.reference) for function in (cosine_moments, _sine_moments))
-            cosine, sine = (np.asarray(np.linalg.solve(powers.T, each) / np.pi) for each in moments)
-            return cosine, sine
+            first, terms = float(self.nodes[-1]), self.nodes.size - self.poles
+            # Over the panel's end, for the powers to be alike.
+            powers = (self.nodes[:, None] / first) ** np.arange(-self.poles, terms)
+            scale = first ** np.arange(-self.poles, terms)
+            waves = []
+            for moments in (cosine_moments, sine_moments):
+                own = moments(first, y, self.reference, terms)[BENDING_POLES - self.poles :]
+                waves.append(np.asarray(np.linalg.solve(powers.T, own / scale[:, None]) / np.pi))
+            return waves[0], waves[1]
         phase, weights = np.outer(self.fine, y), self.weights[:, None] / np.pi
         return np.cos(phase) * weights, np.sin(phase) * weights
 
@@ -115,9 +128,16 @@ class LateralColumns:
 
 
 def lateral_panels(
-    first: float, reach: float, last: float, resolution: Resolution, reference: float | None = None
+    first: float,
+    reach: float,
+    last: float,
+    resolution: Resolution,
+    reference: float | None = None,
+    poles: int = POLES,
 ) -> list[LateralPanel]:
     """Panels from 0 to `last`, growing from `first`, for phases over the distance `reach`.
+
+    With a `reference`, answers have a pole at 0 up to the order `poles`, taken relative to ``|y| = reference``.
 
     Examples
     --------
@@ -144,8 +164,9 @@ def lateral_panels(
         fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
         panels.append(LateralPanel(nodes, fine, weights, lagrange(nodes, fine)))
     if reference is not None:
-        samples = first * np.array(POLE_SAMPLES)
-        panels[0] = LateralPanel(samples, samples, np.ones_like(samples), reference=reference)
+        count = poles + TERMS[poles]
+        samples = first * np.arange(1.0, count + 1) / count
+        panels[0] = LateralPanel(samples, samples, np.ones_like(samples), reference=reference, poles=poles)
     return panels
 
 
@@ -197,31 +218,48 @@ def _at_nodes(columns: LateralColumns, nodes: FloatArray, interpolation: FloatAr
     return LateralColumns(nodes, np.concatenate(along_x, axis=1)[:, None, :], count, even, odd)
 
 
-def cosine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:
-    """Integrals of ``cos(k y)`` times ``k**-2, k**-1, 1`` over k from 0 to `first`: array (3, y).
+def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+    """Integrals of ``cos(k y)`` times ``k**-3, k**-2, k**-1, 1, ...`` over k from 0 to `first`: array (3 + terms, y).
 
-    The first two are relative to ``|y| = reference``, of which all wavenumbers are taken here: they stand for rigid
-    motions, and no more than these is to be moved.
+    The poles' are relative to ``|y| = reference``, of which all wavenumbers are taken here: with the integrals from
+    `first` on they sum up to functions that are zero there,
+
+        k**-3: y**2 / 2 ln(|y| / r) + 3 / 4 (r**2 - y**2),   k**-2: pi / 2 (r - |y|),   k**-1: ln(r / |y|),
+
+    of which the first has no curvature there either. They stand for rigid motions (and, the first one, for pure bending
+    of the body about its depth), and no more than these is to be moved.
     """
-    argument = np.maximum(first * np.abs(y), 1e-30)
+    distance = np.maximum(np.abs(y), 1e-30 / first)
+    argument = first * distance
     sine_integral, cosine_integral = special.sici(argument)
+    logarithm = cosine_integral - np.log(distance / reference)
+    bent = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm
     return np.array(
         [
-            (1 - np.cos(argument)) / first - np.abs(y) * sine_integral + 0.5 * np.pi * reference,
-            cosine_integral - np.log(argument) + np.log(first * reference),
-            first * np.sinc(argument / np.pi),
+            bent - 0.5 * (np.cos(argument) / first - distance * np.sin(argument)) / first,
+            (-np.cos(argument)) / first - distance * sine_integral + 0.5 * np.pi * reference,
+            logarithm,
+            *_powers(np.cos, first, y, terms),
         ]
     )
 
 
-def _sine_moments(first: float, y: FloatArray, reference: float) -> FloatArray:
-    """Likewise of ``sin(k y)``; the first stands for a rotation, which is moved with the cosine's second."""
+def sine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
+    """Likewise of ``sin(k y)``, such that where a cosine's is integrated along y, its motion is moved with it."""
     argument = first * y
-    pole = cosine_moments(first, y, reference)[1]
+    _, second, pole = cosine_moments(first, y, reference, 0)
     return np.array(
         [
+            0.5 * y * (second + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / first**2,
             y * (1 - np.sinc(argument / np.pi) + pole),
             special.sici(argument)[0],
-            first * np.sin(0.5 * argument) * np.sinc(0.5 * argument / np.pi),
+            *_powers(np.sin, first, y, terms),
         ]
     )
+
+
+def _powers(wave: Callable[[FloatArray], FloatArray], first: float, y: FloatArray, terms: int) -> FloatArray:
+    """Integrals of ``wave(k y)`` times ``1, k, k**2, ...`` over k from 0 to `first`: array (terms, y)."""
+    pieces = max(1, int(np.ceil(first * np.abs(y).max(initial=0.0) / MOMENT_PHASE)))
+    nodes, weights = panel_nodes(np.linspace(0.0, first, pieces + 1), MOMENT_ORDER)
+    return np.asarray((nodes[:, None] ** np.arange(terms) * weights[:, None]).T @ wave(np.outer(nodes, y)))

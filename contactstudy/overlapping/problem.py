@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -17,8 +17,10 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
 from contactstudy.overlapping.lateral import (
+    ALONE,
+    BENDING_POLES,
     NEGLIGIBLE,
-    POLES_ALONE,
+    POLES,
     LateralColumns,
     LateralPanel,
     lateral_columns,
@@ -33,6 +35,9 @@ logarithm there, of which only the sum is finite."""
 
 SAME_EDGE = 1e-12
 """Part of the length by which an edge and the image of another may differ and be the same. Accuracy."""
+
+FIRST = 0.1
+"""End of the first panel along ``k_y``, over the smallest length of the problem, of a field without poles. Accuracy."""
 
 THINNEST = 0.004
 """Least length of a body over the width of the load. Accuracy: at this one the ends keep 6e-4 of the pressure, at a
@@ -68,7 +73,7 @@ class EndProblem:
     cells : array (cell_x, cell_y)
         Load per area on the cells of `grid`, Pa.
     loads : tuple of Load
-        Directions in which it acts, each a problem for itself.
+        Directions in which it acts, each a problem for itself; all kept, or all reversed, by their mirror images.
     grid : Grid
         Cells, from ``x = 0``.
     resolution : Resolution
@@ -114,6 +119,18 @@ class EndProblem:
         own = np.clip(np.searchsorted(edges, 0.5 * (both[1:] + both[:-1])) - 1, 0, self.cells.shape[0] - 1)
         return both, self.cells[own]
 
+    @property
+    def sign_x(self) -> int:
+        """1 if a mirror image keeps the loads, -1 if it reverses them."""
+        return self.loads[0].sign_x
+
+    def alike(self) -> Iterator[EndProblem]:
+        """Yield the same for loads that images keep, and for those that they reverse: they differ in every wave."""
+        for sign in (1, -1):
+            loads = tuple(load for load in self.loads if load.sign_x == sign)
+            if loads:
+                yield replace(self, loads=loads, resolution=self.resolution.for_loads(loads))
+
     def axial_modes(self, lateral: float, shortest: float) -> list[AxialModes]:
         """Axial modes for wavenumbers along y from `lateral` on, see `modes_between_ends`."""
         return modes_between_ends(self.length, lateral, shortest, self.resolution, mirrored_once=self.mirrored_once)
@@ -137,10 +154,12 @@ class EndProblem:
         grid = self.grid
         loaded = np.abs(grid.y[self.cells.any(axis=0)]).max(initial=0.0) + 0.5 * grid.dy
         reach = loaded + np.abs(y).max()
-        first = (0.1 if reference is None else POLES_ALONE) / min(self.length, 4 * max(grid.x_range[1], reach))
+        poles = BENDING_POLES if self.sign_x < 0 else POLES
+        alone = FIRST if reference is None else ALONE[poles]
+        first = alone / min(self.length, 4 * max(grid.x_range[1], reach))
         # Along y the load is known to the cell only; finer than half a cell there is nothing to resolve.
         last = self.resolution.lateral_reach / max(shortest, 0.5 * self._finest)
-        return lateral_panels(first, reach, last, self.resolution, reference)
+        return lateral_panels(first, reach, last, self.resolution, reference, poles)
 
     def batches(self, panel: LateralPanel, parts: Mapping[int, FloatArray], y: FloatArray) -> Iterator[LateralColumns]:
         """Columns of the load's `parts` within one panel, a few at a time."""
@@ -162,9 +181,12 @@ def finest_cell(grid: Grid) -> float:
     return min(grid.dx, grid.dy) if grid.uniform else grid.dy
 
 
-def parity_parts(cells: FloatArray) -> dict[int, FloatArray]:
-    """Parts of a load (x, y) even (1) and odd (-1) about mid-length; one that is negligible is left out."""
-    parts = {parity: 0.5 * (cells + parity * cells[::-1]) for parity in (1, -1)}
+def parity_parts(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
+    """Parts of a load (x, y) that a reflection about mid-length keeps (1) and reverses (-1), but negligible ones.
+
+    The reflection turns round the direction of loads with `sign_x` -1 as well: of these the first part is odd.
+    """
+    parts = {parity: 0.5 * (cells + sign_x * parity * cells[::-1]) for parity in (1, -1)}
     least = NEGLIGIBLE * np.abs(cells).max()
     return {parity: part for parity, part in parts.items() if np.abs(part).max() > least}
 
@@ -200,9 +222,9 @@ def views_of(problem: EndProblem, load: LateralColumns, x: FloatArray, shortest:
         columns = np.flatnonzero((load.parities == modes.parity) | (load.parities == 0) | (modes.parity == 0))
         if not columns.size:
             continue
-        integrals = modes.load_weights[:, None] * modes.cell_integrals(edges)
+        integrals = modes.load_weights[:, None] * modes.cell_integrals(problem.loads[0], edges)
         for flipped in (False, True) if np.isfinite(length) and not modes.parity and not split else (False,):
-            facing = integrals[:, ::-1] if flipped else integrals
+            facing = problem.sign_x * integrals[:, ::-1] if flipped else integrals
             distance = length - x if flipped else x
             rows = np.flatnonzero(distance <= modes.reach)
             distance = distance[rows]

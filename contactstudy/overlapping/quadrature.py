@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.kernels.load import Load
 
 
 @lru_cache(maxsize=32)
@@ -58,6 +60,11 @@ def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
     """
     panels = max(1, int(np.ceil(np.log(last / first) / np.log(ratio))) + 1)
     return np.concatenate([[0.0], first * ratio ** np.arange(panels)])
+
+
+AXIAL_ORDER, AXIAL_REACH = 12, 1000.0
+"""Least order and reach under loads along x. Accuracy: where they bend the body, H and V grow and cancel; on a corner
+their normal stress on the end is singular."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +121,12 @@ class Resolution:
             raise InvalidInputError("ratio", self.ratio, "more than 1: the panels grow")
         if not 0 < self.angle < np.pi / 4:
             raise InvalidInputError("angle", self.angle, "between 0 and pi/4, where k_x^2 + k_y^2 + k_z^2 vanishes")
+
+    def for_loads(self, loads: Iterable[Load]) -> Resolution:
+        """Return settings that resolve loads in these directions as well as these do a pressure."""
+        if Load.ALONG_X not in loads:
+            return self
+        return replace(self, order=max(self.order, AXIAL_ORDER), reach=max(self.reach, AXIAL_REACH))
 
 
 def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:

@@ -13,7 +13,7 @@ from contactstudy.overlapping.field import Harmonics, Place, end_fields, real_pr
 from contactstudy.overlapping.problem import EndProblem
 
 
-def end_stress(problem: EndProblem, places: Sequence[Place]) -> list[dict[Load, FloatArray]]:
+def end_stress(problem: EndProblem, places: Sequence[Place], reference: float = np.inf) -> list[dict[Load, FloatArray]]:
     """Stresses that the free ends add to the half-space with all mirrored loads.
 
     Parameters
@@ -22,13 +22,21 @@ def end_stress(problem: EndProblem, places: Sequence[Place]) -> list[dict[Load, 
         Body and load.
     places : sequence of Place
         Points inside the body.
+    reference : float
+        Between two ends: where along y the bending of the far body under a force along x is zero, metres.
 
     Returns
     -------
     list of dict of Load to array (6, x, y, z)
         At each place, under the load in each of the problem's directions: xx, yy, zz, xy, xz, yz in Pa.
     """
-    return end_fields(problem, STRESS, places)
+    fields: list[dict[Load, FloatArray]] = [{} for _ in places]
+    for alike in problem.alike():
+        grows = alike.sign_x < 0 and np.isfinite(reference)
+        own = end_fields(alike, STRESS, places, reference=reference if grows else None)
+        for found, each in zip(fields, own, strict=True):
+            found |= each
+    return fields
 
 
 def _below_equivalent_load(

@@ -12,6 +12,7 @@ from contactstudy.analysis import along_line, axial_pressure, dimension_along, p
 from contactstudy.analysis.measures import measure
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import line_styles, new_axes, units
 
 if TYPE_CHECKING:
@@ -66,11 +67,15 @@ def plot_comparison(
         unit = units(one, si=si)
         profile = axial_pressure(one) if variable == "pressure" else section_peak(one, variable)[f"peak_{variable}"]
         place = profile[dimension_along(profile, "x")].values
+        ends = singular_ends(one) if "pressure" in one else []
+        shown = np.where(near_singular(one, ends, place), np.nan, profile.values)
+        middle = 0.0
         if centred:
             axial = axial_pressure(one)
             loaded = positions(axial, "x").where(axial > 0)
-            place = place - 0.5 * float(loaded.min() + loaded.max())
-        ax.plot(place / unit.length, profile.values / unit.stress, label=name, **style)
+            middle = 0.5 * float(loaded.min() + loaded.max())
+        ax.plot((place - middle) / unit.length, shown / unit.stress, label=name, **style)
+        mark_at_top(ax, [(end - middle) / unit.length for end in ends], style["color"])
     ax.set_xlabel(unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$")
     ax.set_ylabel(unit.stress_label(variable))
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
 from contactstudy.arrays.required import require
+from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import COLORS, new_axes, units
 
 if TYPE_CHECKING:
@@ -35,6 +37,8 @@ def plot_axial_pressure(
     Returns
     -------
     Axes
+        At a singular end an open triangle at the top stands for the pressure, which has no largest value; the last 0.05
+        half-widths before it are not drawn.
 
     Raises
     ------
@@ -54,7 +58,10 @@ def plot_axial_pressure(
     unit = units(one, si=si)
     ax = new_axes(ax)
     axial = axial_pressure(one)
-    ax.plot(axial[dimension_along(axial, "x")].values / unit.length + shift, axial.values / unit.stress, **style)
+    ends = singular_ends(one)
+    drawn = np.where(near_singular(one, ends), np.nan, axial.values)
+    (line,) = ax.plot(axial[dimension_along(axial, "x")].values / unit.length + shift, drawn / unit.stress, **style)
+    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.stress_label("pressure"))
     return ax
@@ -96,15 +103,20 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     ax = new_axes(ax)
     pressure = one["pressure"]
     x, y = (dimension_along(pressure, axis) for axis in "xy")
+    # Beside a singular end the colours say "more than": the height there is that of a cell.
+    near = near_singular(one, singular_ends(one))
+    largest = float(pressure.isel({x: ~near}).max()) / unit.stress if near.any() else None
     drawn = ax.pcolormesh(
         pressure[x].values / unit.length,
         pressure[y].values / unit.length,
         pressure.transpose(y, x).values / unit.stress,
         cmap=COLORS,
         shading="nearest",
+        vmax=largest,
         rasterized=True,
     )
-    ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label("pressure"))
+    extend = "neither" if largest is None else "max"
+    ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label("pressure"), extend=extend)
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.axis("y"))
     return ax

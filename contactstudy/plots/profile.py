@@ -11,6 +11,7 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import line_styles, new_axes
 from contactstudy.profiles import Profile
+from contactstudy.profiles.base import checked_drop
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -57,8 +58,8 @@ def plot_profile(
     checks.instance("profile", profile, Profile, "a profile from contactstudy.profiles")
     length = checks.positive("length", length, "metres")
     x = 0.5 * length * np.linspace(-1, 1, POINTS)
-    drop = np.array(profile.drop(x, length), dtype=np.float64)
-    drop[~np.isfinite(drop)] = np.nan
+    drop = checked_drop(profile, x, length)
+    drop = np.where(np.isfinite(drop), drop, np.nan)
     ax = new_axes(ax, (6.4, 3.2))
     ax.plot(1e3 * x, 1e6 * drop, **style)
     if not ax.yaxis_inverted():

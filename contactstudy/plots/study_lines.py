@@ -11,8 +11,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import DERIVED
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.edge_effect import plot_edge_effect
+from contactstudy.plots.singular import MARK, MEANING, mark_at_top
 from contactstudy.plots.study_map import one_value, readable
 from contactstudy.plots.style import as_written, line_styles
 
@@ -55,7 +57,8 @@ def plot_study_lines(
     Returns
     -------
     Figure
-        Its title says at which values of the other parameters.
+        Its title says at which values of the other parameters. An open triangle at the top stands for a value without a
+        limit, such as the peak pressure at a sharp end inside the face.
 
     Raises
     ------
@@ -71,6 +74,7 @@ def plot_study_lines(
     2
     """
     from matplotlib import pyplot as plt
+    from matplotlib.lines import Line2D
 
     drawn = [name for name in variables if name in dataset]
     if not drawn:
@@ -89,6 +93,7 @@ def plot_study_lines(
         sharex=True,
     )
     chosen = _first_solved(dataset[drawn[0]], kept, selection or {})
+    singular = False
     for ax, name in zip(axes[0], drawn, strict=True):
         values, meaning = readable(one_value(dataset[name], kept, chosen), name)
         numeric = np.issubdtype(values[x].dtype, np.number)
@@ -98,12 +103,16 @@ def plot_study_lines(
         labels = [None] if hue is None else _texts(values[hue], hue)
         for number, (line, text, style) in enumerate(zip(lines, labels, line_styles(len(lines)), strict=True)):
             marker = MARKERS[number % len(MARKERS)]
-            ax.plot(places, line.values, **style, marker=marker, markersize=4, label=text)
+            endless = np.isinf(line.values)
+            shown = np.where(endless, np.nan, line.values)
+            ax.plot(places, shown, **style, marker=marker, markersize=4, label=text)
+            mark_at_top(ax, list(places[endless]), style["color"])
+            singular |= bool(endless.any())
         if not numeric:
             ax.set_xticks(places, [as_written(value) for value in across.values], rotation=20)
         ax.set_xlabel(label)
         ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
-        ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.max())), 1e-300))
+        ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.where(np.isfinite(values)).max())), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
     if hue is not None:
         numeric = np.issubdtype(dataset[hue].dtype, np.number) and not _parameters_of(dataset[hue], hue)
@@ -112,6 +121,9 @@ def plot_study_lines(
         handles, labels = axes[0, 0].get_legend_handles_labels()
         small = {"fontsize": "small", "title_fontsize": "small"}
         figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
+    if singular:
+        key = Line2D([], [], color="0.3", **MARK)
+        figure.legend([key], [MEANING], loc="outside lower right", frameon=False, fontsize="small")
     if chosen:
         stated = ", ".join(
             f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {as_written(value)}"
@@ -132,7 +144,11 @@ def _texts(values: xr.DataArray, name: str) -> list[str]:
 
 def _parameters_of(values: xr.DataArray, name: str) -> list[str]:
     """Parameters that change together along a dimension of a study; none if it is a parameter itself."""
-    return [str(own) for own in values.coords if own != name and values[own].dims == values.dims]
+    return [
+        str(own)
+        for own in values.coords
+        if own != name and values[own].dims == values.dims and values[own].attrs.get("comment") != DERIVED
+    ]
 
 
 def _first_solved(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:

@@ -32,7 +32,7 @@ def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     if unit in ("", "1"):
         return array, text
     if unit in SCALES:
-        largest = float(abs(array).max())
+        largest = float(abs(array).where(np.isfinite(array)).max())
         factor, unit = next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
         array = array / factor
     return array, f"{text} ({unit})"
@@ -93,7 +93,8 @@ def plot_study_map(
     Returns
     -------
     Axes
-        Steps of the parameters are drawn evenly, whatever their values; cells without a value are hatched.
+        Steps of the parameters are drawn evenly, whatever their values; cells without a value are hatched, and those of
+        a value without a limit, such as a singular peak, have the sign of infinity as well.
 
     Raises
     ------
@@ -141,8 +142,10 @@ def plot_study_map(
         lines.set_path_effects(rim)
         for number in ax.clabel(lines, fmt="%g", fontsize="small"):
             number.set_path_effects(rim)
-    elif numbers.size <= MOST_NUMBERS:
-        middle = 0.5 * (np.nanmin(numbers) + np.nanmax(numbers))
+    for row, column in np.argwhere(np.isinf(numbers)):
+        ax.text(column, row, "\N{INFINITY}", ha="center", va="center", color="black", fontsize="medium")
+    if levels is None and numbers.size <= MOST_NUMBERS:
+        middle = 0.5 * (masked.min() + masked.max())
         for row, column in np.argwhere(np.isfinite(numbers)):
             value = numbers[row, column]
             color = "white" if value < middle else "black"

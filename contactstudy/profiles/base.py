@@ -74,6 +74,39 @@ def local_radius(profile: Profile, x: FloatArray, length: float, radius: float |
     return Shape().local_radius(x, length, radius)
 
 
+def checked_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
+    """Drop (m) of any profile at distances `x` from mid-length, or an error if it is not one number for each.
+
+    Parameters
+    ----------
+    profile : Profile
+        Any profile, a class of one's own among them.
+    x : array
+        Distances from mid-length, metres.
+    length : float
+        Length of the roller, metres.
+
+    Returns
+    -------
+    array
+        Of the shape of `x`, metres; may be infinite.
+
+    Raises
+    ------
+    InvalidInputError
+        If what the profile returns has another shape, is not real, or is negative or NaN somewhere.
+    """
+    found = np.asarray(profile.drop(x, length))
+    expected = "a profile whose drop(x, length) is an array like x, metres, not negative"
+    if found.shape != x.shape or found.dtype.kind not in "iuf":
+        raise InvalidInputError("profile", profile, expected, f"it returned {found.dtype} of shape {found.shape}")
+    wrong = np.flatnonzero(~(found >= 0))
+    if wrong.size:
+        where = f"it returned {found[wrong[0]]} at x = {x[wrong[0]]:g} m"
+        raise InvalidInputError("profile", profile, expected, where)
+    return np.asarray(found, dtype=np.float64)
+
+
 @dataclass(frozen=True)
 class Sum(Shape):
     """Profiles on top of each other, usually written ``one + other``: the drops add up.
@@ -113,10 +146,8 @@ class Sum(Shape):
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Sum of the drops (m) at distances `x` (m) from mid-length."""
-        total = self.terms[0].drop(x, length)
-        for term in self.terms[1:]:
-            total = total + term.drop(x, length)
-        return total
+        drops = [checked_drop(term, np.asarray(x), length) for term in self.terms]
+        return np.asarray(sum(drops[1:], start=drops[0]))
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) after every summand in turn."""

@@ -9,7 +9,7 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Profile, Shape, local_radius
+from contactstudy.profiles.base import Profile, Shape, checked_drop, local_radius
 
 STEP = 1e-10
 """Largest step between the two halves at mid-length, metres: about one atom. Accuracy."""
@@ -51,13 +51,13 @@ class Halves(Shape):
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
         middle = np.zeros(1)
-        at_left, at_right = (float(half.drop(middle, length)[0]) for half in (self.left, self.right))
+        at_left, at_right = (float(checked_drop(half, middle, length)[0]) for half in (self.left, self.right))
         if abs(at_left - at_right) > STEP:
             raise InvalidInputError(
                 "left, right", (at_left, at_right), "equal drops at mid-length (metres), so that the halves meet"
             )
         x = np.asarray(x)
-        return np.asarray(np.where(x < 0, self.left.drop(x, length), self.right.drop(x, length)))
+        return np.asarray(np.where(x < 0, *(checked_drop(half, x, length) for half in (self.left, self.right))))
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) of each half."""

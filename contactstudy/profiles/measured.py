@@ -78,12 +78,14 @@ class Measured(Shape):
         x = checks.coordinates("positions", self.positions, "metres")
         try:
             drops = np.asarray(self.drops, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise InvalidInputError("drops", self.drops, "numbers (metres)") from None
         if drops.shape != x.shape:
             raise InvalidInputError("drops", f"{drops.size} values", f"one for each of {x.size} positions")
         check_positions("positions", x, FEWEST)
         check_values("drops", drops, ("x", x))
+        if drops.max() > checks.LARGEST:
+            raise InvalidInputError("drops", drops.max(), f"at most {checks.LARGEST:g} (metres)", "units are SI")
         if drops.min() < 0:
             at = int(drops.argmin())
             raise InvalidInputError(

@@ -93,11 +93,19 @@ class OntoCommon:
         centres = _centres(self.common)
         return np.asarray((centres < self.own[0]) | (centres > self.own[-1]))
 
-    def averages(self) -> sparse.csr_array:
-        """Matrix (common cell, own cell) of the part of a common cell that lies in an own one."""
+    def averages(self, values: FloatArray) -> FloatArray:
+        """Average values (cell, ...) over the common cells, straight within each own cell: integrals are kept.
+
+        The slopes are limited by either neighbour, so no value is beyond those of the cells around.
+        """
         low = np.maximum(self.common[:-1, None], self.own[None, :-1])
         high = np.minimum(self.common[1:, None], self.own[None, 1:])
-        return sparse.csr_array(np.maximum(high - low, 0.0) / np.diff(self.common)[:, None])
+        shared = np.maximum(high - low, 0.0) / np.diff(self.common)[:, None]
+        centres = _centres(self.own)
+        arms = np.where(shared > 0, 0.5 * (low + high) - centres, 0.0)
+        found = sparse.csr_array(shared) @ values + sparse.csr_array(shared * arms) @ _limited_slopes(centres, values)
+        found[~shared.any(axis=1)] = self.outside
+        return np.asarray(found)
 
     def between(self, values: FloatArray) -> FloatArray:
         """Interpolate values along the first axis linearly at the common centres; NaN beyond the own cells."""
@@ -126,14 +134,23 @@ def resampled(name: str, values: npt.NDArray[Any], along: Iterable[OntoCommon | 
             continue
         moved = np.moveaxis(result, axis, 0)
         if name in AVERAGED:
-            parts = way.averages()
-            flat = parts @ moved.reshape(moved.shape[0], -1)
-            flat[parts.sum(axis=1) == 0] = way.outside
+            flat = way.averages(moved.reshape(moved.shape[0], -1))
             moved = flat.reshape(-1, *moved.shape[1:])
         else:
             moved = way.between(moved)
         result = np.moveaxis(moved, 0, axis)
     return result
+
+
+def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
+    """Slope of each cell: the smaller one to either neighbour, 0 at a local extreme and at the outermost cells."""
+    slopes = np.zeros_like(values)
+    if centres.size > 2:
+        steps = np.diff(values, axis=0) / np.diff(centres)[:, None]
+        before, after = steps[:-1], steps[1:]
+        smaller = np.minimum(np.abs(before), np.abs(after))
+        slopes[1:-1] = np.where(before * after > 0, np.sign(before) * smaller, 0.0)
+    return slopes
 
 
 def _centres(edges: FloatArray) -> FloatArray:

@@ -242,7 +242,7 @@ class Folder:
         """Files among the cases that are no case of this package, each with what is wrong."""
         wrong = []
         for path in sorted(self.cases.glob("*")):
-            if path.suffix == ".failed" or ".part-" in path.name or path.is_dir():
+            if path.suffix == ".failed" or ".part-" in path.name or (path.is_dir() and path.suffix != ".nc"):
                 continue
             try:
                 identity = self._checked(path)["id"]

@@ -119,14 +119,14 @@ class Fields:
             same = all(row.size == size and np.allclose(row, rows[0], rtol=1e-9, atol=1e-12) for row in rows)
             if same and not widths:
                 # Positions that were given over a are the same for all cases up to rounding.
-                return f"{dim}_over_a", size, {}, self._common(dim, rows[0], None, by_case)
+                return f"{dim}_over_a", size, {}, self._common(dim, rows[0], None, by_case, {})
             if dim in CELL_AXES and self._cells == "common":
                 edges = {place: _edges(by_case[place], widths.get(place)) / scale[place] for place in by_case}
                 common = (common_columns if dim == "x" else common_rows)(list(edges.values()))
                 outside = np.nan if dim == "x" else 0.0
                 onto = {place: OntoCommon(own_edges, common, outside) for place, own_edges in edges.items()}
                 centres = 0.5 * (common[1:] + common[:-1])
-                return f"{dim}_over_a", centres.size, onto, self._common(dim, centres, np.diff(common), by_case)
+                return f"{dim}_over_a", centres.size, onto, self._common(dim, centres, np.diff(common), by_case, onto)
         name = f"{dim}_index"
         own = {dim: ((*self._cube.dims, name), self._padded(by_case, size), attributes)}
         if self._half_width is not None:
@@ -146,10 +146,17 @@ class Fields:
         }
 
     def _common(
-        self, dim: str, over_a: FloatArray, widths: FloatArray | None, by_case: dict[Place, FloatArray]
+        self,
+        dim: str,
+        over_a: FloatArray,
+        widths: FloatArray | None,
+        by_case: dict[Place, FloatArray],
+        onto: dict[Place, OntoCommon],
     ) -> dict[str, Any]:
-        """Coordinates of an axis that all cases share over a: that, and each case's metres."""
-        name, own = f"{dim}_over_a", {place: over_a * float(self._scale(place)) for place in by_case}
+        """Coordinates of an axis that all cases share over a: that, and each case's metres, NaN beyond its cells."""
+        name, own = f"{dim}_over_a", {place: over_a * self._scale(place) for place in by_case}
+        for place, way in onto.items():
+            own[place][way.beyond] = np.nan
         found: dict[str, Any] = {
             name: (name, over_a, labels(name, coordinate=True)),
             dim: ((*self._cube.dims, name), self._padded(own, over_a.size), labels(dim, coordinate=True)),

@@ -1,20 +1,22 @@
 """Cache of what the files of a study say, so that a thousand of them need not be opened to know their state.
 
-One line of JSON for each file, written at its end as cases finish; of two lines for one file the later one counts.
-Lines that make no sense are passed over, because everything in the cache can be read again from the files.
+One line for each file, written at its end as cases finish: a check sum and JSON. Of two lines for one file the later one
+counts. Lines that are not as they were written are passed over, because everything in the cache can be read again from
+the files.
 """
 
 from __future__ import annotations
 
 import json
 import sys
+import zlib
 from pathlib import Path
 from typing import Any
 
 from contactstudy.study.errors import StoreError
 from contactstudy.study.store import write_text
 
-SCHEMA = 2
+SCHEMA = 3
 
 # Lines per file beyond which the cache is written anew.
 MOST_LINES = 2
@@ -30,6 +32,24 @@ def _sound(entry: object) -> bool:
         and isinstance(entry.get("scalars"), dict)
         and all(isinstance(value, (int, float)) for value in entry["scalars"].values())
     )
+
+
+def as_line(entry: dict[str, Any]) -> str:
+    """Write an entry as a line; a digit that changes on a disk would make another number of it."""
+    text = json.dumps(entry)
+    return f"{zlib.crc32(text.encode()):08x} {text}"
+
+
+def _entry_of(line: str) -> dict[str, Any] | None:
+    """Entry that a line holds; None if it is not as it was written."""
+    found, _, text = line.partition(" ")
+    if found != f"{zlib.crc32(text.encode()):08x}":
+        return None
+    try:
+        entry = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return entry if _sound(entry) else None
 
 
 class Manifest:
@@ -58,11 +78,7 @@ class Manifest:
                 known, lines = False, []
             self._lines = len(lines) + 1 if known else 0
             for line in lines if known else ():
-                try:
-                    entry = json.loads(line)
-                except (ValueError, RecursionError):  # also the empty line before the first entry
-                    continue
-                if _sound(entry):
+                if entry := _entry_of(line):
                     self._entries[entry["name"]] = entry
         return self._entries
 
@@ -79,7 +95,7 @@ class Manifest:
         scalars = {sys.intern(key): value for key, value in scalars.items()}
         entry = {"name": name, "size": size, "changed": changed, "id": identity, "run": run, "scalars": scalars}
         self._known()[name] = entry
-        self._new.append(json.dumps(entry))
+        self._new.append(as_line(entry))
         return entry
 
     def forget(self, name: str) -> None:
@@ -97,7 +113,7 @@ class Manifest:
         known = self._known()
         lines = self._lines + len(self._new)
         if self._lines == 0 or lines > MOST_LINES * len(known) + 100:
-            content = [json.dumps({"schema": SCHEMA}), *map(json.dumps, known.values())]
+            content = [json.dumps({"schema": SCHEMA}), *map(as_line, known.values())]
             write_text(self._path, "\n".join(content))
             lines = len(content)
         elif self._new:

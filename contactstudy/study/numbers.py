@@ -8,8 +8,8 @@ from contactstudy.errors import InvalidInputError
 # Significant digits of a number in a study: more would tell apart values that are the same.
 DIGITS = 12
 
-# Sizes of numbers whose squares and quotients are still numbers; every quantity in SI units lies far within.
-SMALLEST, LARGEST = 1e-100, 1e100
+# As for every other number; 0 is one as well.
+SMALLEST, LARGEST = 1 / checks.LARGEST, checks.LARGEST
 
 
 def rounded(value: float) -> float:

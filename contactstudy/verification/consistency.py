@@ -51,7 +51,7 @@ def equilibrium_checks() -> Iterator[Check]:
     slopes = {}
     for axis in "xyz":
         points = {name: [value] for name, value in centre.items()} | {axis: centre[axis] + offsets}
-        stress = stress_field(body, pressure, friction, **points)
+        stress = stress_field(body, pressure, friction, *points.values())
         slopes[axis] = {name: float(weights @ stress[name].values.ravel()) for name in STRESSES}
     divergence = [
         sum(slopes[axis][name] for axis, name in zip("xyz", names, strict=True))
@@ -126,7 +126,7 @@ def alternation_checks() -> Iterator[Check]:
     modes = axial_modes(8.0, 2.0, 0.05, settings)[0]
     system = EquationSet.build(modes, 2.0, 0.3, 0.05, settings)
     asked: FloatArray = system.source(
-        Load.NORMAL, modes.load_weights * modes.cell_integrals(np.array([0.0, 3.0]))[:, 0]
+        Load.NORMAL, modes.load_weights * modes.cell_integrals(Load.NORMAL, np.array([0.0, 3.0]))[:, 0]
     )
     explicit, face_load = system.solve(asked), asked.copy()
     for _ in range(200):

@@ -49,7 +49,7 @@ def stress_checks(name: str) -> Iterator[Check]:
     below = reference.stress
     points = {axis: below[axis].values.astype(float) for axis in "xyz"}
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    stress = stress_field(body, pressure_of(case), case.friction, **points)
+    stress = stress_field(body, pressure_of(case), case.friction, *points.values())
     computed = np.array([stress[component].values for component in STRESSES])
     expected = np.array([below[component].transpose("x", "y", "z").values for component in STRESSES])
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"

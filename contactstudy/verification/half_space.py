@@ -202,7 +202,7 @@ def point_checks() -> Iterator[Check]:
         (0.0, "Boussinesq (1885); Johnson 3.2"),
         (1.0, "Boussinesq and Cerruti; Johnson 3.2, 3.6"),
     ):
-        stress = stress_field(_body(), pressure, friction, **at)
+        stress = stress_field(_body(), pressure, friction, *at.values())
         exact = closed_forms.point_load(x, y, z, POISSON, 1.0, friction)
         scale = max(float(np.abs(value).max()) for value in exact.values())
         yield compare_fields(

@@ -80,8 +80,8 @@ def body_checks() -> Iterator[Check]:
     points = {"y": [0.0, 0.5], "z": [0.1, 0.3, 1.0]}
     bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
     x = [19.0, 20.0, 20.5]
-    finite = stress_field(FiniteLengthSpace(length=40.0, material=unit_material()), bump, 0.2, x=x, **points)
-    half = stress_field(HalfSpace(material=unit_material()), bump, 0.2, x=x, **points)
+    finite = stress_field(FiniteLengthSpace(length=40.0, material=unit_material()), bump, 0.2, x, *points.values())
+    half = stress_field(HalfSpace(material=unit_material()), bump, 0.2, x, *points.values())
     yield compare_fields(
         "body of length 40a loaded over 2a in its middle, f = 0.2",
         "six stresses / p0",
@@ -98,7 +98,7 @@ def body_checks() -> Iterator[Check]:
             (10.0, QuarterSpace(material=unit_material())),
         ):
             load = on_cells(lambda x, y: strip(x, y) * (x < 2), (0, span), (-2, 2), (round(8 * span), 48))
-            stress = stress_field(body, load, 0.2, x=at_x, **points)
+            stress = stress_field(body, load, 0.2, at_x, *points.values())
             fields.append(components(stress))
         finite_fields, quarter_fields = fields
         yield compare_fields(

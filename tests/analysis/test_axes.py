@@ -19,7 +19,7 @@ def test_axis_without_a_single_dimension(dims: tuple[str, str]) -> None:
 
 def test_positions_of_a_study_belong_to_each_case(opened: xr.Dataset) -> None:
     place = analysis.positions(opened["pressure"], "x")
-    assert place.dims == ("e_over_a", "friction", "body", "x_index")
+    assert place.dims == ("e_over_a", "friction", "body", "x_over_a")
     assert axis_dimensions(opened["von_mises"]) == {"x": "x_field", "y": "y_field", "z": "z"}
 
 

@@ -113,7 +113,7 @@ def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
         alone = analysis.contact_results(analysis.single_case(opened.sel(chosen)))
         for name, value in alone.items():
             assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-12, abs=1e-15), name
-        profile = analysis.half_width(opened.sel(chosen))["half_width"].dropna("x_index")
+        profile = analysis.half_width(opened.sel(chosen))["half_width"].dropna("x_over_a")
         single = analysis.half_width(analysis.single_case(opened.sel(chosen)))["half_width"]
         assert np.array_equal(profile.values, single.values)
     assert together.sel(friction=FAILS).to_array().isnull().all()

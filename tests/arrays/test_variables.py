@@ -57,6 +57,13 @@ def as_dataset(value: xr.Dataset | xr.DataArray) -> xr.Dataset:
     return value.coords.to_dataset() if value.name in value.coords else value.to_dataset(name=str(value.name))
 
 
+def _rubbed(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -> xr.Dataset:
+    """The case's contact with stick and slip."""
+    gap = case.gap(cs.Grid.from_centres(contact.x.values, contact.y.values))
+    labelled = contact.pressure.copy(data=gap).assign_attrs(units="m")
+    return cs.solve_contact(case.body, labelled, load=case.normal_load, friction=0.1, motion=motion)
+
+
 @pytest.fixture(scope="module")
 def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
     """What every public function returns, by its name."""
@@ -89,9 +96,12 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "solve": solved,
         "solve on refined columns": cs.solve(sharp, z=depths, accuracy=0.05),
         "solve_contact": contact,
+        "solve_contact, rolling": _rubbed(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
+        "solve_contact, shifted": _rubbed(case, contact, cs.Shift(y=1e-8)),
         "stress_field": cs.stress_field(body, pressure, z=depths),
         "displacement_field": cs.displacement_field(body, pressure, z=depths),
         "surface_displacement": cs.surface_displacement(body, pressure),
+        "surface_displacement, all": cs.surface_displacement(body, pressure, components="xyz"),
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
         "summarize": cs.summarize(solved),

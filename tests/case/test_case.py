@@ -10,6 +10,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contactstudy import (
+    Body,
     Case,
     FiniteLengthSpace,
     Grid,
@@ -20,6 +21,7 @@ from contactstudy import (
     choose_grid,
     profiles,
 )
+from contactstudy.bodies.models import EndedBody
 
 STEEL = Material(young=210e9, poisson=0.3)
 ROLLER = Roller(radius=5e-3, length=10e-3, profile=profiles.Cylinder(fillet_radius=0.2e-3))
@@ -114,19 +116,49 @@ def test_bad_values_are_named(make, message: str) -> None:
     [
         (Material(210.0, 0.3), {"max_pressure": 1.5e9}, "max_pressure = .* in Pa"),
         (STEEL, {"max_pressure": 1e11}, "max_pressure = "),
+        (STEEL, {"max_pressure": 1.5}, "max_pressure = 1.5.* at least 1e-10 of .* in Pa"),
+        (STEEL, {"load": 1e-40}, "load = 1e-40.* loads in N"),
+        (STEEL, {"load": 5e-324}, r"load = 5e-324: .*of a size from 1e-50 to 1e\+50"),
+        (STEEL, {"load": 1e300}, r"load = 1e\+300: .*of a size from 1e-50 to 1e\+50"),
+        (STEEL, {"max_pressure": 5e-324}, "max_pressure = 5e-324: .*of a size"),
         (STEEL, {"load": 1e7}, "load = .* loads in N"),
     ],
-    ids=["modulus in GPa", "pressure", "load"],
+    ids=[
+        "modulus in GPa",
+        "pressure",
+        "load",
+        "pressure in GPa",
+        "tiny load",
+        "least float",
+        "huge load",
+        "least pressure",
+    ],
 )
-def test_contacts_as_wide_as_the_roller_are_refused(material: Material, load: dict[str, float], named: str) -> None:
+def test_contacts_that_no_roller_has_are_refused(material: Material, load: dict[str, float], named: str) -> None:
     with pytest.raises(InvalidInputError, match=named):
         Case(body=FiniteLengthSpace(length=10e-3, material=material), roller=replace(ROLLER, length=10e-3), **load)
 
 
-@pytest.mark.parametrize("pressure", [1.5, 1500.0])
-def test_a_pressure_in_another_unit_asks_for_too_many_cells(pressure: float) -> None:
+@pytest.mark.parametrize(
+    ("radius", "length", "named"),
+    [(1.0, 1e-9, "roller.length = 1e-09.*Hertz half-widths"), (1e-8, 1e9, "roller.length = .*Hertz half-widths")],
+)
+def test_lengths_out_of_proportion_are_refused(radius: float, length: float, named: str) -> None:
+    with pytest.raises(InvalidInputError, match=named):
+        Case(body=HalfSpace(material=STEEL), roller=Roller(radius=radius, length=length), max_pressure=1e9)
+
+
+def test_a_pressure_in_another_unit_asks_for_too_many_cells() -> None:
     with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells.*pressures are in Pa"):
-        choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=pressure))
+        choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=1500.0))
+
+
+def test_a_body_of_no_kind_is_none() -> None:
+    for kind in (Body, EndedBody):
+        with pytest.raises(InvalidInputError, match=f"body = '{kind.__name__}': must be a HalfSpace"):
+            kind(material=STEEL)
+    with pytest.raises(InvalidInputError, match=r"body = 'half-space': must be elastic.*not str"):
+        Case(body="half-space", roller=ROLLER, max_pressure=1e9)  # type: ignore[arg-type]
 
 
 def test_coupled_is_yes_or_no() -> None:

@@ -49,17 +49,17 @@ def samples(pressure: FloatArray) -> list[Sample]:
 
 @given(exponent=st.floats(0.15, 0.5))
 def test_growing_as_a_power_is_told(exponent: float) -> None:
-    rigid, elastic = (law_of(samples(HALVINGS**-exponent), rigid=rigid) for rigid in (True, False))
-    assert rigid is not None
+    stiff_end, elastic = (law_of(samples(HALVINGS**-exponent), stiff=stiff) for stiff in (True, False))
+    assert stiff_end is not None
     assert elastic is not None
-    assert (rigid.kind, rigid.exponent) == ("power", 0.5)
+    assert (stiff_end.kind, stiff_end.exponent) == ("power", 0.5)
     assert elastic.kind == "power"
     assert np.isnan(elastic.exponent)
 
 
 @given(share=st.floats(0.02, 0.2))
 def test_growing_as_a_logarithm_is_told(share: float) -> None:
-    law = law_of(samples(1 + share * np.log(1 / HALVINGS)), rigid=True)
+    law = law_of(samples(1 + share * np.log(1 / HALVINGS)), stiff=True)
     assert law is not None
     assert (law.kind, law.exponent) == ("logarithm", 0.0)
     assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
@@ -67,16 +67,16 @@ def test_growing_as_a_logarithm_is_told(share: float) -> None:
 
 @given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
 def test_an_end_that_settles_has_no_law(power: float, share: float) -> None:
-    assert law_of(samples(1 - share * HALVINGS**power), rigid=True) is None
+    assert law_of(samples(1 - share * HALVINGS**power), stiff=True) is None
 
 
 def test_few_samples_and_falling_pressures_have_no_law() -> None:
-    assert law_of(samples(HALVINGS**-0.5)[:3], rigid=True) is None
-    assert law_of(samples(HALVINGS**0.5), rigid=True) is None
+    assert law_of(samples(HALVINGS**-0.5)[:3], stiff=True) is None
+    assert law_of(samples(HALVINGS**0.5), stiff=True) is None
 
 
 def test_an_end_that_is_pressed_on_some_columns_only_has_no_law() -> None:
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), rigid=True) is None
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), stiff=True) is None
 
 
 @given(intensity=st.floats(1e3, 1e9), radius=st.floats(1e-7, 1e-3), factor=st.floats(0.1, 10.0))

@@ -17,8 +17,8 @@ HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
 
 
-def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), rigid: bool = True) -> AxialShape:
-    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, rigid)
+def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), stiff: bool = True) -> AxialShape:
+    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, stiff)
 
 
 def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
@@ -126,7 +126,7 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
         means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
         return np.asarray(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    found = refined_contact(exact, shape(room=(np.inf, 0.0), rigid=exponent == 0.5), 0.01)
+    found = refined_contact(exact, shape(room=(np.inf, 0.0), stiff=exponent == 0.5), 0.01)
     law, other = found.laws
     assert law is not None
     assert other is None

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from contactstudy import (
     ConvergenceWarning,
     FiniteLengthSpace,
+    Grid,
     HalfSpace,
     InvalidInputError,
     Material,
@@ -181,6 +182,34 @@ def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace
         solve_contact(short_body, good, 1.0)
     with pytest.raises(InvalidInputError, match="end at the free end"):
         solve_contact(short_body, good.assign_coords(x=good.x + 1.5), 1.0)
+
+
+@pytest.mark.parametrize("load", [1.0, 1e45])
+def test_a_window_full_of_contact_is_a_named_error_and_no_warning(short_body, cylinder_gap, load: float) -> None:
+    """All cells of the coarse first guess touch and sink alike."""
+    with pytest.raises(WindowError, match="y_min"):
+        solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load)
+
+
+@pytest.mark.parametrize(
+    ("window", "cells", "named"),
+    [(1e6, (16, 16), "y = 'a window of 2e\\+06 m'"), (1e4, (10**5, 4), "cells of .*sides in a ratio")],
+)
+def test_cells_and_windows_out_of_proportion_are_refused(short_body, window, cells, named: str) -> None:
+    y = window * (2 * (np.arange(cells[1]) + 0.5) / cells[1] - 1)
+    x = 8.0 * (np.arange(cells[0]) + 0.5) / cells[0]
+    gap = xr.DataArray(np.broadcast_to(y**2, cells), coords={"x": x, "y": y}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match=named):
+        solve_contact(short_body, gap, 1.0)
+
+
+def test_too_many_cells_are_refused_before_any_memory_is_asked_for() -> None:
+    with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells"):
+        Grid((0.0, 1.0), (-1.0, 1.0), 10**6, 10**6)
+    with pytest.raises(InvalidInputError, match="not closer than rounding"):
+        Grid((1.0, 1.0 + 1e-15), (-1.0, 1.0), 4, 4)
+    with pytest.raises(InvalidInputError, match="not closer than rounding"):
+        Grid((0.0, 1.0), (-5e-324, 5e-324), 4, 4)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.49])

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import meshio
 import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import InvalidInputError, export, tresca
+from contactstudy import Case, FiniteLengthSpace, Grid, InvalidInputError, Material, Roller, export, solve, tresca
 from contactstudy.analysis import normalized
 from contactstudy.arrays.variables import STRESSES
 from tests.export.vtk_reader import read
@@ -62,7 +63,7 @@ def test_measures_scaled_results_and_cases_of_a_study(solved, opened, tmp_path) 
 
 def test_bad_input(solved: xr.Dataset, opened: xr.Dataset, tmp_path) -> None:
     for call, message in (
-        (lambda: export.to_vtk(solved, tmp_path / "case.vtk"), "ends with .vtr"),
+        (lambda: export.to_vtk(solved, tmp_path / "case.vtk"), "ends with .vtr or .vtu"),
         (lambda: export.to_vtk(solved, 3), "path"),
         (lambda: export.to_vtk(solved, tmp_path / "a.vtr", ["pressure", "von_mises"]), "same points"),
         (lambda: export.to_vtk(solved, tmp_path / "a.vtr", "load"), "same points"),
@@ -72,3 +73,53 @@ def test_bad_input(solved: xr.Dataset, opened: xr.Dataset, tmp_path) -> None:
         with pytest.raises(InvalidInputError, match=message):
             call()
     assert not list(tmp_path.iterdir())
+
+
+def test_a_mesh_has_the_body_between_its_points(solved: xr.Dataset, tmp_path) -> None:
+    """Read by meshio, which knows nothing of rectilinear grids."""
+    mesh = meshio.read(export.to_vtk(solved, tmp_path / "case.vtu"))
+    shape = solved["von_mises"].shape
+    assert [(block.type, len(block.data)) for block in mesh.cells] == [("hexahedron", np.prod(np.array(shape) - 1))]
+    x, y, z = mesh.points.T
+    for values, name in ((x, "x_field"), (y, "y_field"), (z, "z")):
+        assert np.array_equal(np.unique(values), np.sort(solved[name].values))
+    places = {"x_field": xr.DataArray(x), "y_field": xr.DataArray(y), "z": xr.DataArray(z)}
+    for name in (*STRESSES, "von_mises"):
+        assert np.array_equal(mesh.point_data[name], solved[name].sel(places)), name
+    assert np.array_equal(mesh.point_data["stress"].reshape(-1, 3, 3)[:, 0, 2], mesh.point_data["tau_xz"])
+    # Every brick has a positive volume, and together they are the body that was looked at.
+    corners = mesh.points[mesh.cells[0].data]
+    volumes = np.prod(corners[:, 6] - corners[:, 0], axis=1)
+    assert volumes.min() > 0
+    assert volumes.sum() == pytest.approx(
+        np.prod([np.ptp(solved[name].values) for name in ("x_field", "y_field", "z")])
+    )
+    turn = np.cross(corners[:, 1] - corners[:, 0], corners[:, 3] - corners[:, 0])
+    assert (np.sum(turn * (corners[:, 4] - corners[:, 0]), axis=1) > 0).all()
+
+
+def test_pressure_in_a_mesh_belongs_to_cells_of_their_own_width(tmp_path) -> None:
+    body = FiniteLengthSpace(length=4.0, material=Material(1.0, 0.3))
+    grid = Grid.from_edges([0.0, 0.5, 1.0, 2.0, 3.0, 3.5, 4.0], (-2.0, 2.0), 12)
+    case = Case(body=body, roller=Roller(radius=20.0, length=3.0), max_pressure=0.025)
+    result = solve(case, grid, stresses=False)
+    mesh = meshio.read(export.to_vtk(result, tmp_path / "top.vtu", ["pressure", "gap"]))
+    (block,) = mesh.cells
+    assert block.type == "quad"
+    corners = mesh.points[block.data]
+    middle = corners.mean(axis=1)
+    places = {"x": xr.DataArray(middle[:, 0]), "y": xr.DataArray(middle[:, 1])}
+    for name in ("pressure", "gap"):
+        (values,) = mesh.cell_data[name]
+        assert np.array_equal(values, result[name].sel(places, method="nearest")), name
+    areas = np.prod(corners[:, 2] - corners[:, 0], axis=1, where=[True, True, False])
+    assert float((areas * mesh.cell_data["pressure"][0]).sum()) == pytest.approx(case.normal_load)
+
+
+def test_a_plane_in_a_mesh_is_made_of_rectangles(solved: xr.Dataset, tmp_path) -> None:
+    plane = solved.isel(y_field=[8])
+    mesh = meshio.read(export.to_vtk(plane, tmp_path / "plane.vtu", "von_mises"))
+    assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 12 * 5)]
+    with pytest.raises(InvalidInputError, match="at least two points"):
+        export.to_vtk(plane.isel(z=[0]), tmp_path / "line.vtu", "von_mises")
+    assert not (tmp_path / "line.vtu").exists()

@@ -9,6 +9,7 @@ from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, 
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping import problem
+from contactstudy.overlapping.lateral import POLES
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -50,6 +51,6 @@ def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
 
     usual = loads()
     assert usual["P_h1"].attrs["reference_distance"] == 80.0
-    monkeypatch.setattr(problem, "POLES_ALONE", 0.1 * problem.POLES_ALONE)
+    monkeypatch.setitem(problem.ALONE, POLES, 0.1 * problem.ALONE[POLES])
     for name in ("P_h1", "P_v1", "P_v2"):
         assert float(np.abs(loads()[name] - usual[name]).max()) < 1e-4 * float(np.abs(usual[name]).max())

@@ -126,7 +126,14 @@ def test_a_body_too_thin_to_be_freed_is_refused(on_cells) -> None:
         stress_field(thin, pressure, z=[0.1])
 
 
-@pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e300), ("z", 1e300)])
+def test_points_within_rounding_of_an_end_lie_on_it(short_body: FiniteLengthSpace, strip_pressure) -> None:
+    pressure = strip_pressure(8.0, (16, 16))
+    on_end, beside = (stress_field(short_body, pressure, x=[x], z=[0.5]) for x in (0.0, 5e-324))
+    assert beside["x"].item() == 0.0
+    np.testing.assert_array_equal(beside["sigma_zz"], on_end["sigma_zz"])
+
+
+@pytest.mark.parametrize(("axis", "far"), [("y", 1e6), ("y", -1e45), ("z", 1e45)])
 def test_points_out_of_reach_are_refused(short_body: FiniteLengthSpace, strip_pressure, axis: str, far: float) -> None:
     points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [far]}
     with pytest.raises(InvalidInputError, match=f"^{axis} = .* within 10000 times the size"):

@@ -79,7 +79,7 @@ def flexibility(case: ContactCase, resolution: Resolution) -> Flexibility:
         deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
         body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), case.poisson)
         for k in low + 0.5 * (high - low) * (node + 1):
-            amplitudes = body.solve(float(k), [(hat, False) for hat in pairs])
+            amplitudes = body.solve(float(k), [(hat, "z") for hat in pairs])
             top = 2 * np.stack([u[2] @ body.top for u in amplitudes])
             flexible = loads @ top.T
             ks.append(float(k))

@@ -2,8 +2,8 @@
 
 For a load `cos(k y)` the displacement is `(U_x cos, U_y sin, U_z cos)(k y)`, and the amplitudes solve a real
 two-dimensional problem on `0 <= x <= L`, `0 <= z <= depth`: free at `x = 0`, `x = L` and (but for the load)
-`z = 0`, held at `z = depth`. A traction `q cos(k y)` along y is the same problem a quarter period further on:
-`(U_x sin, -U_y cos, U_z sin)`.
+`z = 0`), held at `z = depth`; a traction along x is such a load too. A traction `q cos(k y)` along y is the same
+problem a quarter period further on: `(U_x sin, -U_y cos, U_z sin)`.
 
 The mesh is a tensor product of two line meshes, so the matrices are sums of Kronecker products of
 one-dimensional ones, which scikit-fem assembles. Unit of stiffness is the shear modulus: stresses do not
@@ -109,15 +109,12 @@ class HarmonicBody:
     def _restrict(self, matrix: sp.csr_matrix) -> sp.csc_matrix:
         return matrix[self._free][:, self._free].tocsc()
 
-    def solve(self, k: float, shapes: Sequence[tuple[Callable[[Array], Array], bool]]) -> Array:
-        """Amplitudes `[shape, component, x, z]` for unit loads `g(x) cos(k y)`; the flag: tangential?"""
+    def solve(self, k: float, shapes: Sequence[tuple[Callable[[Array], Array], str]]) -> Array:
+        """Amplitudes `[shape, component, x, z]` for unit loads `g(x) cos(k y)` in the direction "x", "y" or "z"."""
         loads = np.zeros((len(shapes), 3, self.x.basis.N, self.z.basis.N))
-        for load, (g, tangential) in zip(loads, shapes, strict=True):
+        for load, (g, direction) in zip(loads, shapes, strict=True):
             along = np.outer(self.x.load(g), self.top)
-            if tangential:
-                load[1] = -along
-            else:
-                load[2] = along
+            load["xyz".index(direction)] = -along if direction == "y" else along
         constant, linear, square = self._parts
         matrix = (constant + k * linear + k**2 * square).tocsc()
         factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
@@ -147,6 +144,6 @@ class HarmonicBody:
         xz = at(x0, ux, z1) + at(x1, uz, z0)
         return np.stack([2 * xx + trace, 2 * yy + trace, 2 * zz + trace, xy, xz, yz], axis=1)
 
-    def surface(self, amplitudes: Array, x: Sequence[float]) -> Array:
-        """Amplitudes `[shape, x]` of `2 G u_z` on the top (the unit of stiffness is `G`)."""
-        return 2 * np.stack([self.x.evaluate(x)[0] @ (u[2] @ self.top) for u in amplitudes])
+    def surface(self, amplitudes: Array, x: Sequence[float], component: int = 2) -> Array:
+        """Amplitudes `[shape, x]` of `2 G` times one component of the top's displacement (`G` is the unit)."""
+        return 2 * np.stack([self.x.evaluate(x)[0] @ (u[component] @ self.top) for u in amplitudes])

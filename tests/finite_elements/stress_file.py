@@ -50,8 +50,8 @@ def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
 def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
     """Stresses, and where it has a meaning the displacement, from the harmonics of a body."""
     at = coordinates(case)
-    normal = shapes.index((case.g, False))
-    tangential = shapes.index((case.g, True)) if case.friction else None
+    normal = shapes.index((case.g, "z"))
+    tangential = shapes.index((case.g, "y")) if case.friction else None
     fields = stresses(harmonic, normal, tangential, case.friction, at["y"])
     units = {"units": "p0"}
     data = xr.Dataset(
@@ -101,7 +101,7 @@ def write(path: Path) -> None:
     for (length, poisson), group in groupby(LOAD_CASES.items(), key=lambda item: (item[1].length, item[1].poisson)):
         cases = dict(group)
         shapes = list(
-            dict.fromkeys([(c.g, False) for c in cases.values()] + [(c.g, True) for c in cases.values() if c.friction])
+            dict.fromkeys([(c.g, "z") for c in cases.values()] + [(c.g, "y") for c in cases.values() if c.friction])
         )
         results: dict[Resolution, dict[str, xr.Dataset]] = {}
         for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):

@@ -74,12 +74,12 @@ class Harmonics:
 def harmonics(
     length: float,
     poisson: float,
-    shapes: Sequence[tuple[Callable[[Array], Array], bool]],
+    shapes: Sequence[tuple[Callable[[Array], Array], str]],
     x: Sequence[float],
     z: Sequence[float],
     resolution: Resolution,
 ) -> Harmonics:
-    """Solve for every wavenumber; a shape is `g` and whether the load is tangential."""
+    """Solve for every wavenumber; a shape is `g` and the direction of the load."""
     body = HarmonicBody(
         Line(resolution.mesh_x(length), resolution.order), Line(resolution.mesh_z(), resolution.order), poisson
     )

@@ -14,7 +14,7 @@ from tests.finite_elements import contact, superpose
 COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
 BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
 Y = (-1.25, -0.5, 0.0, 0.25, 1.0)
-UNIFORM = [(fe.Uniform(), False), (fe.Uniform(), True)]
+UNIFORM = [(fe.Uniform(), "z"), (fe.Uniform(), "y")]
 
 
 def test_meshes_contain_the_points_where_loads_begin() -> None:
@@ -58,7 +58,7 @@ def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
     """Against the integral of Boussinesq and Cerruti loads; the ends, `6 a` away, still count a little."""
     bump = fe.Bump(6.0, 1.0)
     x, z = (6.0, 6.5, 7.5), (0.5, 1.0, 2.0)
-    shapes = [(bump, False), (bump, True)]
+    shapes = [(bump, "z"), (bump, "y")]
     harmonic = superpose.harmonics(12.0, 0.3, shapes, x, z, COARSE(panels=BELOW_25, nodes=4))
     found = superpose.stresses(harmonic, 0, 1, 0.3, Y)
     node, weight = np.polynomial.legendre.leggauss(60)

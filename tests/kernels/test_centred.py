@@ -10,7 +10,6 @@ from contactstudy.kernels import centred, displacement, field, stress
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
-from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
 from contactstudy.kernels.stress import half_space_stress
 
 GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
@@ -28,8 +27,7 @@ def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[
     length = extent[1] - extent[0]
     fields = []
     for each in Load:
-        level = displacement._row_level(each, 0.3, length, 20.0) if np.isfinite(length) else None
-        influence = Influence.of(DISPLACEMENT_CORNERS[each], 0.3, each, displacement.UNDER_PRESSURE, level)
+        influence = displacement.displacement_influence(each, 0.3, length, 20.0)
         fields.append(field.half_space_field(load, influence, GRID, x, y, Z, extent=extent))
     return np.stack(fields)
 
@@ -68,3 +66,20 @@ def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     assert np.abs(softer - first[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
     np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
+
+
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
+@pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
+@pytest.mark.parametrize("whole", [False, True])
+def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+    """At periods of a fast length the farthest cells were left out of components odd in y.
+
+    Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
+    """
+    load = np.zeros(GRID.shape)
+    load[loaded] = 1.0
+    x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
+    # With a position that lies otherwise beside each, nothing is taken by symmetry.
+    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)

@@ -15,7 +15,6 @@ from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
-from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
 
 LENGTH, POISSON = 2.0, 0.3
 EXTENTS = {
@@ -32,8 +31,7 @@ def stresses_of(load: Load) -> Influence:
 
 
 def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
-    level = displacement._row_level(load, POISSON, LENGTH, 20.0) if np.isfinite(extent).all() else None
-    return Influence.of(DISPLACEMENT_CORNERS[load], POISSON, load, displacement.UNDER_PRESSURE, level)
+    return displacement.displacement_influence(load, POISSON, extent[1] - extent[0], 20.0)
 
 
 @pytest.mark.parametrize("load", Load)

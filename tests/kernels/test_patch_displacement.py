@@ -3,8 +3,13 @@
 import numpy as np
 import pytest
 
-from contactstudy.kernels.patch import normal_displacement_corner, tangential_displacement_corner
-from contactstudy.kernels.patch_displacement import normal_displacement_inside, tangential_displacement_inside
+from contactstudy.kernels.load import Load, Response
+from contactstudy.kernels.patch_displacement import (
+    DISPLACEMENT_CORNERS,
+    normal_displacement_inside,
+    tangential_displacement_inside,
+)
+from contactstudy.kernels.surface import SURFACE_CORNERS
 
 NU = 0.3
 
@@ -37,14 +42,14 @@ def test_small_rectangle_is_boussinesqs_and_cerrutis_point_load(point):
     )
 
 
-def test_on_the_surface_they_are_the_surfaces_functions():
-    x, y = np.meshgrid([-0.7, 0.2, 1.1], [-0.3, 0.4, 0.9])
-    pressure = normal_displacement_inside(x, y, 0.0, NU)[2]
-    np.testing.assert_allclose(pressure, 2 * (1 - NU) * normal_displacement_corner(x, y), rtol=1e-13)
+@pytest.mark.parametrize("load", list(Load))
+def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
+    x, y = np.meshgrid([-0.7, 0.2, 1.1], [-0.3, 0.4, 0.9], indexing="ij")
 
     def mixed_difference(values):
         return np.diff(np.diff(values, axis=0), axis=1)
 
-    sliding = tangential_displacement_inside(x, y, 0.0, NU)[2]
-    expected = (1 - 2 * NU) * tangential_displacement_corner(x, y)
-    np.testing.assert_allclose(mixed_difference(sliding), mixed_difference(expected), rtol=1e-12)
+    inside = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
+    for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
+        found = mixed_difference(SURFACE_CORNERS[Response(direction, load)](x, y, NU))
+        np.testing.assert_allclose(found, mixed_difference(expected), rtol=1e-12, atol=1e-15)

@@ -9,7 +9,7 @@ import pytest
 
 from contactstudy import Grid, Material
 from contactstudy.bodies.models import FreedEnds
-from contactstudy.kernels.load import Load
+from contactstudy.kernels.load import SINKS, Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.equations import EquationSet
@@ -25,7 +25,7 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
     modes = axial_modes(8.0 if lateral < 3 else np.inf, lateral, 0.05, Resolution())
     chosen = modes[min(parity, len(modes) - 1)]
     system = EquationSet.build(chosen, lateral, 0.3, 0.05, Resolution())
-    load = chosen.load_weights * chosen.cell_integrals(np.array([0.0, 3.0]))[:, 0]
+    load = chosen.load_weights * chosen.cell_integrals(Load.NORMAL, np.array([0.0, 3.0]))[:, 0]
     asked = system.source(Load.NORMAL, load)
     explicit = system.solve(asked)
     face_load = asked.copy()
@@ -40,8 +40,8 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid((0.0, length), (-2.0, 2.0), 24, 16)
     freed = FreedEnds(length)
-    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (Load.NORMAL,), 80.0, Resolution())
-    for kernel in end_kernel(request).samples[Load.NORMAL]:
+    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (SINKS,), 80.0, Resolution())
+    for kernel in end_kernel(request).samples[SINKS]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 

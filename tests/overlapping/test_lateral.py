@@ -9,11 +9,20 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy import integrate, special
+from scipy import integrate
 
 from contactstudy import Grid
+from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.lateral import LateralPanel, cosine_moments, lateral_columns, lateral_panels
+from contactstudy.overlapping.lateral import (
+    BENDING_POLES,
+    POLES,
+    LateralPanel,
+    cosine_moments,
+    lateral_columns,
+    lateral_panels,
+    sine_moments,
+)
 from contactstudy.overlapping.quadrature import Resolution
 
 GRID = Grid((0.0, 4.0), (-1.0, 1.0), 12, 40)
@@ -69,17 +78,39 @@ def test_no_load_has_no_columns():
 
 
 @pytest.mark.parametrize("y", [0.0, 0.3, -2.0])
-def test_moments_of_the_poles(y: float):
-    first, reference = 0.7, 10.0
+@pytest.mark.parametrize("moments", [cosine_moments, sine_moments])
+def test_moments_of_the_poles(moments: Callable[..., FloatArray], y: float):
+    """Between two ends of the range they differ by the integral."""
+    reference, at = 10.0, np.array([y])
+    wave = np.cos if moments is cosine_moments else np.sin
+    near, far = moments(0.7, at, reference, 3)[:, 0], moments(2.5, at, reference, 3)[:, 0]
+    expected = [integrate.quad(lambda k, n=n: wave(k * y) * k**n, 0.7, 2.5)[0] for n in range(-3, 3)]
+    np.testing.assert_allclose(far - near, expected, atol=1e-12)
 
-    def integral(function: Callable[[float], float]) -> float:
-        return float(integrate.quad(function, 1e-9, first, limit=400)[0])
 
-    expected = [
-        # int (cos(k y) - 1) / k**2 up to `first`, less that of all wavenumbers at the reference
-        integral(lambda k: (np.cos(k * y) - 1) / k**2) + 0.5 * np.pi * reference,
-        # int (cos(k y) - cos(k reference)) / k up to `first`, less the reference's beyond: a cosine integral
-        integral(lambda k: (np.cos(k * y) - np.cos(k * reference)) / k) + special.sici(first * reference)[1],
-        integral(lambda k: np.cos(k * y)),
-    ]
-    np.testing.assert_allclose(cosine_moments(first, np.array([y]), reference)[:, 0], expected, atol=1e-7)
+def test_poles_are_relative_to_the_reference():
+    """All wavenumbers of the cosines' poles sum up to nothing at the reference, the first one without curvature."""
+    step, reference = 1e-3, 10.0
+    y = reference + step * np.arange(-1.0, 2.0)
+    total = cosine_moments(400.0, y, reference, 0)
+    np.testing.assert_allclose(total[:, 1], 0.0, atol=5e-4)
+    assert abs(total[0] @ [1, -2, 1]) / step**2 < 1e-2
+    along = sine_moments(400.0, y, reference, 0)
+    # The sine's poles are the derivatives of the cosine's of the next order, reversed.
+    np.testing.assert_allclose(along[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
+
+
+@pytest.mark.parametrize("poles", [POLES, BENDING_POLES])
+def test_an_answer_with_poles_is_integrated_whatever_the_first_panel(poles: int):
+    y, totals = np.array([0.0, 0.4, 2.0]), []
+    for first in (0.02, 0.1, 0.6):
+        total = np.zeros((2, y.size))
+        for panel in lateral_panels(first, 3.0, 60.0, Resolution(), 30.0, poles):
+            answer = np.exp(-panel.nodes) / panel.nodes**poles
+            if panel.interpolation is not None:
+                answer = panel.interpolation @ answer
+            total += [answer @ waves for waves in panel.waves(y)]
+        totals.append(total[0] - total[0, :1] if poles == BENDING_POLES else total[0])
+    np.testing.assert_allclose(totals[0], totals[1], atol=2e-4 if poles == POLES else 1e-5)
+    if poles == BENDING_POLES:
+        np.testing.assert_allclose(totals[2], totals[1], atol=1e-5)

@@ -8,7 +8,7 @@ from contactstudy.errors import InvalidInputError
 
 def test_axial_pressure_is_over_p0_and_a(one):
     line = plots.plot_axial_pressure(one, label="a").lines[0]
-    assert line.get_xdata() == pytest.approx((one["x"] / one["hertz_half_width"]).dropna("x_index").values)
+    assert line.get_xdata() == pytest.approx((one["x"] / one["hertz_half_width"]).dropna("x_over_a").values)
     assert 1.0 < np.max(line.get_ydata()) < 1.2
 
 

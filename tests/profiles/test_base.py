@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -77,6 +78,76 @@ def test_a_profile_of_ones_own_needs_only_a_drop() -> None:
     for added in (Wedge() + Lundberg(1e-6), Lundberg(1e-6) + Wedge()):
         np.testing.assert_allclose(added.drop(x, LENGTH), 1e-4 * np.abs(x) + Lundberg(1e-6).drop(x, LENGTH))
     np.testing.assert_array_equal(local_radius(Wedge(), x, LENGTH, RADIUS), [RADIUS, RADIUS])
+
+
+@pytest.mark.parametrize(
+    ("returned", "named"),
+    [
+        (lambda x: 0.0, "it returned float64 of shape ()"),
+        (lambda x: np.zeros(7), "of shape (7,)"),
+        (lambda x: None, "it returned object"),
+        (lambda x: "deep", "it returned <U4"),
+        (lambda x: x + 0j, "it returned complex128"),
+        (lambda x: -1e-6 * np.ones_like(x), "it returned -1e-06 at x = "),
+        (lambda x: np.where(x > 0, np.nan, 0.0), "it returned nan at x = 0.00"),
+        (lambda x: np.full(x.shape, np.inf), "finite but at the very ends"),
+    ],
+)
+def test_a_profile_of_ones_own_that_returns_no_drops(returned, named: str) -> None:
+    class Own:
+        def drop(self, x, length):
+            return returned(x)
+
+    with pytest.raises(InvalidInputError, match=re.escape(named)):
+        Roller(radius=RADIUS, length=LENGTH, profile=Own())
+    if "very ends" not in named:
+        for combined in (Sum((Own(), Cylinder())), Halves(Cylinder(), Own())):
+            with pytest.raises(InvalidInputError, match="profile = "):
+                combined.drop(np.linspace(0.0, 0.4, 5) * LENGTH, LENGTH)
+
+
+def test_a_drop_that_is_a_number_only_near_the_middle() -> None:
+    class Own:
+        def drop(self, x, length):
+            return np.where(np.abs(x) > 0.4 * length, np.nan, 0.0)
+
+    roller = Roller(radius=RADIUS, length=LENGTH, profile=Own())
+    with pytest.raises(InvalidInputError, match="it returned nan at x = "):
+        roller.clearance(np.array([-0.45 * LENGTH, 0.0]), np.zeros(1))
+
+
+def test_a_drop_may_be_a_list() -> None:
+    class Own:
+        def drop(self, x, length):
+            return [1e-6 for _ in x]
+
+    assert Roller(radius=RADIUS, length=LENGTH, profile=Own()).clearance(np.zeros(2), np.zeros(1))[0, 0] == 1e-6
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: FullCrown(1e300),
+        lambda: FullCrown(1.0, centre=1e300),
+        lambda: PartialCrown(0.0, 1e160),
+        lambda: PartialCrown(1e-3, 1.0, 1e-4, 5e-324),
+        lambda: Ellipsoid(5e-324),
+        lambda: Lundberg(1e300),
+        lambda: Lundberg(1e-6, 1e160),
+        lambda: Lundberg.for_pressure(1e300, radius=5e-3, modulus=2e11),
+        lambda: Lundberg.for_pressure(1e40, radius=1e40, modulus=1e-40),
+        lambda: JohnsGohar.for_pressure(1e300, radius=5e-3, modulus=2e11),
+        lambda: FujiwaraKawase.for_pressure(1e300, radius=5e-3, modulus=2e11, edge_drop=1e-6),
+        lambda: FujiwaraKawase(1e-6, 1e-6, k1=5e-324),
+        lambda: FujiwaraKawase(1e-6, 1e-6, k2=5e-324),
+        lambda: IsoCylindrical(1e300),
+        lambda: Measured((0, 1, 2, 3, 4), (0, 0, 10**400, 0, 0)),
+        lambda: Measured((0, 1, 2, 3, 4), (1e300,) * 5),
+    ],
+)
+def test_numbers_beyond_arithmetic_are_refused_by_name(make) -> None:
+    with pytest.raises(InvalidInputError, match=r"units are SI|numbers \(metres\)"):
+        make()
 
 
 def test_the_radius_of_a_cone_survives_in_a_sum(places: np.ndarray) -> None:

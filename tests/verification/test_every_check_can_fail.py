@@ -23,6 +23,7 @@ from contactstudy.verification import (
     consistency,
     convergence,
     finite_elements,
+    friction,
     half_space,
     limits,
     published,
@@ -73,7 +74,11 @@ def softer(patch: Patch) -> None:
 
 def no_friction(patch: Patch) -> None:
     real = stress.stress_field
-    everywhere(patch, "stress_field", lambda body, pressure, friction=0.0, **at: real(body, pressure, 0.0, **at))
+
+    def without(body, pressure, friction=0.0, *at, **named):
+        return real(body, pressure, 0.0, *at, **named)
+
+    everywhere(patch, "stress_field", without)
 
 
 def first_round_only(patch: Patch) -> None:
@@ -122,6 +127,19 @@ def distorted_between_ends(patch: Patch) -> None:
     everywhere(patch, "stress_field", wrong)
 
 
+def softer_bodies(patch: Patch) -> None:
+    patch.setattr(friction, "material", lambda shear, poisson: Material(1.8 * shear * (1 + poisson), poisson))
+
+
+def twice_the_friction(patch: Patch) -> None:
+    real = contact.solve_contact
+
+    def wrong(body, gap, load, coefficient, *arguments, **named):
+        return real(body, gap, load, 2 * coefficient, *arguments, **named)
+
+    patch.setattr(friction, "solve_contact", wrong)
+
+
 def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
@@ -156,6 +174,7 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "quarter space": (ends_only_mirrored, no_ends, first_round_only, shear_that_needs_ends),
     "finite elements": (ends_only_mirrored, no_ends),
     "published": (ends_only_mirrored, wrong_poisson, distorted),
+    "friction": (softer_bodies, twice_the_friction),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 

@@ -8,6 +8,8 @@ Sources, by the names used in the docstrings:
 * Hamilton and Goodman, *J. Appl. Mech.* 33 (1966) 371; Hamilton, *Proc. IMechE* 197C (1983) 53: circular sliding
   contact;
 * McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact;
+* Carter, *Proc. R. Soc. Lond.* A 112 (1926) 151 and Mindlin, *J. Appl. Mech.* 16 (1949) 259: stick and slip in rolling
+  and shifting contact, by Johnson, sections 7.2 and 8.3;
 * Bufler, *Ing.-Arch.* 27 (1959) 137 and Johnson, section 7.2: sliding line contact of unlike materials.
 
 Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
@@ -22,6 +24,13 @@ from contactstudy.verification.closed_forms.circle import (
     sliding_circle_surface,
 )
 from contactstudy.verification.closed_forms.components import COMPONENTS, Stress, von_mises
+from contactstudy.verification.closed_forms.friction import (
+    carter_creepage,
+    carter_force,
+    carter_traction,
+    mindlin_shift,
+    mindlin_stick,
+)
 from contactstudy.verification.closed_forms.hertz import (
     EllipticContact,
     composite_modulus,
@@ -45,6 +54,9 @@ __all__ = [
     "SlidingLine",
     "Stress",
     "below_rectangle_corner",
+    "carter_creepage",
+    "carter_force",
+    "carter_traction",
     "composite_modulus",
     "hertz_circle",
     "hertz_circle_axis",
@@ -54,6 +66,8 @@ __all__ = [
     "hertz_line_from_pressure",
     "hertz_point",
     "hertz_strip",
+    "mindlin_shift",
+    "mindlin_stick",
     "point_load",
     "rectangle",
     "rectangle_displacement",

@@ -1,0 +1,94 @@
+"""Roughly the tractions that make a slip: the half-space's tangential compliance, inverted wavenumber by wavenumber."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import fft
+
+from contactstudy.bodies.material import Material
+from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.load import Load, Response
+from contactstudy.kernels.surface import surface_kernel
+
+LEAST_CHANGE = 4.0
+"""Change along y that stands in for that of a constant, over that of the first wavenumber. Speed."""
+
+TYPICAL_PLACE = 0.5
+"""Where in a cell the slip of rolling is taken: later than it is, which damps short waves. Speed."""
+
+
+class TangentialInverse:
+    """Inverse of the tangential compliance of one half-space or two, on cells around a contact.
+
+    Parameters
+    ----------
+    materials : sequence of Material
+        Of the bodies.
+    cells : array of int (2, cell)
+        Row and column of the contact's cells.
+    cell : tuple of float
+        Cell size along x and y, metres.
+    rolling : bool
+        Whether it is the change of the displacement along y that is inverted, reversed, or the displacement.
+    """
+
+    def __init__(self, materials: list[Material], cells: IntArray, cell: tuple[float, float], *, rolling: bool) -> None:
+        first = cells.min(axis=1)
+        self._at = tuple(cells - first[:, None])
+        size = cells.max(axis=1) - first + 1
+        self._shape = tuple(fft.next_fast_len(int(2 * each), real=True) for each in size)
+        xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
+        if rolling:
+            change = self._change(cell[1])
+            xx, xy, yy = change * xx, change * xy, change * yy
+        determinant = xx * yy - xy * xy
+        self._inverse = (yy / determinant, -xy / determinant, xx / determinant)
+
+    def _offsets(self, number: int, step: float) -> FloatArray:
+        return np.asarray(step * np.arange(number // 2 + 1.0))
+
+    def _compliance(
+        self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
+    ) -> ComplexArray:
+        """Spectrum of the displacement in one direction under a load in another."""
+        response = Response(direction, load)
+        x, y = (self._offsets(number, step) for number, step in zip(self._shape, cell, strict=True))
+        kernel = np.zeros((x.size, y.size))
+        for material in materials:
+            own = surface_kernel(response, material.poisson, x, y, cell, np.inf, np.inf)
+            kernel += own / (4 * np.pi * material.shear_modulus)
+        whole = _unfolded(_unfolded(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1)
+        return np.asarray(fft.rfft2(whole))
+
+    def _change(self, dy: float) -> ComplexArray:
+        """Spectrum of the change along y, reversed, as `RollingCells.change` takes it."""
+        phase = 2 * np.pi * np.arange(self._shape[1] // 2 + 1) / self._shape[1]
+        b, turn = TYPICAL_PLACE, np.exp(1j * phase)
+        change = -((b - 1.5) + (2 - 2 * b) * turn + (b - 0.5) * turn**2) / dy
+        return np.asarray(change + LEAST_CHANGE * phase[1] / dy)
+
+    def __call__(self, slip: FloatArray) -> FloatArray:
+        """Tractions (2, cell) that roughly take a slip (2, cell) away."""
+        spectra = []
+        for component in slip:
+            layer = np.zeros(self._shape)
+            layer[self._at] = component
+            spectra.append(fft.rfft2(layer))
+        xx, xy, yy = self._inverse
+        along = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
+        return np.stack([fft.irfft2(each, self._shape)[self._at] for each in along])
+
+
+COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))
+
+
+def _unfolded(kernel: FloatArray, number: int, sign: int, axis: int) -> FloatArray:
+    """Values at all offsets of a period, from those that are not negative."""
+    half = kernel.shape[axis]
+    back = np.flip(np.take(kernel, np.arange(1, number - half + 1), axis=axis), axis=axis)
+    return np.concatenate([kernel, sign * back], axis=axis)
+
+
+def contact_cells(mask: BoolArray) -> IntArray:
+    """Rows and columns (2, cell) of the cells of a mask (x, y)."""
+    return np.argwhere(mask).T

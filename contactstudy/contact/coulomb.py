@@ -1,0 +1,308 @@
+"""Coulomb's law of friction on the cells of a contact: which of them stick, and the tractions on all.
+
+With the tractions ``q`` (two components on each cell), the bound ``g = f p`` and the slip ``s = w - B q`` the law
+reads: ``|q| <= g`` everywhere; where ``|q| < g`` there is no slip; where there is slip, ``q`` is ``g`` times its
+direction. ``w`` is the slip of rigid surfaces and ``B`` what tractions take from it. It is solved by a semi-smooth
+Newton method: for a guess of the cells that slip and of their directions ``n`` the unknowns are ``q`` where they stick
+and, where they slip, the part ``a`` of ``q = g n + a n'`` across, with which the slip has to turn:
+
+    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0,
+
+a linear system with the matrix ``T' B T + D`` and ``D >= 0``. A cell then slips if its traction exceeds the bound, and
+sticks if it would slip against its traction. Rigid slips whose resultant is prescribed are unknowns beside ``q``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import linalg
+
+from contactstudy.checks import BoolArray, FloatArray
+
+Operator = Callable[[FloatArray], FloatArray]
+
+LINEAR_TOLERANCE = 1e-2
+"""Residual of a linear system over that of the step before. Speed."""
+
+GUESSED = 1e-6
+"""Part of the bound by which the traction of a cell that slips in a guess may miss it. Speed."""
+
+RESTART = 60
+"""Directions that the linear solver keeps. Speed."""
+
+LINEAR_STEPS = 5
+"""Restarts after which a linear system is left as it is. Speed."""
+
+
+@dataclass(frozen=True, eq=False)
+class CoulombProblem:
+    """Coulomb's law on the cells of a contact.
+
+    Attributes
+    ----------
+    relief : callable
+        ``B``: slip that tractions (2, cell) take away.
+    inverse : callable
+        Roughly the tractions that take a slip away.
+    bound : array (cell)
+        Largest traction, Pa; positive.
+    rigid : array (2, cell)
+        Slip of rigid surfaces as far as it is prescribed.
+    modes : array (mode, 2, cell)
+        Rigid slips of unknown amplitude.
+    works : array (mode, 2, cell)
+        Weights with which the tractions sum up to the resultant of each mode.
+    resultants : array (mode)
+        Prescribed resultants.
+    tolerance : float
+        Violation, over the largest bound and the largest rigid slip, at which the iteration stops.
+    max_steps : int
+        Bound on the steps of Newton's method.
+    """
+
+    relief: Operator
+    inverse: Operator
+    bound: FloatArray
+    rigid: FloatArray
+    modes: FloatArray
+    works: FloatArray
+    resultants: FloatArray
+    tolerance: float = 1e-6
+    max_steps: int = 40
+
+    def slip(self, traction: FloatArray, amplitudes: FloatArray) -> FloatArray:
+        """Slip (2, cell) under tractions."""
+        return self.rigid + np.tensordot(amplitudes, self.modes, axes=1) - self.relief(traction)
+
+
+@dataclass(frozen=True, eq=False)
+class CoulombSolution:
+    """Tractions that follow Coulomb's law.
+
+    Attributes
+    ----------
+    traction, slip : array (2, cell)
+        Tractions, Pa, and slip.
+    sticks : bool array (cell)
+        Cells that stick.
+    amplitudes : array (mode)
+        Amplitudes of the rigid slips that were unknown.
+    steps, applications : int
+        Steps of Newton's method, and applications of the operator.
+    converged : bool
+        Whether the tolerance was reached.
+    """
+
+    traction: FloatArray
+    slip: FloatArray
+    sticks: BoolArray
+    amplitudes: FloatArray
+    steps: int
+    applications: int
+    converged: bool
+
+
+def law_violation(
+    traction: FloatArray, slip: FloatArray, bound: FloatArray, sticks: BoolArray, scale: float
+) -> tuple[float, float]:
+    """Violations of the law: of the bound, over the largest one, and of slip and its direction, over `scale`.
+
+    Where a cell sticks its slip counts; where it slips, the part across its traction and the part against it.
+    """
+    size = np.hypot(*traction)
+    largest = float(bound.max(initial=0.0))
+    over = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / largest if largest else 0.0
+    direction = traction / np.where(size > 0, size, 1.0)
+    along = (slip * direction).sum(axis=0)
+    across = slip[0] * direction[1] - slip[1] * direction[0]
+    sliding = np.hypot(across, np.minimum(along, 0.0))
+    wrong = np.where(sticks, np.hypot(*slip), sliding)
+    return over, float(wrong.max(initial=0.0)) / scale
+
+
+@dataclass
+class _Count:
+    """Applications of an operator so far."""
+
+    operator: Operator
+    number: int = field(default=0)
+
+    def __call__(self, values: FloatArray) -> FloatArray:
+        self.number += 1
+        return self.operator(values)
+
+
+def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> CoulombSolution:
+    """Solve for tractions, slip and the unknown rigid slips.
+
+    Parameters
+    ----------
+    problem : CoulombProblem
+        What is asked for.
+    start : array (2, cell), optional
+        Tractions of a guess: those on their bound slip. Default: all cells stick.
+    """
+    relief = _Count(problem.relief)
+    counted = CoulombProblem(**{**vars(problem), "relief": relief})
+    bound = problem.bound
+    traction = np.zeros_like(problem.rigid)
+    sticks = np.ones(bound.size, bool)
+    amplitudes = np.zeros(len(problem.modes))
+    slip = problem.rigid.copy()
+    if start is not None:
+        size = np.hypot(*start)
+        sticks = size < (1 - GUESSED) * bound
+        traction = start * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
+        slip = counted.slip(traction, amplitudes)
+    steps, converged, accuracy = 0, False, LINEAR_TOLERANCE
+    seen, one_by_one = {sticks.tobytes()}, False
+    while steps < problem.max_steps and not converged:
+        steps += 1
+        step = _Step(counted, traction, slip, sticks)
+        guess, amplitudes = step.solve(traction, amplitudes, accuracy)
+        traction, before = guess, sticks
+        size = np.hypot(*traction)
+        slipping = ~sticks
+        exceeds = size > bound
+        begins = exceeds & sticks
+        if len(problem.modes):
+            begins = _foremost(begins, size / bound, sticks)
+        if one_by_one:
+            begins = _first(begins)
+        # Where a cell slips its traction has grown across; where it stuck and exceeds the bound it begins to slip.
+        traction = traction * np.where(slipping | begins, bound / np.where(size > 0, size, 1.0), 1.0)
+        slip = counted.slip(traction, amplitudes)
+        along = (slip * traction).sum(axis=0)
+        ends = slipping & (along < 0)
+        if one_by_one:
+            ends = np.zeros_like(ends) if begins.any() else _first(ends)
+        sticks = (sticks & ~begins) | ends
+        if len(problem.modes) and not sticks.any():
+            sticks[np.where(begins, np.inf, np.hypot(*slip)).argmin()] = True
+        scale = _scale(counted, amplitudes)
+        missed = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
+        whole = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
+        violation = max(*law_violation(traction, slip, bound, sticks, scale), float((missed / whole).max(initial=0.0)))
+        converged = violation <= problem.tolerance
+        if np.array_equal(sticks, before):
+            accuracy = max(LINEAR_TOLERANCE * accuracy, 1e-3 * problem.tolerance)
+        else:
+            accuracy = LINEAR_TOLERANCE
+            # Cells that go round in circles do not if they change one by one, the first of them first (Murty).
+            one_by_one = one_by_one or sticks.tobytes() in seen
+            seen.add(sticks.tobytes())
+    return CoulombSolution(traction, slip, sticks, amplitudes, steps, relief.number, converged)
+
+
+def _first(cells: BoolArray) -> BoolArray:
+    """Only the first of some cells."""
+    first = np.zeros_like(cells)
+    first[int(cells.argmax())] = cells.any()
+    return first
+
+
+def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
+    """Half of the cells that stick at most, those farthest above their bound.
+
+    If no cell sticks, the rigid slip that makes a prescribed resultant has no value.
+    """
+    most = max(int(sticks.sum()) // 2, 1)
+    if exceeds.sum() <= most:
+        return exceeds
+    least = np.partition(excess[exceeds], -most)[-most]
+    return exceeds & (excess >= least)
+
+
+def _scale(problem: CoulombProblem, amplitudes: FloatArray) -> float:
+    """Size of the rigid slip, to which violations are related."""
+    rigid = problem.rigid + np.tensordot(amplitudes, problem.modes, axes=1)
+    return max(float(np.hypot(*rigid).max(initial=0.0)), np.finfo(float).tiny)
+
+
+class _Step:
+    """One linear system of Newton's method."""
+
+    def __init__(self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray) -> None:
+        self._problem, self._sticks = problem, sticks
+        size = np.hypot(*traction)
+        self._direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
+        self._base = problem.bound * self._direction
+        across = np.stack([-self._direction[1], self._direction[0]])
+        # Unknowns: both components where cells stick, else the component across.
+        self._first = np.where(sticks, np.array([[1.0], [0.0]]), across)
+        self._second = np.where(sticks, np.array([[0.0], [1.0]]), 0.0)[:, sticks]
+        along = np.maximum((slip * self._direction).sum(axis=0), 0.0)
+        self._turning = np.where(sticks, 0.0, along / problem.bound)
+
+    def _spread(self, unknowns: FloatArray) -> FloatArray:
+        """Tractions (2, cell) of the unknowns, without the given part."""
+        cells = self._sticks.size
+        traction = self._first * unknowns[:cells]
+        traction[:, self._sticks] += self._second * unknowns[cells:]
+        return np.asarray(traction)
+
+    def _gathered(self, slip: FloatArray) -> FloatArray:
+        """Parts of a slip (2, cell) that the unknowns work on."""
+        first = (self._first * slip).sum(axis=0)
+        second = (self._second * slip[:, self._sticks]).sum(axis=0)
+        return np.concatenate([first, second])
+
+    def solve(self, traction: FloatArray, amplitudes: FloatArray, accuracy: float) -> tuple[FloatArray, FloatArray]:
+        """Tractions and amplitudes of the rigid slips, beginning from the present ones."""
+        problem = self._problem
+        turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
+        modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(len(problem.modes), turning.size)
+        works = np.array([self._gathered(work) for work in problem.works]).reshape(modes.shape)
+        typical = _typical(problem)
+        damped = np.sqrt(typical / (typical + turning))
+
+        def matrix(unknowns: FloatArray) -> FloatArray:
+            moved = self._gathered(problem.relief(self._spread(unknowns))) + turning * unknowns
+            return np.asarray(moved)
+
+        def inverse(slip: FloatArray) -> FloatArray:
+            return np.asarray(damped * self._gathered(problem.inverse(self._spread(damped * slip))))
+
+        count = turning.size
+        start = self._gathered(np.where(self._sticks, traction, 0.0))
+        lifted = np.array([inverse(mode) for mode in modes]).reshape(modes.shape)
+        schur = works @ lifted.T
+        # In units of the problem, for one residual to mean something.
+        unit = np.abs(works).sum(axis=1) * (np.abs(modes).mean(axis=1) + np.finfo(float).tiny)
+
+        def whole(unknowns: FloatArray) -> FloatArray:
+            own, free = unknowns[:count], unknowns[count:]
+            return np.concatenate([matrix(own) - free @ modes, (works @ own) / unit])
+
+        def precondition(residual: FloatArray) -> FloatArray:
+            own = inverse(residual[:count])
+            if not len(modes):
+                return own
+            free = np.linalg.lstsq(schur, unit * residual[count:] - works @ own, rcond=None)[0]
+            return np.concatenate([own + free @ lifted, free])
+
+        given = self._gathered(problem.rigid - problem.relief(self._base))
+        owed = (problem.resultants - (problem.works * self._base).sum(axis=(1, 2))) / unit
+        size = count + len(modes)
+        found, _ = linalg.gmres(
+            linalg.LinearOperator((size, size), whole, dtype=np.float64),
+            np.concatenate([given, owed]),
+            np.concatenate([start, amplitudes]),
+            rtol=accuracy,
+            atol=0.0,
+            restart=RESTART,
+            maxiter=LINEAR_STEPS,
+            M=linalg.LinearOperator((size, size), precondition, dtype=np.float64),
+        )
+        return self._base + self._spread(found[:count]), np.asarray(found[count:])
+
+
+def _typical(problem: CoulombProblem) -> float:
+    """Slip that a traction on its own takes away, per traction."""
+    one = np.zeros_like(problem.rigid)
+    middle = int(problem.bound.argmax())
+    one[1, middle] = 1.0
+    return float(abs(1.0 / problem.inverse(one)[1, middle]))

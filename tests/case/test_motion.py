@@ -1,0 +1,60 @@
+"""Motions: what is prescribed, and what cannot be."""
+
+from __future__ import annotations
+
+import pytest
+
+from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, Rolling, Shift, Sliding
+from contactstudy.case.motion import Motion
+
+STEEL = Material(210e9, 0.3)
+
+
+def case(motion: Motion, friction: float = 0.1) -> Case:
+    return Case(
+        body=HalfSpace(material=STEEL),
+        roller=Roller(radius=5e-3, length=1e-3),
+        max_pressure=1e9,
+        friction=friction,
+        motion=motion,
+    )
+
+
+def test_what_is_not_given_does_not_move() -> None:
+    assert Rolling() == Rolling(longitudinal_creepage=0.0, lateral_creepage=0.0, spin=0.0)
+    assert Shift() == Shift(x=0, y=0)
+    assert Rolling(force_y=2).longitudinal_creepage is None
+    assert Rolling(force_y=2, moment_z=0.0).modes == ("y", "spin")
+    assert Shift(force_x=1.0, force_y=2.0).modes == ("x", "y")
+
+
+def test_full_sliding_is_the_default() -> None:
+    assert case(Sliding()) == Case(
+        body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9, friction=0.1
+    )
+    assert hash(case(Rolling(spin=1.0))) != hash(case(Rolling(spin=2.0)))
+
+
+def test_either_the_motion_or_its_force() -> None:
+    with pytest.raises(InvalidInputError, match="longitudinal_creepage, force_y"):
+        Rolling(longitudinal_creepage=1e-3, force_y=1.0)
+    with pytest.raises(InvalidInputError, match="spin, moment_z"):
+        Rolling(spin=0.0, moment_z=0.0)
+    with pytest.raises(InvalidInputError, match="x, force_x"):
+        Shift(x=1e-6, force_x=1.0)
+
+
+@pytest.mark.parametrize("value", [float("nan"), "fast", True])
+def test_values_are_numbers(value: object) -> None:
+    with pytest.raises(InvalidInputError, match="longitudinal_creepage"):
+        Rolling(longitudinal_creepage=value)  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match="force_y"):
+        Shift(force_y=value)  # type: ignore[arg-type]
+
+
+def test_a_motion_and_its_friction() -> None:
+    with pytest.raises(InvalidInputError, match="motion = 'rolling'"):
+        case("rolling")  # type: ignore[arg-type]
+    with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
+        case(Rolling(), -0.1)
+    assert case(Sliding(), -0.1).friction == -0.1

@@ -1,0 +1,97 @@
+"""Coulomb's law on few cells, where every condition can be looked at."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy.checks import FloatArray
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+
+
+def problem(
+    rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
+) -> CoulombProblem:
+    """Cells with a random positive compliance; `skew` makes it as unsymmetric as that of rolling."""
+    random = np.random.default_rng(seed)
+    size = 2 * bound.size
+    root = random.standard_normal((size, size)) / np.sqrt(size)
+    twist = random.standard_normal((size, size)) / np.sqrt(size)
+    matrix = root @ root.T + 0.3 * np.eye(size) + skew * (twist - twist.T)
+    inverse = np.linalg.inv(matrix)
+    modes = np.zeros((0, 2, bound.size))
+    if forces is not None:
+        modes = np.zeros((2, 2, bound.size))
+        modes[0, 0] = modes[1, 1] = 1.0
+    return CoulombProblem(
+        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
+        bound=bound,
+        rigid=rigid,
+        modes=modes,
+        works=modes,
+        resultants=np.zeros(0) if forces is None else forces,
+        tolerance=1e-8,
+    )
+
+
+def holds(asked: CoulombProblem, found: CoulombSolution) -> None:
+    """Every condition, looked at cell by cell."""
+    slip = asked.slip(found.traction, found.amplitudes)
+    size = np.hypot(*found.traction)
+    assert (size <= asked.bound * (1 + 1e-9)).all()
+    sticking = size < asked.bound * (1 - 1e-9)
+    scale = np.hypot(*asked.rigid).max() + np.abs(found.amplitudes).sum()
+    assert np.hypot(*slip[:, sticking]).max(initial=0.0) <= 1e-6 * scale
+    along = (slip * found.traction).sum(axis=0)[~sticking]
+    assert (along >= -1e-6 * scale * asked.bound[~sticking]).all()
+    assert np.allclose(along, (np.hypot(*slip) * size)[~sticking], atol=1e-6 * scale * asked.bound.max())
+
+
+@pytest.mark.parametrize("skew", [0.0, 1.0])
+@pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_law_holds_from_stick_to_full_sliding(size: float, skew: float, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    bound = random.uniform(0.2, 1.0, 24)
+    asked = problem(size * random.standard_normal((2, 24)), bound, skew=skew, seed=seed)
+    found = solve_coulomb(asked)
+    assert found.converged
+    holds(asked, found)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.4, 0.95])
+def test_forces_are_met_by_the_rigid_slip(part: float) -> None:
+    bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
+    force = part * bound.sum() * np.array([0.6, 0.8])
+    asked = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
+    found = solve_coulomb(asked)
+    assert found.converged
+    holds(asked, found)
+    assert found.traction.sum(axis=1) == pytest.approx(force, abs=1e-6 * bound.sum())
+
+
+def test_a_guess_changes_the_work_and_not_the_result() -> None:
+    random = np.random.default_rng(7)
+    bound = random.uniform(0.2, 1.0, 40)
+    asked = problem(random.standard_normal((2, 40)), bound, skew=0.5)
+    plain = solve_coulomb(asked)
+    guessed = solve_coulomb(asked, plain.traction)
+    assert guessed.steps < plain.steps
+    assert guessed.traction == pytest.approx(plain.traction, abs=1e-6)
+
+
+def test_what_does_not_converge_says_so() -> None:
+    random = np.random.default_rng(0)
+    asked = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
+    assert not solve_coulomb(CoulombProblem(**{**vars(asked), "max_steps": 1})).converged
+
+
+def test_violations_are_seen() -> None:
+    traction, bound = np.array([[1.0, 0.5], [0.0, 0.0]]), np.array([1.0, 1.0])
+    sticks = np.array([False, True])
+    right = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
+    assert right == (0.0, 0.0)
+    assert law_violation(1.1 * traction, np.zeros((2, 2)), bound, sticks, 1.0)[0] == pytest.approx(0.1)
+    for slip in ([[-2.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [2.0, 0.0]], [[0.0, 2.0], [0.0, 0.0]]):
+        assert law_violation(traction, np.array(slip), bound, sticks, 1.0)[1] == pytest.approx(2.0)

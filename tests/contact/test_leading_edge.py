@@ -1,0 +1,63 @@
+"""Cells in steady rolling: the place of the edge, ties, and the change along y."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy.contact.leading_edge import EDGE_OFFSET, TIED_OFFSET, TIED_SLOPE, RollingCells
+
+
+def strip(part: float, cells: int = 20) -> np.ndarray:
+    """One row whose pressure ends at the given part of its last cell but four."""
+    position = np.arange(cells) + 0.5
+    edge = cells - 5 + part
+    pressure = np.sqrt(np.maximum(edge - position, 0.0))
+    pressure[cells - 5] = max(pressure[cells - 5], 0.1)
+    pressure[:4] = 0.0
+    return pressure[None, :]
+
+
+@pytest.mark.parametrize("part", [0.7, 0.9])
+def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
+    pressure = strip(part)
+    cells = RollingCells.of(pressure, pressure)
+    assert cells.to.size == 0
+    assert cells.unknown.shape[1] == (pressure > 0).sum()
+    assert cells.place == pytest.approx(EDGE_OFFSET + part)
+
+
+@pytest.mark.parametrize("part", [0.1, 0.5])
+def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
+    pressure = strip(part)
+    cells = RollingCells.of(pressure, 0.3 * pressure)
+    last = int(np.flatnonzero(pressure[0])[-1])
+    assert cells.tied.tolist() == [[0], [last]]
+    assert cells.unknown[1, cells.to].tolist() == [last - 1]
+    assert cells.place == pytest.approx(TIED_OFFSET + TIED_SLOPE * part)
+    own = np.ones((2, cells.unknown.shape[1]))
+    on_grid = cells.on_grid(own, pressure.shape)
+    assert on_grid[0, 0, last] == pytest.approx(pressure[0, last] / pressure[0, last - 1])
+    weights = np.random.default_rng(0).random((3, *pressure.shape))
+    expected = (weights * on_grid[0]).sum(axis=(1, 2))
+    assert cells.gathered(weights).sum(axis=1) == pytest.approx(expected)
+
+
+def test_two_contacts_in_one_row_have_an_edge_each() -> None:
+    one = strip(0.2)
+    pressure = np.hstack([one, one])
+    assert RollingCells.of(pressure, pressure).to.size == 2
+
+
+def test_cells_without_friction_carry_nothing() -> None:
+    pressure = strip(0.9)
+    assert RollingCells.of(pressure, 0 * pressure).unknown.size == 0
+
+
+def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
+    pressure, dy = strip(0.9), 0.25
+    cells = RollingCells.of(pressure, pressure)
+    y = dy * np.arange(pressure.shape[1])
+    displaced = (2 + 3 * y - 0.7 * y**2)[None, :]
+    at = y[cells.unknown[1]] + cells.place * dy
+    assert cells.change(displaced, dy) == pytest.approx(3 - 1.4 * at)

@@ -1,0 +1,308 @@
+"""What is done to a study, and what has to be right afterwards."""
+
+from __future__ import annotations
+
+import os
+import random
+import shutil
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from datetime import UTC, datetime, timedelta
+from functools import partial
+from pathlib import Path
+from unittest import mock
+
+import xarray as xr
+
+from contactstudy.study import run_study
+from tests.faults import studies
+from tests.faults.studies import CASES, STUDY
+from tests.faults.table import Row
+from tests.small_study import as_toml
+from tests.stand_in_solver import HELD, give_tickets, solve_fake
+from tests.study.cluster import cluster
+from tests.study.conftest import start_run, tickets_of
+
+SECONDS = 300.0
+"""Longest wait for another process."""
+
+chance = random.Random(17)
+
+
+def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
+    """SIGKILL to the run and its workers, a random while after it began."""
+    held = most = total = 0
+    with studies.place() as folder:
+        for _ in range(count):
+            done = studies.finished(folder)
+            if len(done) > 0.7 * CASES:  # there has to be work left to lose
+                for path in chance.sample(done, CASES // 2):
+                    path.unlink()
+            before = {path: path.stat().st_mtime_ns for path in studies.finished(folder)}
+            process = studies.start(folder, "--workers", str(workers))
+            _wait(process, lambda: (folder / "out" / "run.lock").exists())
+            time.sleep(chance.uniform(0.0, 0.6 + 1.5 * (workers > 0)))
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+            after = studies.finished(folder)
+            total += len(set(after) - set(before))
+            most = max(most, len(set(after) - set(before)))
+            lost = [path for path, written in before.items() if not path.exists() or path.stat().st_mtime_ns != written]
+            held += not lost and not studies.unreadable(folder)
+        whole = studies.resume(folder) == {"ok": CASES}
+        whole &= studies.values(folder).identical(calm)
+        whole &= not studies.left_over(folder) and not (folder / "out" / "set-aside").exists()
+    kind = "alone" if workers == 0 else f"with {workers} workers"
+    found = (
+        f"no finished case lost or written again, every file whole ({total} cases finished between the kills, up to "
+        f"{most} in one run); resumed {'bit for bit as without kills, nothing left behind' if whole else 'WRONGLY'}"
+    )
+    return Row(f"run {kind}: SIGKILL at a random moment", count, held if whole else 0, found)
+
+
+def full_disks(calm: xr.Dataset, count: int) -> Row:
+    """A file system of its own that fills up; without the right to mount one, files that may not grow."""
+    held = cases = 0
+    mounted = False
+    for _ in range(count):
+        with studies.place() as folder:
+            disk = folder / "out"
+            disk.mkdir()
+            size = chance.randint(150, 500)
+            mount = ["mount", "-t", "tmpfs", "-o", f"size={size}k", "tmpfs", str(disk)]
+            own = shutil.which("mount") and not subprocess.run(mount, capture_output=True, check=False).returncode
+            mounted = mounted or bool(own)
+            try:
+                process = studies.start(
+                    folder, "--workers", "0", largest_file=None if own else chance.randint(3000, 9000)
+                )
+                _, errors = process.communicate(timeout=SECONDS)
+                said = process.returncode == 2 and "Traceback" not in errors
+                cases += len(studies.finished(folder))
+                right = said and not studies.left_over(folder) and not studies.unreadable(folder)
+                if own:
+                    subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
+                right = right and studies.resume(folder) == {"ok": CASES}
+                held += right and studies.values(folder).identical(calm)
+            finally:
+                if own:
+                    subprocess.run(["umount", "-l", str(disk)], check=True)
+    how = "file system of 150 to 500 kB" if mounted else "limit on the size of files (no right to mount)"
+    return Row(
+        f"full disk: {how}",
+        count,
+        held,
+        f"code 2 and a message, no traceback, no lock and no torn file left, {cases} cases kept in all; "
+        "resumed with room, bit for bit",
+    )
+
+
+def dead_schedulers(calm: xr.Dataset, count: int) -> Row:
+    """The scheduler of a cluster is killed while its worker solves."""
+    held = 0
+    for _ in range(count):
+        with studies.place() as folder:
+            out = folder / "out"
+            with mock.patch.dict(os.environ, {HELD: str(tickets_of(out))}), cluster(folder, workers=1) as address:
+                enough = chance.randint(1, 20)
+                process = start_run(folder / "study.toml", out, "--scheduler", address, tickets=enough)
+                _wait(process, partial(studies.finished, folder))
+                time.sleep(chance.uniform(0.0, 1.0))
+                address.processes[0].kill()
+                _, errors = process.communicate(timeout=SECONDS)
+            right = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
+            right = right and not (out / "run.lock").exists() and not studies.unreadable(folder)
+            right = right and studies.resume(folder) == {"ok": CASES}
+            held += right and studies.values(folder).identical(calm)
+    return Row("scheduler of a cluster killed", count, held, "code 2, message, no lock left; resumed bit for bit")
+
+
+def damaged_files(calm: xr.Dataset, count: int) -> Row:
+    """Files of cases are torn, changed, exchanged, or not ours."""
+    held = 0
+    with studies.place() as folder:
+        studies.resume(folder)
+        aside = folder / "out" / "set-aside"
+        for number in range(count):
+            paths = studies.finished(folder)
+            path, other = chance.sample(paths, 2)
+            DAMAGES[number % len(DAMAGES)](path, other)
+            report = run_study(STUDY, folder / "out", workers=0, solver=solve_fake)
+            right = report.counts == {"ok": CASES} and report.solved <= 1 and not studies.unreadable(folder)
+            held += right and studies.values(folder).identical(calm)
+            shutil.rmtree(aside, ignore_errors=True)
+    return Row(
+        "a file of a case torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
+        count,
+        held,
+        "set aside, at most one case solved again, afterwards bit for bit",
+    )
+
+
+def _torn(path: Path, other: Path) -> None:
+    data = path.read_bytes()
+    path.write_bytes(data[: chance.randrange(len(data))])
+
+
+def _changed(path: Path, other: Path) -> None:
+    data = bytearray(path.read_bytes())
+    for _ in range(8):
+        data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+    path.write_bytes(bytes(data))
+
+
+def _foreign(path: Path, other: Path) -> None:
+    path.write_text("not ours")
+
+
+def _empty(path: Path, other: Path) -> None:
+    path.write_bytes(b"")
+
+
+def _exchanged(path: Path, other: Path) -> None:
+    shutil.copy(other, path)
+
+
+def _dangling(path: Path, other: Path) -> None:
+    path.unlink()
+    path.symlink_to(path.with_name("nowhere"))
+
+
+def _folder(path: Path, other: Path) -> None:
+    path.unlink()
+    path.mkdir()
+
+
+DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
+    _torn,
+    _changed,
+    _foreign,
+    _empty,
+    _exchanged,
+    _dangling,
+    _folder,
+)
+
+
+def damaged_records(calm: xr.Dataset, count: int) -> Row:
+    """Manifest, log or lock of a folder is torn, changed, or full of something else."""
+    held = 0
+    with studies.place() as folder:
+        studies.resume(folder)
+        out = folder / "out"
+        records = [path for path in out.iterdir() if path.is_file() and path.name not in ("study.json", "study.toml")]
+        for number in range(count):
+            path = records[number % len(records)]
+            data = bytearray(path.read_bytes()) or bytearray(b"x")
+            for _ in range(20):
+                data[chance.randrange(len(data))] = chance.randrange(256)
+            path.write_bytes(bytes(data[: chance.randrange(1, len(data) + 1)]))
+            report = run_study(STUDY, out, workers=0, solver=solve_fake)
+            held += report.counts == {"ok": CASES} and studies.values(folder).identical(calm)
+    names = ", ".join(f"`{path.name}`" for path in sorted(records))
+    return Row(f"changed and torn bytes in {names}", count, held, "all cases found again, bit for bit")
+
+
+def two_runs(calm: xr.Dataset, count: int) -> Row:
+    """Others begin while a run goes on."""
+    held = 0
+    with studies.place() as folder:
+        out = folder / "out"
+        first = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
+        _wait(first, lambda: len(studies.finished(folder)) == 2)
+        seconds = [start_run(folder / "study.toml", out, "--workers", "0", tickets=0) for _ in range(count)]
+        for second in seconds:
+            _, errors = second.communicate(timeout=SECONDS)
+            held += second.returncode == 2 and f"process {first.pid} on " in errors and "Traceback" not in errors
+        give_tickets(tickets_of(out), CASES)
+        first.communicate(timeout=SECONDS)
+        whole = first.returncode == 0 and studies.values(folder).identical(calm)
+    return Row(
+        "a second run while the first goes on",
+        count,
+        held if whole else 0,
+        "code 2, the holder named; the first run ends bit for bit",
+    )
+
+
+def at_once(calm: xr.Dataset, count: int) -> Row:
+    """Two runs begin at the same moment."""
+    held = 0
+    for _ in range(count):
+        with studies.place() as folder:
+            runs = [studies.start(folder, "--workers", "0") for _ in range(2)]
+            said = [run.communicate(timeout=SECONDS)[1] for run in runs]
+            codes = [run.returncode for run in runs]
+            # Both may run to the end, one after the other.
+            right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in said)
+            held += right and not studies.left_over(folder) and studies.values(folder).identical(calm)
+    return Row("two runs begun at once", count, held, "one solves, the other is refused or finds all done; bit for bit")
+
+
+def clock_steps(calm: xr.Dataset, count: int) -> Row:
+    """The time of day jumps by up to ten years either way at every reading, in this process."""
+    held = 0
+    for _ in range(count):
+        with studies.place() as folder, _jumping_clock():
+            right = studies.resume(folder) == {"ok": CASES} and not studies.left_over(folder)
+            studies.finished(folder)[0].unlink()
+            right = right and studies.resume(folder) == {"ok": CASES}
+            held += right and studies.values(folder).identical(calm)
+    return Row(
+        "time of day jumps by up to ten years at every reading",
+        count,
+        held,
+        "run and resumed run, bit for bit; the clock of the process was replaced, a system's clock was not set",
+    )
+
+
+class _jumping_clock:  # noqa: N801
+    """Replaces what the study layer reads the time of day from."""
+
+    def __enter__(self) -> None:
+        class Jumping(datetime):
+            @classmethod
+            def now(cls, tz=None):
+                return datetime.now(tz or UTC) + timedelta(days=chance.uniform(-3650, 3650))
+
+        real = time.time
+        modules = ("lock", "progress", "work", "store")
+        self._patches = [mock.patch(f"contactstudy.study.{name}.datetime", Jumping) for name in modules]
+
+        def jumping() -> float:
+            return real() + chance.uniform(-3e8, 3e8)
+
+        self._patches.append(mock.patch("time.time", jumping))
+        for patch in self._patches:
+            patch.start()
+
+    def __exit__(self, *error: object) -> None:
+        for patch in self._patches:
+            patch.stop()
+
+
+def edited_study(calm: xr.Dataset, count: int) -> Row:
+    """The file of the study is changed while a run goes on."""
+    held = 0
+    for _ in range(count):
+        with studies.place() as folder:
+            process = studies.start(folder, "--workers", "0")
+            _wait(process, lambda: (folder / "out" / "run.lock").exists())
+            text = as_toml(STUDY)
+            (folder / "study.toml").write_text(text[: chance.randrange(len(text))])
+            _, errors = process.communicate(timeout=SECONDS)
+            held += process.returncode == 0 and "Traceback" not in errors and studies.values(folder).identical(calm)
+    return Row("the study's file torn while it runs", count, held, "the run goes on with what it read, bit for bit")
+
+
+def _wait(process: subprocess.Popen[str], condition: Callable[[], object]) -> None:
+    """Wait until something is the case; an error if the process ends before, but with success."""
+    end = time.monotonic() + SECONDS
+    while not condition():
+        if process.poll() is not None:
+            assert process.returncode == 0, process.communicate()
+            return
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.005)

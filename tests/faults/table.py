@@ -1,0 +1,42 @@
+"""One row for each kind of fault, and the page that holds them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
+"""Lines of the page between which the table stands."""
+
+HEAD = "| fault | tried | held | what was looked at |\n|---|---|---|---|"
+
+
+@dataclass(frozen=True)
+class Row:
+    """A kind of fault.
+
+    Attributes
+    ----------
+    fault : str
+        What was done to the study.
+    tried, held : int
+        How often, and how often everything that was looked at was right.
+    found : str
+        What was looked at, with figures.
+    """
+
+    fault: str
+    tried: int
+    held: int
+    found: str
+
+    def __str__(self) -> str:
+        return f"| {self.fault} | {self.tried} | {self.held} | {self.found} |"
+
+
+def write_table(page: Path, rows: list[Row]) -> None:
+    """Put the table in its place on a page."""
+    before, _, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, _, after = rest.partition(END)
+    table = "\n".join([BEGIN, "", HEAD, *map(str, rows), "", END])
+    page.write_text(before + table + after, encoding="utf-8")

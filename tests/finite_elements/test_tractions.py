@@ -1,0 +1,81 @@
+"""Loads in three directions between free ends: all nine displacements of the top, wavenumber by wavenumber."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Material
+from contactstudy.bodies.models import FreedEnds
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load, Response
+from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.end_kernel import EndRequest, sampled_kernel
+from contactstudy.overlapping.quadrature import Resolution, panel_nodes
+from contactstudy.verification.load_cases import Bump
+from tests.finite_elements.harmonics import HarmonicBody, Line
+from tests.finite_elements.superpose import Resolution as MeshResolution
+
+LENGTH, POISSON, FINEST = 4.0, 0.3, 0.02
+P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
+AXIAL = np.pi / LENGTH * np.arange(400.0)
+NAMES = {P: "z", X: "x", Y: "y"}
+AT = np.array([0.02, 0.05, 0.4, 1.3, 2.0, 3.1, 3.9])
+
+
+def wave(direction: Load, x: FloatArray) -> FloatArray:
+    """Terms of the series that a load or displacement is, by direction: array (wavenumber, x)."""
+    return (np.cos if direction.sign_x > 0 else np.sin)(np.outer(AXIAL, x))
+
+
+def mirrored_half_space(lateral: float, response: Response) -> FloatArray:
+    """``2 G u`` of the mirrored half-space per unit of the load's series, from the half-space harmonics."""
+    k = np.sqrt(AXIAL**2 + lateral**2)
+    c, s, free = AXIAL / k, lateral / k, 1 - 2 * POISSON
+    factor = {
+        (P, P): 2 * (1 - POISSON) + 0 * k,
+        (X, P): -c * free,
+        (Y, P): s * free,
+        (P, Y): -s * free,
+        (Y, Y): 2 * (1 - POISSON) * s**2 + 2 * c**2,
+        (X, Y): -2 * POISSON * c * s,
+        (P, X): -c * free,
+        (X, X): 2 * (1 - POISSON) * c**2 + 2 * s**2,
+        (Y, X): 2 * POISSON * c * s,
+    }[response.displacement, response.load]
+    return np.asarray(factor / k)
+
+
+def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArray:
+    """``2 G u`` of the top at `AT` under ``bump(x) cos(k y)``; what is odd in y as the factor of -sin(k y)."""
+    material, resolution = Material(2 * (1 + POISSON), POISSON), Resolution().for_loads([X])  # G is 1
+    request = EndRequest(FreedEnds(LENGTH), material, 0.1, 1, LENGTH, FINEST, (response,), 40.0, resolution)
+    low, high = (float(np.clip(bump.centre + side * bump.half_width, 0.0, LENGTH)) for side in (-1, 1))
+    nodes, weights = panel_nodes(np.linspace(low, high, 33), 16)
+    forces = weights * bump(nodes)
+    weight = np.where(AXIAL == 0, 1.0, 2.0) / LENGTH
+    spectrum = weight * (wave(response.load, nodes) @ forces)
+    total = wave(response.displacement, AT).T @ (mirrored_half_space(lateral, response) * spectrum)
+    for modes in axial_modes(LENGTH, lateral, FINEST, resolution):
+        kernel = sampled_kernel(modes, lateral, np.concatenate([nodes, AT]), request, 0.5 * FINEST)[0]
+        total += 2 * kernel[nodes.size :, : nodes.size] @ forces
+    return np.asarray(total)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("lateral", [0.05, 0.5, 3.0])
+@pytest.mark.parametrize("bump", [Bump(1.0, 1.0), Bump(2.0, 1.5)], ids=["to the end", "centred"])
+def test_displacements_of_the_top_are_those_of_finite_elements(bump: Bump, lateral: float) -> None:
+    mesh = MeshResolution(growth=2.0, smallest=0.02)
+    depth = mesh.mesh_z()
+    deep_enough = int(np.searchsorted(depth, 40 / lateral)) + 1
+    body = HarmonicBody(Line(mesh.mesh_x(LENGTH), 6), Line(depth[:deep_enough], 6), POISSON)
+    amplitudes = body.solve(lateral, [(bump, NAMES[load]) for load in NAMES])
+    for number, load in enumerate(NAMES):
+        found = {each: body.surface(amplitudes, AT.tolist(), "xyz".index(NAMES[each]))[number] for each in NAMES}
+        largest = max(float(np.abs(each).max()) for each in found.values())
+        for direction, expected in found.items():
+            # Odd in y, ours is the factor of -sin(k y); under a traction along y the elements have -cos(k y) for u_y.
+            sign = -1 if Y in (direction, load) else 1
+            own = sign * own_displacement(bump, lateral, Response(direction, load))
+            assert np.abs(own - expected).max() < 1e-3 * largest, (load, direction)

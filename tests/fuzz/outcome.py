@@ -1,0 +1,80 @@
+"""One random case from its seed, and what became of it."""
+
+from __future__ import annotations
+
+import time
+import traceback
+import warnings
+from dataclasses import dataclass
+from random import Random
+
+from contactstudy import ContactStudyError
+from tests.fuzz import properties
+from tests.fuzz.drawn import Drawn, random_drawn
+from tests.fuzz.properties import Solved, ViolationError
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of a case.
+
+    Attributes
+    ----------
+    kind : str
+        "converged", "not converged" (and it says so), "refused" (by the package's own error) or "violation".
+    said : str
+        Which property, error, or message.
+    checked : tuple of str
+        Properties that held.
+    seconds : float
+        Time it took.
+    """
+
+    kind: str
+    said: str = ""
+    checked: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+
+def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
+    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function.
+
+    `refined` decides whether cells are refined or given; None leaves it to chance.
+    """
+    began = time.perf_counter()
+    checked: list[str] = []
+    now = "drawing"
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            drawn = random_drawn(chance, refined=refined)
+            now = "solve"
+            kind, said = _checked(drawn, chance, checked)
+    except ViolationError as violation:
+        now = checked.pop() if checked else now
+        kind, said = "violation", f"{now}: {violation}"
+    except ContactStudyError as error:
+        kind, said = ("refused", type(error).__name__) if not checked else ("violation", f"{checked.pop()}: {error!r}")
+    except Exception as error:
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        kind, said = "violation", f"{(checked or [now])[-1]}: {error!r} in {place.filename}:{place.lineno}"
+    return Outcome(kind, said, tuple(checked), time.perf_counter() - began)
+
+
+def _checked(drawn: Drawn, chance: Random, checked: list[str]) -> tuple[str, str]:
+    """Solve a case and note each property as it is looked at."""
+    result = properties.run(drawn)
+    if not bool(result["converged"]):
+        return "not converged", ""
+    solved = Solved(drawn, result, chance)
+    for holds in properties.ALWAYS:
+        checked.append(holds.__name__)
+        if not holds(solved):
+            checked.pop()
+    # One that there is anything to look at for.
+    for holds in chance.sample(properties.IN_TURN, len(properties.IN_TURN)):
+        checked.append(holds.__name__)
+        if holds(solved):
+            break
+        checked.pop()
+    return "converged", ""

@@ -1,0 +1,452 @@
+"""What has to hold of every converged case, whatever it is.
+
+Each function takes a solved case; it raises `ViolationError`, or returns whether there was anything to look at. Bounds
+are over the peak pressure unless they say otherwise. They allow for the tolerance of the contact, which is one of the
+gap: on fine cells it leaves the pressure free by more.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from random import Random
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    ContactStudyError,
+    ConvergenceWarning,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    solve,
+    solve_contact,
+    stress_field,
+    surface_displacement,
+)
+from contactstudy.arrays.cells import cell_coordinates
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import EndedBody
+from contactstudy.contact.certificate import HELD_TOLERANCES
+from tests.fuzz.drawn import Drawn
+from tests.fuzz.shapes import magnitude
+
+TOLERANCE = 1e-6
+"""Of every contact."""
+
+SAME_PRESSURE = 2e-3
+"""Largest difference of two solutions of one contact: both meet the tolerance."""
+
+
+class ViolationError(AssertionError):
+    """A property does not hold."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A case and its converged result, without stresses."""
+
+    drawn: Drawn
+    result: xr.Dataset
+    chance: Random
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, Pa."""
+        return float(self.result["pressure"].max())
+
+    @property
+    def cells(self) -> Drawn:
+        """The case on the cells that it was solved on, whether these were refined or given."""
+        if self.drawn.grid is not None:
+            return self.drawn
+        result = self.result
+        dy = float(result["y"][1] - result["y"][0])
+        window = (float(result["y"][0]) - 0.5 * dy, float(result["y"][-1]) + 0.5 * dy)
+        edges = np.append(result["x_bounds"][:, 0], result["x_bounds"][-1, 1])
+        return replace(self.drawn, grid=Grid.between(edges, window, result.sizes["y"]))
+
+    @property
+    def grid(self) -> Grid:
+        """Cells."""
+        grid = self.cells.grid
+        assert grid is not None
+        return grid
+
+
+def require(condition: object, said: str) -> None:
+    """Raise unless a condition holds."""
+    if not condition:
+        raise ViolationError(said)
+
+
+def run(drawn: Drawn) -> xr.Dataset:
+    """Solve a case; whatever is said beside the result has to be said rightly."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        result = solve(drawn.case, drawn.grid, accuracy=drawn.accuracy, stresses=False, tolerance=TOLERANCE)
+    kinds = {warning.category for warning in caught}
+    other = [str(warning.message) for warning in caught if warning.category is not ConvergenceWarning]
+    require(not other, f"an undeclared warning: {other[:1]}")
+    require(
+        bool(result["converged"]) == (ConvergenceWarning not in kinds), "converged and warning contradict each other"
+    )
+    return result
+
+
+def again(drawn: Drawn) -> np.ndarray | None:
+    """Pressure of a variant of a solved case; None if that did not converge, and said so."""
+    try:
+        if drawn.grid is None:
+            result = run(drawn)
+        else:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", ConvergenceWarning)
+                result = contact(drawn.case, on_cells(drawn.grid, drawn.case.gap(drawn.grid)))
+    except ContactStudyError as error:
+        raise ViolationError(f"a variant of a solved case was refused: {type(error).__name__}: {error}") from error
+    return result["pressure"].values if bool(result["converged"]) else None
+
+
+def on_cells(grid: Grid, values: np.ndarray) -> xr.DataArray:
+    """Label values on cells."""
+    places = {"x": grid.x, "y": grid.y} | cell_coordinates(grid)
+    return xr.DataArray(values, {name: at for name, at in places.items() if name != "x_bounds"}, ("x", "y"))
+
+
+def contact(case: Case, gap: xr.DataArray) -> xr.Dataset:
+    """Contact of a case from its gap."""
+    return solve_contact(
+        case.body,
+        gap,
+        case.normal_load,
+        case.friction,
+        case.coupled,
+        load_position=case.load_position,
+        counterbody=case.counterbody,
+        tolerance=TOLERANCE,
+    )
+
+
+def close(what: str, first: np.ndarray, second: np.ndarray, scale: float, bound: float) -> None:
+    """Require two arrays to agree."""
+    require(first.shape == second.shape, f"{what}: shapes {first.shape} and {second.shape}")
+    difference = float(np.abs(first - second).max()) / scale
+    require(difference <= bound, f"{what}: differ by {difference:.3g}, allowed {bound:g}")
+
+
+def finite_values(solved: Solved) -> bool:
+    """No NaN is marked converged, pressure is not negative, the gap is infinite beyond the roller only."""
+    for key, values in solved.result.data_vars.items():
+        name = str(key)
+        array = np.asarray(values.values)
+        exponent = name.removesuffix("_error").replace("intensity", "exponent")
+        unknown = name.startswith("end_intensity") and float(solved.result[exponent]) == 0  # a logarithm has none
+        if array.dtype.kind == "f" and not unknown:
+            require(not np.isnan(array).any(), f"{name} holds NaN")
+    pressure, gap = solved.result["pressure"].values, solved.result["gap"].values
+    require(np.isfinite(pressure).all() and pressure.min() >= 0 and pressure.max() > 0, "pressure out of range")
+    require((np.isinf(gap) == np.isinf(solved.result["initial_gap"].values)).all(), "the gap is infinite elsewhere")
+    return True
+
+
+def certificate(solved: Solved) -> bool:
+    """The stated violations are within the tolerance."""
+    for name in ("load_error", "penetration_error", "open_pressure_error", "load_position_error"):
+        value = abs(float(solved.result[name]))
+        require(value <= HELD_TOLERANCES * TOLERANCE, f"{name} = {value:.3g} in a converged result")
+    return True
+
+
+def balance(solved: Solved) -> bool:
+    """The pressure carries the load, where the load acts."""
+    case, grid = solved.drawn.case, solved.grid
+    forces = solved.result["pressure"].values.sum(axis=1) * grid.widths * grid.dy
+    off = abs(float(forces.sum()) / case.normal_load - 1)
+    require(off <= 1e-5, f"the pressure carries {off:.3g} more or less than the load")
+    if case.load_position is not None:
+        arm = abs(float((forces * (grid.x - case.load_position)).sum())) / forces.sum() / case.contact_length
+        require(arm <= 1e-4, f"the load acts {arm:.3g} of the length beside its position")
+    return True
+
+
+def complementarity(solved: Solved) -> bool:
+    """From the public functions alone: touching cells lie on the rigid roller, the others outside."""
+    case, result = solved.drawn.case, solved.result
+    if case.roller.material is not None:
+        return False
+    friction = case.friction if case.coupled else 0.0
+    sunk = surface_displacement(case.body, result["pressure"], friction).values
+    arm = (solved.grid.x - (case.load_position or 0.0))[:, None]
+    own_tilt = float(result["tilt"]) - case.tilt
+    opening = result["initial_gap"].values + sunk - float(result["approach"]) - own_tilt * arm
+    touching = result["pressure"].values > 0
+    variation = float(np.ptp(sunk))
+    worst = max(float(np.abs(opening[touching]).max()), float(-opening.min())) / variation
+    require(worst <= 2e-5, f"gap or overlap of {worst:.3g} of the displacement under pressure")
+    return True
+
+
+def symmetry_across(solved: Solved) -> bool:
+    """Without coupled friction nothing tells +y from -y, in a window that does not either."""
+    low, high = solved.grid.y_range
+    if solved.drawn.case.coupled or abs(low + high) > 1e-9 * high:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure at +y and -y", pressure, pressure[:, ::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def reversed_friction(solved: Solved) -> bool:
+    """Friction that acts the other way mirrors the pressure across y."""
+    low, high = solved.grid.y_range
+    drawn = solved.cells
+    if not drawn.case.coupled or abs(low + high) > 1e-9 * high:
+        return False
+    other = again(replace(drawn, case=replace(drawn.case, friction=-drawn.case.friction)))
+    if other is None:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure under -f", pressure, other[:, ::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def turned_round(solved: Solved) -> bool:
+    """Seen from the other end everything is mirrored."""
+    if not isinstance(solved.drawn.case.body, (FiniteLengthSpace, HalfSpace)):
+        return False
+    other = again(solved.cells.turned())
+    if other is None:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure turned round", pressure, other[::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def other_units(solved: Solved) -> bool:
+    """Lengths and moduli in other units: a power of two, so that not even rounding differs."""
+    length, modulus = (2.0 ** solved.chance.randint(-12, 12) for _ in range(2))
+    other = again(solved.cells.scaled(length, modulus))
+    if other is None:
+        return False
+    pressure = modulus * solved.result["pressure"].values
+    scale = modulus * solved.peak
+    close(f"lengths x {length:g}, moduli x {modulus:g}", pressure, other, scale, SAME_PRESSURE)
+    return True
+
+
+def same_load_by_pressure(solved: Solved) -> bool:
+    """A load, and the Hertz pressure of that load, are one case."""
+    case = solved.drawn.case
+    by_pressure = case.load is None
+    value = {"load": case.normal_load} if by_pressure else {"max_pressure": case.hertz_max_pressure}
+    other = again(replace(solved.cells, case=replace(case, **({"load": None, "max_pressure": None} | value))))
+    if other is None:
+        return False
+    close("load or pressure", solved.result["pressure"].values, other, solved.peak, SAME_PRESSURE)
+    return True
+
+
+def parts(solved: Solved) -> bool:
+    """`solve_contact` of the initial gap gives the pressure that `solve` gave."""
+    case, result = solved.drawn.case, solved.result
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        other = contact(case, result["initial_gap"])
+    if not bool(other["converged"]):
+        return False
+    close("solve_contact", other["pressure"].values, result["pressure"].values, solved.peak, SAME_PRESSURE)
+    close(
+        "shear traction", result["shear_traction"].values, case.friction * result["pressure"].values, solved.peak, 1e-12
+    )
+    return True
+
+
+def superposition(solved: Solved) -> bool:
+    """Stresses and displacements are linear in the pressure and in the friction."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    pressure = solved.result["pressure"]
+    peak = solved.peak
+    noise = np.random.default_rng(chance.randrange(2**32)).random(grid.shape)
+    other = pressure.copy(data=peak * noise)
+    both = pressure + 0.5 * other
+    friction = chance.uniform(-1.0, 1.0)
+    points = inner_points(solved)
+    fields = [stacked(stress_field(case.body, each, friction, **points)) for each in (pressure, other, both)]
+    close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, QUADRATURE)
+    frictionless, full = (stacked(stress_field(case.body, pressure, f, **points)) for f in (0.0, 1.0))
+    close("stresses with friction", frictionless + friction * (full - frictionless), fields[0], peak, 1e-9)
+    sunk = [surface_displacement(case.body, each, friction).values for each in (pressure, other, both)]
+    close("displacements of a sum", sunk[0] + 0.5 * sunk[1], sunk[2], float(np.abs(sunk[2]).max()), 1e-9)
+    return True
+
+
+QUADRATURE = 2e-5
+"""Where the ends are evaluated depends on which cells are loaded."""
+
+
+def reciprocity(solved: Solved) -> bool:
+    """The work of one pressure on the displacement of another is that of the other on its own (Betti)."""
+    body, grid = solved.drawn.case.body, solved.grid
+    if isinstance(body, EndedBody) and body.model != "exact":
+        return False
+    first = solved.result["pressure"]
+    noise = np.random.default_rng(solved.chance.randrange(2**32)).random(grid.shape)
+    second = first.copy(data=solved.peak * noise)
+    sunk = [surface_displacement(body, each).values for each in (first, second)]
+    works = [float((grid.weights * p.values * u).sum()) for p, u in ((first, sunk[1]), (second, sunk[0]))]
+    size = float((grid.weights * second.values * np.abs(sunk[0])).sum()) + abs(works[0])
+    off = abs(works[0] - works[1]) / size
+    require(off <= RECIPROCITY, f"works differ by {off:.3g}")
+    return True
+
+
+RECIPROCITY = 1e-2
+"""Centres stand for means over cells, which differ in width: exact on uniform cells, roughly so on others."""
+
+
+def inner_points(solved: Solved) -> dict[str, list[float]]:
+    """Few points inside the body, and where they are."""
+    grid, chance, a = solved.grid, solved.chance, solved.drawn.case.hertz_half_width
+    low, high = grid.x_range
+    return {
+        "x": [low + chance.uniform(0.05, 0.95) * (high - low) for _ in range(2)],
+        "y": [chance.uniform(-1.5, 1.5) * a],
+        "z": [chance.uniform(0.05, 3.0) * a, 0.0],
+    }
+
+
+def stacked(field: xr.Dataset) -> np.ndarray:
+    """Stresses (6, x, y, z)."""
+    return np.stack([field[name].values for name in STRESSES])
+
+
+def equilibrium(solved: Solved) -> bool:
+    """The divergence of the stresses inside vanishes, by central differences."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    a, peak = case.hertz_half_width, solved.peak
+    low, high = grid.x_range
+    # Below the steps of the cells, and away from the ends by more than a step.
+    size = max(a, float(grid.widths.max()), grid.dy)
+    depth = chance.uniform(1.0, 2.0) * size
+    step = 0.02 * min(size, high - low)
+    at = [low + chance.uniform(0.1, 0.9) * (high - low), chance.uniform(-1.0, 1.0) * a, depth]
+    axes = [[centre - step, centre, centre + step] for centre in at]
+    field = stacked(stress_field(case.body, solved.result["pressure"], case.friction, *axes))
+    along = np.stack(
+        [
+            field[:, 2, 1, 1] - field[:, 0, 1, 1],
+            field[:, 1, 2, 1] - field[:, 1, 0, 1],
+            field[:, 1, 1, 2] - field[:, 1, 1, 0],
+        ]
+    )
+    xx, yy, zz, xy, xz, yz = range(6)
+    rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    for row in rows:
+        terms = [along[axis, component] / (2 * step) * size for axis, component in enumerate(row)]
+        require(abs(sum(terms)) / peak <= EQUILIBRIUM, f"divergence {abs(sum(terms)) / peak:.3g} p / length at {at}")
+    return True
+
+
+EQUILIBRIUM = 5e-3
+"""Divergence times the length over which the stresses vary, over the peak: what the differences leave."""
+
+
+def loads_on_the_top(solved: Solved) -> bool:
+    """On the top the stresses are the loads that the body was given."""
+    case, grid = solved.drawn.case, solved.grid
+    pressure = solved.result["pressure"]
+    if isinstance(case.body, EndedBody) and case.body.model == "mirror-factor":
+        return False  # its weights add up to one, but its mirrors do not end where the body does
+    i, j = (solved.chance.randrange(count) for count in grid.shape)
+    field = stress_field(case.body, pressure, case.friction, [grid.x[i]], [grid.y[j]], [0.0])
+    p = float(pressure[i, j])
+    for name, expected in (("sigma_zz", -p), ("tau_yz", -case.friction * p), ("tau_xz", 0.0)):
+        found = field[name].item()
+        off = abs(found - expected) / solved.peak
+        require(off <= 1e-6, f"{name} = {found / solved.peak:.6g} on the top, not {expected / solved.peak:.6g}")
+    return True
+
+
+def same_points_among_others(solved: Solved) -> bool:
+    """Stresses at the cells' centres do not depend on what other points are asked for: no symmetry is used then."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    pressure = solved.result["pressure"]
+    depth = [chance.uniform(0.2, 2.0) * case.hertz_half_width]
+    alone = stacked(stress_field(case.body, pressure, case.friction, z=depth))
+    aside = [np.sort(np.append(at, at[0] + 0.31 * (at[1] - at[0]))) for at in (grid.x, grid.y)]
+    among = stacked(stress_field(case.body, pressure, case.friction, *aside, depth))
+    kept = np.ix_(range(6), *(np.arange(at.size) != 1 for at in aside))
+    close("stresses among others", among[kept], alone, solved.peak, QUADRATURE)
+    return True
+
+
+def free_ends(solved: Solved) -> bool:
+    """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
+
+    Nearer to it a cell's edge shows; `end_traction_residual`, which looks there on coarse cells, says by how much.
+    """
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    ends = [end for end in case.body.extent if np.isfinite(end)]
+    if not ends:
+        require(float(solved.result["end_traction_residual"]) == 0, "traction without an end")
+    if not ends or not isinstance(case.body, EndedBody) or case.body.model != "exact":
+        return False
+    size = max(grid.dy, float(grid.widths[[0, -1]].max()))
+    depths = [magnitude(chance, 0.25, 4.0) * size for _ in range(2)]
+    across = [chance.uniform(*grid.y_range) for _ in range(3)]
+    field = stress_field(case.body, solved.result["pressure"], case.friction, ends, across, depths)
+    left = max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solved.peak
+    require(left <= FREE, f"traction of {left:.3g} is left on the ends")
+    return True
+
+
+FREE = 2e-3
+"""Largest traction left on the ends."""
+
+
+def stated_errors(solved: Solved) -> bool:
+    """The errors that refined cells state cover the difference from cells refined further."""
+    if solved.drawn.grid is not None or solved.drawn.accuracy < 0.02:
+        return False
+    finer = run(replace(solved.drawn, accuracy=0.25 * solved.drawn.accuracy))
+    for name in ("peak_pressure", "end_pressure_first", "end_pressure_last"):
+        error, own = float(solved.result[f"{name}_error"]), float(finer[f"{name}_error"])
+        if not np.isfinite(error + own):
+            continue
+        difference = abs(float(solved.result[name]) - float(finer[name]))
+        allowed = error + own
+        require(
+            difference <= allowed,
+            f"{name}: stated {error / solved.peak:.3g} of the peak, off by {difference / solved.peak:.3g}",
+        )
+    return True
+
+
+ALWAYS: tuple[Callable[[Solved], bool], ...] = (
+    finite_values,
+    certificate,
+    balance,
+    complementarity,
+    symmetry_across,
+    free_ends,
+    stated_errors,
+)
+"""Cheap ones, and the one that few cases are for."""
+
+IN_TURN: tuple[Callable[[Solved], bool], ...] = (
+    reversed_friction,
+    turned_round,
+    other_units,
+    same_load_by_pressure,
+    parts,
+    superposition,
+    reciprocity,
+    equilibrium,
+    loads_on_the_top,
+    same_points_among_others,
+)
+"""Those that solve again or need stresses: two for each case."""

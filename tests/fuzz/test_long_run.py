@@ -1,0 +1,67 @@
+"""The long run: it goes on where it was ended, and tells violations from what the package says itself."""
+
+from __future__ import annotations
+
+import json
+import sys
+from random import Random
+
+import pytest
+
+from contactstudy import InvalidInputError
+from tests.fuzz import __main__ as long_run
+from tests.fuzz import outcome, properties
+from tests.fuzz.outcome import Outcome, outcome_of
+
+
+@pytest.fixture
+def run(monkeypatch, tmp_path):
+    """Run so many cases that are made up; returns the exit code and the seeds that were run."""
+    seeds: list[int] = []
+
+    def made_up(chance: Random, **options) -> Outcome:
+        return Outcome("violation" if chance.random() < 0.2 else "converged", "said", ("balance",))
+
+    real = Random
+    monkeypatch.setattr(long_run, "outcome_of", made_up)
+    monkeypatch.setattr(long_run, "Random", lambda seed: seeds.append(seed) or real(seed))
+
+    def command(*arguments: str) -> tuple[int, list[int]]:
+        seeds.clear()
+        monkeypatch.setattr(sys, "argv", ["fuzz", "--out", str(tmp_path / "notes"), *arguments])
+        return long_run.main(), list(seeds)
+
+    return command
+
+
+def test_a_run_goes_on_with_the_seeds_that_are_left(run, tmp_path, capsys) -> None:
+    assert run("--cases", "3")[1] == [0, 1, 2]
+    with (tmp_path / "notes").open("a") as file:
+        file.write('{"seed": 3, "ki')  # ended while it was writing
+    code, seeds = run("--cases", "8")
+    assert seeds == [3, 4, 5, 6, 7]
+    shown = capsys.readouterr().out
+    violations = [seed for seed in range(8) if Random(seed).random() < 0.2]
+    assert code == 1
+    assert f"{len(violations)} violation" in shown
+    assert all(f"seed {seed}: said" in shown for seed in violations)
+    assert run("--cases", "8")[1] == []
+    lines = (tmp_path / "notes").read_text().splitlines()
+    assert json.loads(lines[-1])["seed"] == 7
+
+
+def test_errors_that_are_not_the_packages_own_are_violations(monkeypatch) -> None:
+    def fails(error: Exception):
+        def raising(*arguments: object, **options: object) -> None:
+            raise error
+
+        return raising
+
+    for error, kind in ((ZeroDivisionError(), "violation"), (InvalidInputError("a", 1, "b"), "refused")):
+        monkeypatch.setattr(outcome, "random_drawn", fails(error))
+        assert outcome_of(Random(0)).kind == kind
+    monkeypatch.undo()
+    # The package's own error for a variant of a case that it has solved is one as well.
+    for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), properties.ViolationError()):
+        monkeypatch.setattr(properties, "ALWAYS", (fails(error),))
+        assert outcome_of(Random(3)).kind == "violation"

@@ -1,0 +1,41 @@
+"""A short run of random cases: `pytest -m fuzz`; `python -m tests.fuzz` makes long ones."""
+
+from __future__ import annotations
+
+from random import Random
+
+import pytest
+from hypothesis import HealthCheck, event, given, settings
+from hypothesis import strategies as st
+
+from tests.fuzz.outcome import outcome_of
+
+SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
+
+
+def look_at(chance: Random, *, refined: bool) -> None:
+    """Run a case and count what became of it."""
+    found = outcome_of(chance, refined=refined)
+    event(found.kind)
+    assert found.kind != "violation", found.said
+
+
+@pytest.mark.fuzz
+@settings(max_examples=70, deadline=None, suppress_health_check=SLOW)
+@given(st.randoms(use_true_random=False))
+def test_cases_on_given_cells(chance: Random) -> None:
+    look_at(chance, refined=False)
+
+
+@pytest.mark.fuzz
+@settings(max_examples=12, deadline=None, suppress_health_check=SLOW)
+@given(st.randoms(use_true_random=False))
+def test_cases_on_refined_cells(chance: Random) -> None:
+    look_at(chance, refined=True)
+
+
+def test_a_seed_is_one_case() -> None:
+    first, second = (outcome_of(Random(3)) for _ in range(2))
+    assert (first.kind, first.said, first.checked) == (second.kind, second.said, second.checked)
+    assert first.kind == "converged"
+    assert len(first.checked) >= 5

@@ -1,0 +1,59 @@
+"""Singular ends have no largest pressure, and no figure shows one."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, HalfSpace, Material, Roller, plots, solve
+from contactstudy.plots.singular import singular_ends
+
+
+@pytest.fixture(scope="module")
+def sharp():
+    body = HalfSpace(material=Material(210e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
+    return solve(case, stresses=False, accuracy=0.05)
+
+
+def test_the_ends_are_found_where_the_roller_ends(sharp):
+    np.testing.assert_allclose(singular_ends(sharp), [0.2e-3, 1.2e-3], rtol=1e-9)
+
+
+def test_the_pressure_stops_before_a_singular_end_and_a_mark_stands_there(sharp):
+    ax = plots.plot_axial_pressure(sharp)
+    line, marks = ax.lines
+    a, p0 = float(sharp["hertz_half_width"]), float(sharp["hertz_max_pressure"])
+    np.testing.assert_allclose(marks.get_xdata(), np.array([0.2e-3, 1.2e-3]) / a)
+    # The narrowest columns carry far more than what is drawn.
+    assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp["pressure"].max()) / p0
+
+
+def test_the_colours_of_the_map_stop_before_a_singular_end(sharp):
+    (mesh,) = plots.plot_pressure_map(sharp).collections
+    assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
+
+
+def study(values):
+    peaks = xr.DataArray(values, dims=("e_over_a", "friction"), coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
+    return xr.Dataset({"peak_pressure": peaks.assign_attrs(units="Pa")})
+
+
+def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clipped):
+    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "e_over_a", "friction")
+    first, marks, _ = figure.axes[0].lines
+    assert np.isnan(first.get_ydata()[1])
+    assert list(marks.get_xdata()) == [1.0]
+    assert figure.axes[0].get_ylim()[1] == pytest.approx(1.08 * 1.2)
+    assert any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
+    assert_nothing_clipped(figure)
+
+
+def test_without_singular_cases_there_is_no_mark():
+    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), "e_over_a", "friction")
+    assert len(figure.axes[0].lines) == 2
+    assert len(figure.legends) == 1
+
+
+def test_a_map_says_where_there_is_no_limit():
+    ax = plots.plot_study_map(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
+    assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
