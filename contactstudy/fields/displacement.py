@@ -123,7 +123,7 @@ def _part_displacement(
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells, grid, extent)
+        seen, seen_on = seen_by_ends(cells, grid, length)
         problem = EndProblem(
             length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid)
         )

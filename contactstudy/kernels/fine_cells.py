@@ -148,7 +148,7 @@ class FineCells:
         Points at the distance `offset` along y from the middles of cells are in the middles of the fine ones.
         """
         edges = self.grid.x_edges
-        if not split:
+        if not (split and self.split.any()):
             return self._refined(edges, self._own(self.gathered), offset)
         edges = _split(edges, self.split)
         return self._refined(edges, self.columns([edges]), offset)
