@@ -33,7 +33,14 @@ ROWS = {  # what the table calls it: group, part of the case, part of the quanti
         "six",
         "p0",
     ),
-    "sliding (f = 0.3) line contact against McEwen's, z >= 0.1a": ("half-space", "line contact's", "six", "p0"),
+    "sliding (f = 0.3) line contact against McEwen's, z = 0, beside the contact's last cell": (
+        "half-space",
+        "z = 0, beside",
+        "six",
+        "p0",
+    ),
+    "... z = 0.02a and 0.05a": ("half-space", "z = 0.02a", "six", "p0"),
+    "... z >= 0.1a": ("half-space", "0.3, z >= 0.1a", "six", "p0"),
     "thin body (0.05a) against plane stress": ("limits", "0.05a", "six", "p0"),
     "point load on the edge of a quarter space: 3.363 times the half-space's displacement": (
         "quarter space",
@@ -41,10 +48,10 @@ ROWS = {  # what the table calls it: group, part of the case, part of the quanti
         "along the edge",
         "",
     ),
-    "stresses against finite elements, 8 load cases, z >= 0.1a: largest difference": (
+    "stresses against finite elements, 8 load cases, z >= 0.05a: largest difference": (
         "finite elements",
         "",
-        "six stresses / p0, z >= 0.1a, largest",
+        "six stresses / p0, z >= 0.05a, largest",
         "p0",
     ),
     "... median of the worst case": ("finite elements", "", "median", "p0"),

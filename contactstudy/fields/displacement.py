@@ -10,13 +10,14 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import Loads, superposed
+from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.kernels.displacement import half_space_displacement
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.displacement import end_displacement
-from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.problem import EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 
 COMPONENTS = ("u_x", "u_y", "u_z")
@@ -40,8 +41,10 @@ def displacement_field(
     body : Body
         The elastic body.
     pressure : DataArray (x, y)
-        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+        Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length. Between the centres the pressure
+        is taken as smooth, each cell keeping its force; a load that does not fall towards its end, such as a uniform
+        one, ends in a step.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional
@@ -120,7 +123,10 @@ def _part_displacement(
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        problem = EndProblem(length, material.poisson, cells, loads, grid, Resolution(), mirrored_once)
+        seen, seen_on = seen_by_ends(cells, grid, length)
+        problem = EndProblem(
+            length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid)
+        )
         for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

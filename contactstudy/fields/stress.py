@@ -15,13 +15,14 @@ from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import Loads, superposed
+from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import reference_of
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping.field import Place
-from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
+from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.stress import end_stress
 
@@ -44,8 +45,10 @@ def stress_field(
     body : Body
         The elastic body.
     pressure : DataArray (x, y)
-        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
+        Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
+        cells begin at ``x = 0``, and on a finite-length space they end at its length. Between the centres the pressure
+        is taken as smooth, each cell keeping its force; a load that does not fall towards its end, such as a uniform
+        one, ends in a step.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional
@@ -157,7 +160,8 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
     }
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        problem = EndProblem(length, poisson, cells.values, loads, grid, Resolution(), mirrored_once)
+        seen, seen_on = seen_by_ends(cells.values, grid, length)
+        problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         reference = reference_of(part.extent)
         for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places, reference), strict=True)):
             for load, from_ends in by_load.items():

@@ -6,44 +6,36 @@ sum over corners, each weighted with the mixed jump of the load there.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.polynomial import chebyshev
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.checks import FloatArray, IntArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
-from contactstudy.kernels.images import image_kernel
+from contactstudy.kernels.far_images import far_images
+from contactstudy.kernels.fine_cells import PARTS_Y, FineCells, mirrored, seen_apart, with_images
+from contactstudy.kernels.images import snapped
 from contactstudy.kernels.influence import Influence
-
-IMAGE_POINTS = 16
-"""Chebyshev points along x on which the load is gathered for its farther images. Accuracy."""
-
-IMAGE_CELL = 1e-3
-"""Width of the cells that stand for these points, over the length. Accuracy."""
-
-IMAGE_DEPTHS, DEEPEST = 6, 0.2
-"""Chebyshev depths at which the farther images are summed for more depths than these, and the largest depth over the
-length for which these suffice: they are a length away. Accuracy: 1e-7 of the pressure."""
+from contactstudy.kernels.smooth_load import Sent, SmoothLoad
 
 FEW_POINTS = 4
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
+NARROW = 0.15
+"""Width of a column, over the least depth, below which it is never split. Accuracy."""
 
-@dataclass(frozen=True, eq=False)
-class _Columns:
-    """Columns of a load, with the image beside it in each end that mirrors it."""
+BATCH = 64
+"""Positions along x whose surroundings are made smooth at once. Speed."""
 
-    edges: FloatArray
-    cells: FloatArray
+CENTRED = 0.25
+"""Width of the fine column in whose middle a point lies, over that of the fine column around it. Accuracy."""
 
-    def jumps(self) -> tuple[FloatArray, FloatArray]:
-        """Edges at which the load jumps, and its mixed jumps there: array (edge, edge along y)."""
-        jumps = np.diff(np.diff(np.pad(self.cells, 1), axis=0), axis=1)
-        loaded = jumps.any(axis=1)
-        return self.edges[loaded], jumps[loaded]
+SAME_END = 1e-9
+"""Part of a column by which a point on an end may miss it. Accuracy."""
 
 
 def columns_field(
@@ -55,60 +47,236 @@ def columns_field(
     z: FloatArray,
     *,
     extent: tuple[float, float],
+    fine: FineCells | None = None,
+    added: bool = False,
 ) -> FloatArray:
-    """Field in the half-space under a load and all its mirror images, as `half_space_field` on uniform cells."""
+    """Field in the half-space under a load and all its mirror images, as `half_space_field` on uniform cells.
+
+    With `fine` the load is smooth where it lies near to a point; `added` asks for what that adds to a load that is
+    smooth along y only.
+    """
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     loaded = np.flatnonzero(load.any(axis=0))
     if not loaded.size:
         return field
-    first, last = int(loaded[0]), int(loaded[-1]) + 1
-    load = load[:, first:last]
-    edges, jumps = _with_images(grid.x_edges, load, influence.load.sign_x, extent).jumps()
+    first, load = int(loaded[0]), load[:, loaded[0] : loaded[-1] + 1]
+    if fine is not None:
+        first, load = fine.first, fine.cells
     # Corners along y lie half a cell before the first loaded centre, and so on.
-    for column in aligned_points(y, float(grid.y[first]) - 0.5 * grid.dy, grid.dy):
-        lowest = int(column.cells.min()) - load.shape[1]
-        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
-        for number, depth in enumerate(z.tolist()):
-            field[:, :, column.points, number] = _layer(influence, x[:, None] - edges, offsets, depth, jumps, column)
-    if np.isfinite(extent).all():
-        field += _far_images(load, influence, grid, first, x, y, z, extent)
+    begin = float(grid.y[first]) - 0.5 * grid.dy
+    near = np.zeros(z.size, bool) if fine is None else fine.near(z)
+    for wanted in (False, True):
+        numbers = np.flatnonzero(near == wanted)
+        if not numbers.size:
+            continue
+        layers = [
+            _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], PARTS_Y if wanted else 0)
+            for column in aligned_points(y, begin, grid.dy)
+        ]
+        seen = (
+            _seen(x, layers, mirrored(grid.x_edges, extent), with_images(load, influence.load.sign_x, extent))
+            if fine is None
+            else _smooth(x, layers, fine, NARROW * float(z[numbers].min()), extent, added=added)
+        )
+        for i, (position, jumps) in enumerate(zip(x.tolist(), seen, strict=True)):
+            for layer, own in zip(layers, jumps, strict=True):
+                for number, corner in zip(layer.numbers.tolist(), layer.corners, strict=True):
+                    field[:, i, layer.points, number] = own.field(corner, position, layer.at)
+    if np.isfinite(extent).all() and not added:
+        field += far_images(load, influence, grid, first, x, y, z, extent)
     return field
 
 
-def _with_images(edges: FloatArray, cells: FloatArray, image: int, extent: tuple[float, float]) -> _Columns:
-    """Columns of a load between its nearest images; each end of the body is a border between columns."""
-    low, high = extent
-    all_edges, all_cells = [edges], [cells]
-    if np.isfinite(low):
-        all_edges.insert(0, (2 * low - edges[::-1])[:-1])
-        all_cells.insert(0, image * cells[::-1])
-    if np.isfinite(high):
-        all_edges.append((2 * high - edges[::-1])[1:])
-        all_cells.append(image * cells[::-1])
-    return _Columns(np.concatenate(all_edges), np.concatenate(all_cells))
+def _seen(x: FloatArray, layers: list[_Layer], edges: FloatArray, cells: FloatArray) -> Iterator[list[_Jumps]]:
+    """For each position the jumps that each layer sees: the same for all."""
+    jumps = [_Jumps.of(edges, cells, layer) for layer in layers]
+    yield from (jumps for _ in x)
 
 
-def _layer(
-    influence: Influence, x: FloatArray, offsets: FloatArray, depth: float, jumps: FloatArray, column: Aligned
-) -> FloatArray:
-    """Field (component, x, point) at one depth; `x` are offsets (x, edge), `offsets` those along y, uniform."""
-    corner = _EvenCorner(influence, offsets, depth)
-    count = jumps.shape[1]
-    at = column.cells - int(column.cells.min())
-    layer = np.empty((influence.components, x.shape[0], column.points.size))
-    backwards = jumps[:, ::-1]
-    few = at.size <= FEW_POINTS
-    size = fft.next_fast_len(offsets.size, real=True)
-    spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
-    for i, along in enumerate(x):
-        values = corner(along)
-        if spectrum is None:
-            for number, place in enumerate(at.tolist()):
-                layer[:, i, number] = np.einsum("cef,ef->c", values[:, :, place : place + count], backwards)
-        else:
-            summed = np.einsum("cek,ek->ck", fft.rfft(values, size, axis=2), spectrum)
-            layer[:, i] = fft.irfft(summed, size, axis=1)[:, at]
-    return layer
+def _smooth(
+    x: FloatArray,
+    layers: list[_Layer],
+    fine: FineCells,
+    narrow: float,
+    extent: tuple[float, float],
+    *,
+    added: bool,
+) -> Iterator[list[_Jumps]]:
+    """For each position the jumps that each layer sees, the columns around it split unless they are narrow."""
+    edges = fine.edges
+    smooth = fine.along_y(fine.gathered)
+    base = [layer.loads(smooth) for layer in layers]
+    alone = [_Jumps.of(edges, loads, layer) for loads, layer in zip(base, layers, strict=True)]
+    nothing = [_Jumps.of(edges, np.zeros(loads.shape), layer) for loads, layer in zip(base, layers, strict=True)]
+    for start in range(0, x.size, BATCH):
+        around = [_surroundings(position, fine, narrow, extent) for position in x[start : start + BATCH].tolist()]
+        exchanged = [each for each in around if each is not None]
+        inserted = []
+        if exchanged:
+            columns = fine.columns([each.inserted for each in exchanged])
+            columns += np.concatenate([each.received(fine) for each in exchanged])
+            smooth = fine.along_y(columns)
+            inserted = [layer.loads(smooth) for layer in layers]
+        stop = 0
+        for each in around:
+            if each is None:
+                yield nothing if added else alone
+                continue
+            first, stop = stop, stop + each.inserted.size - 1
+            own = [loads[first:stop] for loads in inserted]
+            take = each.added if added else each.exchanged
+            yield [take(edges, *given) for given in zip(base, layers, own, strict=True)]
+
+
+class _Surroundings(NamedTuple):
+    """Columns around a point that are split, and one more on either side that their moments are not sent to.
+
+    Attributes
+    ----------
+    inserted : array
+        Edges of the columns that replace others.
+    lowest, highest : int
+        Which of the columns these are.
+    """
+
+    inserted: FloatArray
+    lowest: int
+    highest: int
+
+    def received(self, fine: FineCells) -> FloatArray:
+        """Return what the inserted columns receive from those that stay, for their moments: array (column, y)."""
+        sent, last = fine.sent, self.highest - 1
+        stay = np.ones(fine.edges.size - 1, bool)
+        stay[self.lowest + 1 : last] = fine.stays[self.lowest + 1 : last]
+        total = Sent(*(np.where(stay, each, 0.0) for each in sent)).total.T
+        middles = 0.5 * (self.inserted[1:] + self.inserted[:-1])
+        return total[np.searchsorted(fine.edges, middles) - 1]
+
+    def exchanged(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
+        """Jumps of all columns, the inserted ones in their place."""
+        return _Jumps.of(
+            np.concatenate([edges[: self.lowest], self.inserted, edges[self.highest + 1 :]]),
+            np.concatenate([loads[: self.lowest], inserted, loads[self.highest :]]),
+            layer,
+        )
+
+    def added(self, edges: FloatArray, loads: FloatArray, layer: _Layer, inserted: FloatArray) -> _Jumps:
+        """Jumps of what the inserted columns add to those that they replace."""
+        new, old = self.inserted, edges[self.lowest : self.highest + 1]
+        both = np.unique(np.concatenate([new, old]))
+        middles = 0.5 * (both[1:] + both[:-1])
+        difference = inserted[np.searchsorted(new, middles) - 1]
+        difference -= loads[self.lowest : self.highest][np.searchsorted(old, middles) - 1]
+        return _Jumps.of(both, difference, layer)
+
+
+def _surroundings(x: float, fine: FineCells, narrow: float, extent: tuple[float, float]) -> _Surroundings | None:
+    """Columns around a point that are split, the point in the middle of one; none if all are narrow."""
+    edges, count = fine.edges, fine.edges.size - 1
+    column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, count - 1))
+    on_end = min(abs(x - end) for end in extent) < SAME_END * (edges[column + 1] - edges[column])
+    lowest, highest = seen_apart(edges, x, narrow)
+    if lowest == highest:
+        return None
+    low, high = edges[lowest], edges[highest]
+    inserted = fine.x_edges[(fine.x_edges >= low) & (fine.x_edges <= high)]
+    if not on_end and low < x < high:
+        # On an edge the narrower of both columns decides, so that the mirrored load is treated alike.
+        beside = np.searchsorted(inserted, [x - SAME_END * (high - low), x + SAME_END * (high - low)]) - 1
+        step = CENTRED * float(np.diff(inserted)[beside].min())
+        own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
+        if low < own[0] and own[-1] < high:
+            kept = np.abs(inserted - x) > 1.9 * step
+            kept[[0, -1]] = True
+            inserted = np.sort(np.concatenate([inserted[kept], own]))
+    first, last = max(lowest - 1, 0), min(highest + 1, count)
+    whole = np.concatenate([edges[first:lowest], inserted, edges[highest + 1 : last + 1]])
+    return _Surroundings(whole, first, last)
+
+
+@dataclass(frozen=True, eq=False)
+class _Layer:
+    """Points at some depths that lie alike relative to the cells along y, and the cells that they see.
+
+    Attributes
+    ----------
+    points, at : array of int
+        Positions along y, and where among the offsets each has the first of the corners.
+    numbers : array of int
+        Depths.
+    corners : list of _EvenCorner
+        Corner functions at each.
+    edges : array or None
+        Edges along y of fine cells; None for the cells themselves.
+    """
+
+    points: IntArray
+    at: IntArray
+    numbers: IntArray
+    corners: list[_EvenCorner]
+    edges: FloatArray | None
+
+    @classmethod
+    def of(
+        cls,
+        influence: Influence,
+        column: Aligned,
+        z: FloatArray,
+        numbers: IntArray,
+        start: float,
+        dy: float,
+        count: int,
+        parts: int,
+    ) -> _Layer:
+        """Layer over `count` cells from the edge `start` on, each of so many `parts` or not split."""
+        offset, cells, step, edges = column.offset, column.cells, dy, None
+        if parts:
+            # Fine cells have the points in their middles.
+            step = dy / parts
+            before = int(np.floor(-offset / step - 0.5))
+            begin = offset + step * (before + 0.5)
+            total = int(np.ceil((count * dy - begin) / step - 1e-9))
+            edges = np.asarray(start + begin + step * np.arange(total + 1.0))
+            offset, cells, count = 0.5 * step, parts * cells - before - 1, total
+        lowest = int(cells.min()) - count
+        offsets: FloatArray = offset + step * np.arange(lowest, int(cells.max()) + 1.0)
+        corners = [_EvenCorner(influence, offsets, float(z[number])) for number in numbers]
+        return cls(column.points, cells - int(cells.min()), numbers, corners, edges)
+
+    def loads(self, smooth: SmoothLoad) -> FloatArray:
+        """Return the loads of columns on the cells along y that the points see."""
+        return smooth.gathered() if self.edges is None else smooth.gathered_on(self.edges)
+
+
+@dataclass(frozen=True, eq=False)
+class _Jumps:
+    """Mixed jumps of a load at the edges along x where there are any: array (edge, corner), backwards along y."""
+
+    edges: FloatArray
+    values: FloatArray
+    spectrum: ComplexArray | None
+    size: int
+    least: float
+
+    @classmethod
+    def of(cls, edges: FloatArray, loads: FloatArray, layer: _Layer) -> _Jumps:
+        """Jumps of `loads` (column, cell), with their spectrum if a layer has many points."""
+        jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
+        loaded = jumps.any(axis=1)
+        backwards = jumps[loaded, ::-1]
+        few = layer.at.size <= FEW_POINTS
+        size = fft.next_fast_len(jumps.shape[1] + int(layer.at.max()), real=True)
+        spectrum = None if few else fft.rfft(backwards, size, axis=1).conj()
+        return cls(edges[loaded], backwards, spectrum, size, float(np.diff(edges).min()))
+
+    def field(self, corner: _EvenCorner, x: float, at: IntArray) -> FloatArray:
+        """Field (component, point) of corners that see a point at `x`."""
+        values, count = corner(snapped(x - self.edges, self.least)), self.values.shape[1]
+        if self.spectrum is None:
+            places = (values[:, :, place : place + count] for place in at.tolist())
+            return np.stack([np.einsum("cef,ef->c", seen, self.values) for seen in places], axis=1)
+        summed = np.einsum("cek,ek->ck", fft.rfft(values, self.size, axis=2), self.spectrum)
+        return np.asarray(fft.irfft(summed, self.size, axis=1)[:, at])
 
 
 class _EvenCorner:
@@ -135,59 +303,3 @@ class _EvenCorner:
         if self._index is None:
             return values
         return np.asarray(values[:, :, self._index] * self._signs)
-
-
-def _far_images(
-    load: FloatArray,
-    influence: Influence,
-    grid: Grid,
-    first: int,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    extent: tuple[float, float],
-) -> FloatArray:
-    """Field of all images but the nearest: they vary smoothly over the body, so few points along x tell it."""
-    low, length = extent[0], extent[1] - extent[0]
-    nodes = chebyshev.chebpts1(IMAGE_POINTS)
-    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_POINTS - 1))
-    to_x = chebyshev.chebvander(2 * (x - low) / length - 1, IMAGE_POINTS - 1) @ coefficients
-    edges = 2 * (grid.x_edges - low) / length - 1
-    primitives = np.array([chebyshev.chebval(edges, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])
-    width = IMAGE_CELL * length
-    gathered = 0.5 * length / width * (coefficients.T @ np.diff(primitives, axis=1)) @ load
-    points = 0.5 * length * (nodes + 1)
-    patterns = (
-        (np.subtract.outer(points, points), 2 * length, 1),
-        (np.add.outer(points, points) - length, 3 * length, influence.load.sign_x),
-    )
-    level = width * grid.dy * np.array(influence.image_level)[:, None, None]
-    depths, to_z = _few_depths(z, length)
-    field = np.zeros((influence.components, x.size, y.size, depths.size))
-    for column in aligned_points(y, float(grid.y[first]), grid.dy):
-        lowest = int(column.cells.min()) - load.shape[1] + 1
-        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
-        size = fft.next_fast_len(offsets.size, real=True)
-        at = column.cells - int(column.cells.min())
-        spectrum = fft.rfft(gathered[:, ::-1], size, axis=1).conj()
-        for number, depth in enumerate(depths.tolist()):
-            total = np.zeros((influence.components, points.size, at.size))
-            for distances, nearest, sign in patterns:
-                kernel = image_kernel(
-                    influence.corner_at(depth), distances.ravel(), offsets, width, grid.dy, length, nearest=nearest
-                )
-                kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
-                summed = np.einsum("cpgk,gk->cpk", fft.rfft(kernel, size, axis=3), spectrum)
-                total += sign * fft.irfft(summed, size, axis=2)[:, :, at]
-            field[:, :, column.points, number] = to_x @ total
-    return field if to_z is None else field @ to_z.T
-
-
-def _few_depths(z: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
-    """Depths at which images far away are summed, and the matrix (z, depth) that interpolates; none if it is `z`."""
-    deepest = float(z.max())
-    if z.size <= IMAGE_DEPTHS or deepest > DEEPEST * length:
-        return z, None
-    nodes = chebyshev.chebpts1(IMAGE_DEPTHS)
-    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_DEPTHS - 1))
-    return 0.5 * deepest * (nodes + 1), chebyshev.chebvander(2 * z / deepest - 1, IMAGE_DEPTHS - 1) @ coefficients

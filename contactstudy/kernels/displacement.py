@@ -7,10 +7,10 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
+from contactstudy.kernels.smooth_field import smooth_field
 from contactstudy.kernels.surface import row_level
 
 UNDER_PRESSURE = ((-1, 1, 1), (1, -1, 1))
@@ -56,7 +56,7 @@ def half_space_displacement(
     """
     nu, length = material.poisson, extent[1] - extent[0]
     influence = displacement_influence(load, nu, length, reference)
-    field = half_space_field(cells, influence, grid, x, y, z, extent=extent)
+    field = smooth_field(cells, influence, grid, x, y, z, extent=extent)
     return field / (4 * np.pi * material.shear_modulus)
 
 

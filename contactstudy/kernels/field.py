@@ -16,7 +16,7 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
 from contactstudy.kernels.centred import centred_field
 from contactstudy.kernels.columns_field import columns_field
-from contactstudy.kernels.images import cell_kernel
+from contactstudy.kernels.images import cell_kernel, snapped
 from contactstudy.kernels.influence import Influence
 
 ALIGNED_GROUPS = 2
@@ -178,7 +178,7 @@ def _unaligned_field(cells: _LoadedCells, position: FloatArray, column: Aligned,
     interpolation = np.zeros((position.size, near.size, around.size))
     for i in range(steps.size):
         interpolation[:, np.arange(near.size), np.arange(near.size) + i] = weights[:, i, None]
-    x_edges = cells.dx * (fraction[:, None] + np.append(near, near[-1] + 1) - 0.5)
+    x_edges = snapped(cells.dx * (fraction[:, None] + np.append(near, near[-1] + 1) - 0.5), cells.dx)
     y_edges = np.append(y - 0.5 * cells.dy, y[-1] + 0.5 * cells.dy)
 
     def correction(depth: float) -> FloatArray:

@@ -23,6 +23,9 @@ NEAR_IMAGES = 5
 FAR_LIMIT = 1e6
 """Where the spread load ends, over the length. Accuracy; references of displacements count from it."""
 
+ROUNDING = 1e-9
+"""Part of a cell that is nothing. Accuracy."""
+
 CHEBYSHEV_X, CHEBYSHEV_Y = 16, 28
 """Least numbers of points from which the images' influence is interpolated. Accuracy."""
 
@@ -46,9 +49,14 @@ def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float,
     -------
     array (..., x, y)
     """
-    x_edges = np.append(x - 0.5 * dx, x[-1] + 0.5 * dx)
+    x_edges = snapped(np.append(x - 0.5 * dx, x[-1] + 0.5 * dx), dx)
     y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
     return np.diff(np.diff(corner(x_edges[:, None], y_edges[None, :]), axis=-1), axis=-2)
+
+
+def snapped(offsets: FloatArray, size: float) -> FloatArray:
+    """Offsets from edges, 0 where rounding left a little: a step of traction has a logarithm there, cut off at 0."""
+    return np.where(np.abs(offsets) < ROUNDING * size, 0.0, offsets)
 
 
 def mirrored_kernel(

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
+from contactstudy.kernels.smooth_field import smooth_field
 
 UNDER_PRESSURE = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))
 """Parities along x and along y of the components xx, yy, zz, xy, xz, yz under a pressure."""
@@ -47,4 +47,4 @@ def half_space_stress(
         xx, yy, zz, xy, xz, yz in Pa.
     """
     influence = Influence.of(STRESS_CORNERS[load], poisson, load, UNDER_PRESSURE)
-    return half_space_field(cells, influence, grid, x, y, z, extent=extent)
+    return smooth_field(cells, influence, grid, x, y, z, extent=extent)

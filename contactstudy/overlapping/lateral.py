@@ -20,8 +20,11 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
 
-NEGLIGIBLE = 1e-9
+NEGLIGIBLE = 1e-7
 """Part of a load that is left out: a contact that is symmetric but for its tolerance is symmetric. Accuracy."""
+
+LEAST_PRODUCT = 1e-7
+"""Part of the largest product of a load that is left out within a panel. Accuracy."""
 
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0: 3 under a force along x, which bends the body as a plate."""
@@ -176,9 +179,9 @@ def lateral_columns(
     waves = [function(phase) * width for function in (np.cos, np.sin)]
     cosine, sine = panel.waves(y)
     along_x, parities, even, odd = [], [], [], []
-    for parity, cells in parts.items():
-        spectra = [cells @ wave for wave in waves]
-        least = NEGLIGIBLE * max(np.abs(spectrum).max() for spectrum in spectra)
+    spectra_of = {parity: [cells @ wave for wave in waves] for parity, cells in parts.items()}
+    least = NEGLIGIBLE * max((np.abs(each).max() for own in spectra_of.values() for each in own), default=0.0)
+    for parity, spectra in spectra_of.items():
         for spectrum, at_even, at_odd in zip(spectra, (cosine, sine), (-sine, cosine), strict=True):
             if np.abs(spectrum).max() > least:
                 along_x.append(spectrum)
@@ -200,7 +203,7 @@ def _at_nodes(columns: LateralColumns, nodes: FloatArray, interpolation: FloatAr
     for parity in np.unique(columns.parities):
         own = columns.parities == parity
         left, values, right = np.linalg.svd(columns.along_x[..., own].reshape(cells, -1), full_matrices=False)
-        rank = int((values > NEGLIGIBLE * values[0]).sum())
+        rank = int((values > LEAST_PRODUCT * values[0]).sum())
         along = (values[:rank, None] * right[:rank]).reshape(rank, fine, -1)
         along_x.append(left[:, :rank])
         parities.append(np.full(rank, parity))

@@ -80,6 +80,8 @@ class EndProblem:
         Quadrature settings.
     mirrored_once : bool
         Whether loads have one pair of images only (single_mirror.py) instead of all.
+    finest : float, optional
+        Size of the cells on which the load is known, metres, where those of `grid` only make it smooth.
     """
 
     length: float
@@ -89,6 +91,7 @@ class EndProblem:
     grid: Grid
     resolution: Resolution
     mirrored_once: bool = False
+    finest: float | None = None
 
     def __post_init__(self) -> None:
         """Refuse a body too thin for its ends to be freed by these quadratures."""
@@ -140,7 +143,7 @@ class EndProblem:
     @property
     def _finest(self) -> float:
         """Size of a cell, metres; of graded cells, of which the narrow ones vary along x only, the one along y."""
-        return min(self.grid.dx, self.grid.dy) if self.grid.uniform else self.grid.dy
+        return self.finest or finest_cell(self.grid)
 
     def from_end(self, x: FloatArray) -> FloatArray:
         """Distance of positions from the nearest end."""
@@ -171,6 +174,11 @@ class EndProblem:
         system = _equation_set(request)
         spectrum = view.spectra[:, number if view.spectra.shape[1] > 1 else 0]
         return system, system.auxiliary_loads(spectrum, self.loads, shortest=shortest, resolution=self.resolution)
+
+
+def finest_cell(grid: Grid) -> float:
+    """Size of a cell, metres; of graded cells, of which the narrow ones vary along x only, the one along y."""
+    return min(grid.dx, grid.dy) if grid.uniform else grid.dy
 
 
 def parity_parts(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:

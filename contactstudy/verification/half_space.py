@@ -118,25 +118,43 @@ def circle_checks() -> Iterator[Check]:
 
 
 def line_checks() -> Iterator[Check]:
-    """Stresses in the middle of a long strip under a line contact's pressure."""
-    length = 2000.0
-    pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (80, 160))
-    y, z = np.linspace(-2, 2, 33), np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
+    """Stresses in the middle of a long strip under a line contact's pressure, on the top and below."""
+    length, cells_y, half_window = 2000.0, 160, 1.25
+    pressure = cell_means(strip_integral, (0, length), (-half_window, half_window), (80, cells_y))
+    cell = 2 * half_window / cells_y
+    # Edges and middles of cells and points between them, but for the last cell in contact and its very border.
+    edges = -1.25 + cell * np.arange(1, cells_y)
+    on_top = np.unique(np.round(np.concatenate([edges, edges + 0.5 * cell, edges + 0.37 * cell]), 9))
+    beside = np.abs(on_top) - 1
+    on_top = on_top[(beside < -cell + 1e-9) | (beside > 0.1 * cell)]
+    anywhere = np.linspace(-2, 2, 33)
+    deeper = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
     source = "McEwen (1949); Smith and Liu (1953)"
     for friction in (0.0, 0.3):
-        stress = stress_field(_body(), pressure, friction, x=[0.5 * length], y=y, z=z).isel(x=0)
-        exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, POISSON, friction)
-        case = f"line contact's pressure on a strip of length 2000a, f = {friction:g}, z >= 0.1a"
-        curve = Curve("y / a", "sigma_yy / p0, z = 0.35a", y, stress["sigma_yy"].values[:, 2], exact["sigma_yy"][:, 2])
-        yield compare_fields(
-            case,
-            "six stresses / p0",
-            source,
-            components(stress),
-            components(exact),
-            1e-3,
-            curve=curve,
-        )
+        for where, y, z, tolerance in (
+            ("z = 0, beside the contact's last cell", on_top, np.zeros(1), 5e-3),
+            ("z = 0.02a and 0.05a", on_top, np.array([0.02, 0.05]), 2e-3),
+            ("z >= 0.1a", anywhere, deeper, 1e-3),
+        ):
+            stress = stress_field(_body(), pressure, friction, x=[0.5 * length], y=y, z=z).isel(x=0)
+            exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, POISSON, friction)
+            depth = min(2, z.size - 1)
+            curve = Curve(
+                "y / a",
+                f"sigma_yy / p0, z = {z[depth]:g}a",
+                y,
+                stress["sigma_yy"].values[:, depth],
+                exact["sigma_yy"][:, depth],
+            )
+            yield compare_fields(
+                f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {where}",
+                "six stresses / p0",
+                source,
+                components(stress),
+                components(exact),
+                tolerance,
+                curve=curve,
+            )
 
 
 def rectangle_checks() -> Iterator[Check]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import Grid, Material
-from contactstudy.kernels import centred, field
-from contactstudy.kernels.displacement import half_space_displacement
+from contactstudy import Grid
+from contactstudy.kernels import centred, displacement, field, stress
+from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
+from contactstudy.kernels.patch import STRESS_CORNERS
 from contactstudy.kernels.stress import half_space_stress
 
 GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
@@ -16,14 +17,18 @@ Z = np.array([0.0, 0.05, 0.4])
 
 
 def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
-    return np.stack([half_space_stress(each, load, 0.3, GRID, x, y, Z, extent=extent) for each in Load])
+    """Stresses under steps of a load in each direction."""
+    influences = [Influence.of(STRESS_CORNERS[each], 0.3, each, stress.UNDER_PRESSURE) for each in Load]
+    return np.stack([field.half_space_field(load, each, GRID, x, y, Z, extent=extent) for each in influences])
 
 
 def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
-    material = Material(1.0, 0.3)
-    fields = [
-        half_space_displacement(each, load, material, GRID, x, y, Z, extent=extent, reference=20.0) for each in Load
-    ]
+    """Displacements likewise."""
+    length = extent[1] - extent[0]
+    fields = []
+    for each in Load:
+        influence = displacement.displacement_influence(each, 0.3, length, 20.0)
+        fields.append(field.half_space_field(load, influence, GRID, x, y, Z, extent=extent))
     return np.stack(fields)
 
 

@@ -52,7 +52,7 @@ def test_ends_are_free_of_normal_stress_and_carry_some_shear(
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     body = single_mirror(4.0, unit_material)
     stress = stress_under(body, sliding(eccentric.values, friction), grid, np.array([0.0, 4.0]), ACROSS, DEPTHS)
-    assert np.abs(stress[0]).max() < 3e-5
+    assert np.abs(stress[0]).max() < 6e-5
     assert np.abs(stress[4]).max() > 3e-3
 
 

@@ -1,0 +1,91 @@
+"""Loads as smooth functions: forces kept, shapes at borders and ends, symmetry, fields of moments."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.smooth_load import SmoothLoad, sent
+
+
+def semicircle_integral(y: FloatArray) -> FloatArray:
+    """Integral of ``sqrt(1 - y**2)``."""
+    inside = np.clip(y, -1.0, 1.0)
+    return np.asarray(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside)))
+
+
+@pytest.mark.parametrize("cells", [33, 40, 61])
+@pytest.mark.parametrize("half", [1.1, 1.2])
+def test_pressure_of_a_contact_from_its_means(cells: int, half: float) -> None:
+    edges = np.linspace(-half, half, cells + 1)
+    means = np.diff(semicircle_integral(edges)) / np.diff(edges)
+    fine = np.linspace(-half, half, 12 * cells + 1)
+    found = SmoothLoad.of(means[None], edges, spilling=True).means(fine)[0]
+    expected = np.diff(semicircle_integral(fine)) / np.diff(fine)
+    assert np.abs(found - expected)[np.abs(fine[1:]) < 0.9].max() < 5e-3
+    # Stepwise it would be off by a third.
+    assert np.abs(found - expected).max() < 0.06
+
+
+@st.composite
+def rows(draw: st.DrawFn) -> tuple[FloatArray, FloatArray]:
+    """Loads of any sign with gaps between them, on cells of any widths."""
+    count = draw(st.integers(1, 12))
+    edges = np.append(0.0, np.cumsum(draw(st.lists(st.floats(0.5, 2.0), min_size=count, max_size=count))))
+    random = np.random.default_rng(draw(st.integers(0, 1000)))
+    signs = draw(st.sampled_from([(1.0,), (1.0, 0.0), (1.0, 0.0, -1.0)]))
+    return random.random((3, count)) * random.choice(signs, (3, count)), edges
+
+
+@settings(max_examples=60)
+@given(row=rows(), spilling=st.booleans())
+def test_force_is_kept_and_nothing_overshoots(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+    loads, edges = row
+    smooth = SmoothLoad.of(loads, edges, spilling=spilling)
+    widths = np.diff(edges)
+    total = smooth.integral(edges[-1:])[:, 0]
+    assert np.allclose(total, loads @ widths, atol=1e-6)
+    fine = np.linspace(edges[0], edges[-1], 301)
+    means = smooth.means(fine)
+    assert np.abs(means).max() <= 2.0 * np.abs(loads).max() + 1e-12
+    if (loads >= 0).all():
+        assert means.min() >= -1e-9
+
+
+@settings(max_examples=30)
+@given(row=rows())
+def test_reversed_load_has_the_reversed_shape(row: tuple[FloatArray, FloatArray]) -> None:
+    loads, edges = row
+    fine = np.linspace(edges[0], edges[-1], 60)
+    there = SmoothLoad.of(loads, edges, spilling=True).means(fine)
+    back = SmoothLoad.of(loads[:, ::-1], edges[-1] - edges[::-1], spilling=True).means(edges[-1] - fine[::-1])
+    assert np.allclose(there, back[:, ::-1], atol=1e-9)
+
+
+def test_uniform_load_stays_a_step() -> None:
+    edges = np.linspace(0.0, 8.0, 9)
+    loads = np.array([[0, 0, 2.0, 2.0, 2.0, 2.0, 0, 0]])
+    smooth = SmoothLoad.of(loads, edges, spilling=True)
+    assert np.allclose(smooth.means(np.linspace(0.0, 8.0, 33)), np.repeat(loads, 4, axis=1), atol=1e-12)
+
+
+def test_load_that_rises_to_its_end_ends_in_a_step() -> None:
+    edges = np.linspace(0.0, 5.0, 6)
+    loads = np.array([[0.0, 3.0, 1.5, 1.0, 1.0]])
+    means = SmoothLoad.of(loads, edges).means(np.linspace(0.0, 5.0, 51))[0]
+    assert (means[:10] == 0).all()
+    assert 3.0 <= means[10:15].max() < 1.5 * 3.0
+
+
+@given(row=rows())
+def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -> None:
+    loads, edges = row
+    if edges.size < 3:
+        return
+    widths, centres = np.diff(edges), 0.5 * (edges[1:] + edges[:-1])
+    forces = sent(edges, loads).total * widths
+    assert np.allclose(forces.sum(axis=1), 0.0, atol=1e-9)
+    assert np.allclose(forces @ centres, loads.sum(axis=1), atol=1e-9)
