@@ -110,8 +110,8 @@ def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0
     a = 2 * PRESSURE * RADIUS / material.plane_strain_modulus
     shape = cs.Roller(radius=RADIUS, length=length * a, profile=cs.profiles.Cylinder(edge_radius * a))
     load = length * a * np.pi / 2 * a * PRESSURE
-    # The stress is largest close to the top, where the edge radius begins.
-    x, z = edge_radius + np.linspace(-0.5, 1.5, 25), np.linspace(0.0, 0.2, 17)
+    # The stress is largest under the peak where the edge radius begins, which is narrow.
+    x, z = edge_radius + np.linspace(-0.2, 0.2, 33), np.linspace(0.0, 0.15, 16)
     return Indenter(shape, material, load, a, 0.0, 0.5 * length * a, tuple(x), tuple(z), accuracy)
 
 
@@ -154,7 +154,7 @@ def largest_von_mises(indenter: Indenter, case: cs.Case, contact: xr.Dataset) ->
     x = np.unique(np.maximum(case.roller_start + indenter.before + a * np.array(indenter.x), first))
     z = a * np.array(indenter.z)
     stress = cs.stress_field(case.body, contact["pressure"], x=x, y=[0.0], z=z)["von_mises"].isel(y=0).values
-    i, j = np.unravel_index(int(stress.argmax()), stress.shape)
+    i, j = divmod(int(stress.argmax()), z.size)
     if i == x.size - 1 or j in (0, z.size - 1) or (i == 0 and x[0] > first):
         raise ValueError(f"largest stress on the border of the points, x = {x[i] / a:g} a, z = {z[j] / a:g} a")
     spline = RectBivariateSpline(x / a, z / a, stress / PRESSURE)
@@ -219,7 +219,7 @@ def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dat
             return half_space[name][quantity]
         return indenters[name].half_width if quantity == "von_mises_depth" else PRESSURE
 
-    values = {}
+    values: dict[str, tuple[object, ...]] = {}
     for quantity, words in QUANTITIES.items():
         over = "that on the half-space" if quantity in RELATIVE else "a" if quantity == "von_mises_depth" else "p0"
         values[quantity] = (dims, table(quantity, quantity), {"units": "1", "long_name": f"{words} over {over}"})
@@ -269,7 +269,7 @@ def far_from_edge(poisson: float, distance: float) -> float:
 
 
 def checks(ball: Indenter, roller: Indenter) -> list[Check]:
-    """Closed forms, limits and balances of the solutions."""
+    """Compare the solutions with closed forms, limits and balances."""
     with threadpool_limits(1):
         return [*_hertz_checks(ball), *_edge_checks(ball), *_roller_checks(roller)]
 
