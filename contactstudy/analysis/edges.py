@@ -95,9 +95,9 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
         int(0 <= beyond < grid.cells_x and np.isfinite(gap[beyond]).any())
         for beyond in (columns[0] - 1, columns[-1] + 1)
     ]
-    # Columns too narrow for the fits would spoil the interpolation, which has the exact zero at a smooth end.
+    # Near an end columns too narrow for the fits would spoil the interpolation, which has the zero at a smooth one.
     wide = columns[width[columns] > 2 * (SKIPPED + FITTED) * grid.dy]
-    columns = wide if wide.size > 3 else columns
+    columns = columns[(columns >= wide[0]) & (columns <= wide[-1])] if wide.size > 3 else columns
     # A border found within its outermost column of cells may lie short of that column's centre.
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:

@@ -133,3 +133,17 @@ def test_a_border_short_of_its_columns_centre_still_gives_an_area():
 def test_a_case_of_a_study(opened):
     one = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
     assert float(one.contact.contact_edges()["contact_length"]) > 0
+
+
+def test_the_narrow_middle_of_a_contact_with_wide_ends_counts():
+    x, y = -4 + 0.1 * (np.arange(80) + 0.5), 0.05 * (np.arange(40) - 19.5)
+    half_width = 0.3 + 0.3 * np.exp(-((np.abs(x) - 3.5) ** 2) / 0.1)
+    outside = y**2 - half_width[:, None] ** 2
+    contact = xr.Dataset(
+        {
+            "pressure": (("x", "y"), np.sqrt(np.maximum(-outside, 0.0))),
+            "gap": (("x", "y"), np.maximum(outside, 0.0) ** 1.5),
+        },
+        coords={"x": x, "y": y},
+    )
+    assert float(contact_edges(contact).contact_area) == pytest.approx(0.2 * half_width.sum(), rel=0.01)

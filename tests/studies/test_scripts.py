@@ -156,3 +156,50 @@ def test_real_roller_is_softer_at_its_own_ends():
 def test_real_roller_never_states_a_singular_pressure(law, words):
     one = {"end_pressure_error": 0.01, "end_intensity_error": 0.02, "end_exponent": 0.5, "end_intensity": np.nan} | law
     assert script("real_roller").end_in_words(one) == words
+
+
+@pytest.fixture(scope="module")
+def near_an_edge():
+    """Module, shapes and results of the sphere and the cylinder near an edge, on coarse cells."""
+    module = script("quarter_space")
+    shapes = {"sphere": module.sphere(accuracy=0.1), "cylinder": module.cylinder(length=6.0, accuracy=0.1)}
+    return module, shapes, module.solved(shapes, (0.0, 8.0))
+
+
+def test_quarter_space_is_softer_at_its_edge(near_an_edge):
+    module, _, found = near_an_edge
+    ball = found.sel(indenter="sphere")
+    lowered = ball.sel(held="depth")
+    # Solved on cells of a quarter of the size.
+    for name, value in (("load", 0.3985), ("contact_area", 0.471), ("peak_pressure", 0.843), ("von_mises", 0.6796)):
+        assert abs(float(lowered[name].sel(e_over_a=0.0)) - value) <= float(lowered[f"{name}_error"].sel(e_over_a=0.0))
+    assert float(lowered["load"].sel(e_over_a=8.0)) == pytest.approx(module.far_from_edge(0.3, 8.0), abs=2e-3)
+    over = found["von_mises"].sel(e_over_a=0.0) / found["von_mises"].sel(e_over_a=np.inf)
+    assert float(over.sel(indenter="sphere", held="load")) == pytest.approx(1.49, abs=0.01)
+    assert float(over.sel(indenter="cylinder", held="load")) < 0.95
+    assert float(found["end_traction_residual"].max()) < 1e-4
+
+
+def test_quarter_space_passes_its_checks_on_coarse_cells(near_an_edge):
+    module, shapes, _ = near_an_edge
+    rows = module.checks(shapes["sphere"], shapes["cylinder"])
+    *of_sphere, of_short_cylinder = (abs(row.found - row.expected) for row in rows)
+    assert max(of_sphere) < 2e-3
+    assert of_short_cylinder < 0.05
+    assert module.check_table(rows).count("\n") == len(rows) + 1
+
+
+def test_quarter_space_draws_and_tabulates_every_distance(near_an_edge):
+    module, _, found = near_an_edge
+    assert len(module.draw(found).axes) == 4
+    table = module.table(found, "sphere", "load")
+    assert table.splitlines()[0].startswith("| e / a | depth |")
+    assert table.count("\n") == 4
+    assert "nu = 0.3" in module.poisson_table(found)
+
+
+def test_quarter_space_does_not_take_the_border_of_its_points_for_the_largest_stress(near_an_edge):
+    module, shapes, _ = near_an_edge
+    shallow = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
+    with pytest.raises(ValueError, match="border of the points"):
+        module.both(shallow, module.HALF_SPACE, None, ("load",))

@@ -1,0 +1,468 @@
+"""A sphere and a cylinder near the edge of a quarter space: load, area, pressure and stress against the half-space.
+
+Usage: ``python studies/quarter_space.py [--out FOLDER]``; about a minute on two cores. Writes ``quarter_space.nc`` and
+``quarter_space.png`` and prints Markdown tables, each number with its error, and a table of checks.
+
+The body fills x >= 0 and z >= 0; its end x = 0 is free. Two rigid shapes are pressed on its top without friction: a
+sphere, whose centre is at the distance e from the edge, and a cylindrical roller, whose axis is perpendicular to the
+edge and whose end is at the distance e. The roller has an edge radius, and keeps its inclination. Both are pressed as
+deep as on the half-space, and with the same load. Lengths are over a: the radius of the sphere's contact on the
+half-space, the Hertz half-width of the roller's mean load there. Pressures and stresses are over Hertz' p0.
+
+The sphere's von Mises stress rises towards the edge with the same load, as published solutions report: from 0.62 p0 to
+0.92 p0 at e = 0 for a Poisson's ratio of 0.3. At equal depth it first falls, to 0.59 p0 at e = 1.5 to 2 a, because the
+edge takes less load, and exceeds the half-space's only within 0.5 a, by 10 % at most. At the end of the roller, where
+the pressure peaks, both pressure and stress fall towards the edge, with the same load and at equal depth.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from collections.abc import Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+from scipy.interpolate import RectBivariateSpline
+from scipy.optimize import brentq, minimize
+from threadpoolctl import threadpool_limits
+
+import contactstudy as cs
+from contactstudy.verification.closed_forms.circle import hertz_circle_axis
+from contactstudy.verification.quarter_space import EXTRA_DEFLECTION
+
+YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1.5e9
+DISTANCES = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 8.0)
+HALF_SPACE = np.inf
+"""Distance that stands for the half-space."""
+
+HELD = ("depth", "load")
+QUANTITIES = {
+    "load": "load",
+    "approach": "depth",
+    "contact_area": "contact area",
+    "peak_pressure": "largest pressure, of the roller's half at the edge",
+    "von_mises": "largest von Mises stress, of the roller's half at the edge",
+    "von_mises_depth": "depth of the largest von Mises stress",
+}
+RELATIVE = ("load", "approach", "contact_area")
+"""Over their values on the half-space. Pressure and stress are over p0, depths of stresses over a."""
+
+
+@dataclass(frozen=True)
+class Indenter:
+    """A rigid shape and what it is pressed with: SI units.
+
+    Attributes
+    ----------
+    roller : Roller
+        The shape.
+    material : Material
+        Of the body.
+    load : float
+        Normal load.
+    half_width : float
+        ``a`` of this load on the half-space.
+    before : float
+        From the shape's first x to the place that is at the distance e.
+    reach : float
+        From that place to the last x where pressures are looked at.
+    x, z : tuple of float
+        Points around the largest stress, over ``a``: along x from that place, and depths.
+    accuracy : float
+        To which the columns are refined before they are halved.
+    """
+
+    roller: cs.Roller
+    material: cs.Material
+    load: float
+    half_width: float
+    before: float
+    reach: float
+    x: tuple[float, ...]
+    z: tuple[float, ...]
+    accuracy: float
+
+    def case(self, distance: float, model: str = "exact") -> cs.Case:
+        """Pressed with its load at a distance over ``a``."""
+        body: cs.Body = cs.QuarterSpace(material=self.material, model=model)
+        if np.isinf(distance):
+            body, distance = cs.HalfSpace(material=self.material), 0.0
+        start = distance * self.half_width - self.before
+        return cs.Case(body=body, roller=self.roller, load=self.load, end_distance=start)
+
+
+def sphere(poisson: float = 0.3, accuracy: float = 0.004) -> Indenter:
+    """Sphere with the peak pressure p0 on the half-space (K. L. Johnson, Contact Mechanics, 1985, section 4.2)."""
+    material = cs.Material(YOUNG, poisson)
+    a = np.pi * PRESSURE * RADIUS / (2 * material.plane_strain_modulus)
+    shape = cs.Roller(radius=RADIUS, length=4 * a, profile=cs.profiles.Sphere(RADIUS))
+    load = 2 / 3 * np.pi * a**2 * PRESSURE
+    x, z = tuple(np.linspace(-0.6, 1.0, 17)), tuple(np.linspace(0.05, 0.8, 16))
+    return Indenter(shape, material, load, a, 2 * a, 2 * a, x, z, accuracy)
+
+
+def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0.01) -> Indenter:
+    """Roller with the mean load of a line contact with the peak pressure p0; lengths over ``a``."""
+    material = cs.Material(YOUNG, 0.3)
+    a = 2 * PRESSURE * RADIUS / material.plane_strain_modulus
+    shape = cs.Roller(radius=RADIUS, length=length * a, profile=cs.profiles.Cylinder(edge_radius * a))
+    load = length * a * np.pi / 2 * a * PRESSURE
+    # The stress is largest under the peak where the edge radius begins, which is narrow.
+    x, z = edge_radius + np.linspace(-0.2, 0.2, 33), np.linspace(0.0, 0.15, 16)
+    return Indenter(shape, material, load, a, 0.0, 0.5 * length * a, tuple(x), tuple(z), accuracy)
+
+
+class Cells(NamedTuple):
+    """Cells that are refined for a case, the same halved both ways, and what is known of the former."""
+
+    coarse: cs.Grid
+    fine: cs.Grid
+    peak_error: float
+    end_traction_residual: float
+
+
+def cells_of(case: cs.Case, accuracy: float) -> Cells:
+    """Cells on which the peak of a case is settled; its error is over the peak."""
+    settled = cs.solve(case, accuracy=accuracy, stresses=False)
+    edges = np.append(settled["x_bounds"].values[:, 0], settled["x_bounds"].values[-1, 1])
+    y, step = settled["y"].values, float(settled["y"][1] - settled["y"][0])
+    y_range = (float(y[0] - 0.5 * step), float(y[-1] + 0.5 * step))
+    between = 0.5 * (edges[1:] + edges[:-1])
+    return Cells(
+        cs.Grid.between(edges, y_range, y.size),
+        cs.Grid.between(np.sort(np.append(edges, between)), y_range, 2 * y.size),
+        float(settled["peak_pressure_error"] / settled["peak_pressure"]),
+        float(settled["end_traction_residual"]),
+    )
+
+
+def pressed(case: cs.Case, grid: cs.Grid, approach: float | None = None) -> xr.Dataset:
+    """Contact of a case on given cells, with its load or to a given depth."""
+    places = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
+    gap = xr.DataArray(case.gap(grid), coords=places, dims=("x", "y"))
+    if approach is None:
+        return cs.solve_contact(case.body, gap, load=case.normal_load)
+    return cs.solve_contact(case.body, gap, approach=approach)
+
+
+def largest_von_mises(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> tuple[float, float]:
+    """Largest von Mises stress in the plane y = 0, Pa, and its depth, metres, by a spline between the points."""
+    a, first = indenter.half_width, case.body.extent[0]
+    x = np.unique(np.maximum(case.roller_start + indenter.before + a * np.array(indenter.x), first))
+    z = a * np.array(indenter.z)
+    stress = cs.stress_field(case.body, contact["pressure"], x=x, y=[0.0], z=z)["von_mises"].isel(y=0).values
+    i, j = divmod(int(stress.argmax()), z.size)
+    if i == x.size - 1 or j in (0, z.size - 1) or (i == 0 and x[0] > first):
+        raise ValueError(f"largest stress on the border of the points, x = {x[i] / a:g} a, z = {z[j] / a:g} a")
+    spline = RectBivariateSpline(x / a, z / a, stress / PRESSURE)
+    around = [(axis[max(at - 1, 0)] / a, axis[at + 1] / a) for axis, at in ((x, i), (z, j))]
+    found = minimize(lambda at: -spline(*at)[0, 0], (x[i] / a, z[j] / a), bounds=around)
+    return float(-found.fun * PRESSURE), float(found.x[1] * a)
+
+
+def measured(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str, float]:
+    """Every quantity of one contact, SI units."""
+    last = case.roller_start + indenter.before + indenter.reach
+    pressure = contact["pressure"].sel(x=slice(None, last))
+    stress, depth = largest_von_mises(indenter, case, contact)
+    return {
+        "load": float(contact["load"]),
+        "approach": float(contact["approach"]),
+        "contact_area": float(contact.contact.contact_edges()["contact_area"]),
+        "peak_pressure": float(pressure.max()),
+        "von_mises": stress,
+        "von_mises_depth": depth,
+    }
+
+
+def both(indenter: Indenter, distance: float, depth: float | None, held: Sequence[str]) -> dict[str, dict[str, float]]:
+    """Every quantity with its error, pressed to a depth and with the load: the change from cells twice the size.
+
+    The peak's error is at least half of that which the refinement states for the cells before they are halved.
+    """
+    with threadpool_limits(1):
+        case = indenter.case(distance)
+        cells = cells_of(case, indenter.accuracy)
+        found = {}
+        for way in held:
+            approach = depth if way == "depth" else None
+            coarse, fine = (measured(indenter, case, pressed(case, grid, approach)) for grid in cells[:2])
+            errors = {f"{name}_error": abs(fine[name] - coarse[name]) for name in fine}
+            least = 0.5 * cells.peak_error * fine["peak_pressure"]
+            errors["peak_pressure_error"] = max(errors["peak_pressure_error"], least)
+            found[way] = fine | errors | {"end_traction_residual": cells.end_traction_residual}
+        return found
+
+
+def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dataset:
+    """Every quantity (indenter, held, e_over_a), the half-space last."""
+    names = list(indenters)
+    with ProcessPoolExecutor() as workers:
+        half_space = dict(zip(names, workers.map(_on_half_space, indenters.values()), strict=True))
+        tasks = list(itertools.product(names, distances))
+        depths = [half_space[name]["approach"] for name, _ in tasks]
+        columns = zip(*((indenters[name], distance) for name, distance in tasks), strict=True)
+        found = dict(zip(tasks, workers.map(both, *columns, depths, itertools.repeat(HELD)), strict=True))
+    for name in names:
+        found[name, HALF_SPACE] = dict.fromkeys(HELD, half_space[name])
+    dims = ("indenter", "held", "e_over_a")
+    places = [*distances, HALF_SPACE]
+
+    def table(key: str, quantity: str) -> list[list[list[float]]]:
+        return [[[found[name, e][way][key] / scale(name, quantity) for e in places] for way in HELD] for name in names]
+
+    def scale(name: str, quantity: str) -> float:
+        if quantity in RELATIVE:
+            return half_space[name][quantity]
+        return indenters[name].half_width if quantity == "von_mises_depth" else PRESSURE
+
+    values: dict[str, tuple[object, ...]] = {}
+    for quantity, words in QUANTITIES.items():
+        over = "that on the half-space" if quantity in RELATIVE else "a" if quantity == "von_mises_depth" else "p0"
+        values[quantity] = (dims, table(quantity, quantity), {"units": "1", "long_name": f"{words} over {over}"})
+        key = f"{quantity}_error"
+        values[key] = (dims, table(key, quantity), {"units": "1", "long_name": f"error of {words} over {over}"})
+    residual = [[found[name, e]["load"]["end_traction_residual"] for e in places] for name in names]
+    values["end_traction_residual"] = (
+        ("indenter", "e_over_a"),
+        residual,
+        {"units": "1", "long_name": "largest traction left on the free end over the peak pressure, at the given load"},
+    )
+    return xr.Dataset(
+        values,
+        coords={
+            "indenter": names,
+            "held": list(HELD),
+            "e_over_a": ("e_over_a", places, {"units": "1", "long_name": "distance from the edge over a"}),
+            "a": ("indenter", [indenters[name].half_width for name in names], {"units": "m"}),
+            "poisson": ("indenter", [indenters[name].material.poisson for name in names], {"units": "1"}),
+        },
+        attrs={"Conventions": "CF-1.11", "title": "a sphere and a cylinder near the edge of a quarter space"},
+    )
+
+
+def _on_half_space(indenter: Indenter) -> dict[str, float]:
+    """Every quantity on the half-space."""
+    return both(indenter, HALF_SPACE, None, ("load",))["load"]
+
+
+class Check(NamedTuple):
+    """A number that is known otherwise."""
+
+    name: str
+    found: float
+    expected: float
+
+
+def far_from_edge(poisson: float, distance: float) -> float:
+    """Load over the half-space's that presses a sphere equally deep at a distance over ``a``, which is large.
+
+    There the contact is a point load P for the edge, whose reflection lowers the surface under it by
+    ``kappa P / (2 pi E* e)``; the rest of the depth is Hertz'. With s the load over that of the half-space,
+    ``s**(2/3) + 2 kappa s / (3 pi e / a) = 1``.
+    """
+    lowered = 2 * EXTRA_DEFLECTION[poisson] / (3 * np.pi * distance)
+    return float(brentq(lambda s: s ** (2 / 3) + lowered * s - 1, 0.0, 1.0))
+
+
+def checks(ball: Indenter, roller: Indenter) -> list[Check]:
+    """Compare the solutions with closed forms, limits and balances."""
+    with threadpool_limits(1):
+        return [*_hertz_checks(ball), *_edge_checks(ball), *_roller_checks(roller)]
+
+
+def _hertz_checks(ball: Indenter) -> list[Check]:
+    """Half-space and a frictionless rigid wall at the edge, which mirrors: both are Hertz' contact."""
+    a, poisson = ball.half_width, ball.material.poisson
+    depth = a**2 / RADIUS
+    found = both(ball, HALF_SPACE, depth, ("depth",))["depth"]
+    z = np.linspace(0.2, 0.8, 2001) * a
+    axial, radial = hertz_circle_axis(z, a, PRESSURE, poisson)
+    largest = int(np.abs(axial - radial).argmax())
+    wall = ball.case(0.0, model="mirror")
+    halved = pressed(wall, cells_of(wall, ball.accuracy).fine, depth)
+    area = float(halved.contact.contact_edges()["contact_area"])
+    far = max(DISTANCES)
+    load = both(ball, far, depth, ("depth",))["depth"]["load"] / ball.load
+    return [
+        Check("sphere, half-space: load / Hertz", found["load"] / ball.load, 1.0),
+        Check("sphere, half-space: area / (pi a^2)", found["contact_area"] / (np.pi * a**2), 1.0),
+        Check("sphere, half-space: peak / p0", found["peak_pressure"] / PRESSURE, 1.0),
+        Check(
+            "sphere, half-space: von Mises / p0", found["von_mises"] / PRESSURE, abs(axial - radial)[largest] / PRESSURE
+        ),
+        Check("sphere, half-space: its depth / a", found["von_mises_depth"] / a, z[largest] / a),
+        Check("sphere, e = 0, end held by a smooth wall: load / Hertz", float(halved["load"]) / ball.load, 0.5),
+        Check("sphere, e = 0, end held by a smooth wall: area / (pi a^2)", area / (np.pi * a**2), 0.5),
+        Check(f"sphere, e = {far:g} a: load at equal depth, from a point load", load, far_from_edge(poisson, far)),
+    ]
+
+
+def _edge_checks(ball: Indenter) -> list[Check]:
+    """Sphere over the edge itself: it has no length but its depth, its load is carried, and it is symmetric."""
+    a = ball.half_width
+    case = ball.case(0.0)
+    cells = cells_of(case, ball.accuracy)
+    loaded = pressed(case, cells.fine)
+    pressure = loaded["pressure"]
+    sunk = float(loaded["approach"])
+    lowered = pressed(case, cells.fine, a**2 / RADIUS)
+    # Gauss points of distances that grow: what lies beyond 40 a carries 1e-4 of the load.
+    nodes, weights = np.polynomial.legendre.leggauss(8)
+    edges = a * np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 9.0, 18.0, 40.0])
+    places = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (nodes + 1)).ravel()
+    shares = (0.5 * np.diff(edges)[:, None] * weights).ravel()
+    below = cs.stress_field(case.body, pressure, x=places, y=places, z=[a])["sigma_zz"].isel(z=0).values
+    carried = -2 * float(shares @ below @ shares)
+    beside = cs.stress_field(
+        case.body, pressure, x=a * np.array(ball.x[6:]), y=a * np.array([0, 0.1, 0.3]), z=a * np.array(ball.z)
+    )
+    by_y = beside["von_mises"].max(("x", "z")).values
+    return [
+        Check(
+            "sphere, e = 0: load at equal depth, from the depth at equal load",
+            float(lowered["load"]) / ball.load,
+            (sunk * RADIUS / a**2) ** -1.5,
+        ),
+        Check("sphere, e = 0: load carried by the plane z = a", carried / ball.load, 1.0),
+        Check(
+            "sphere, e = 0: pressure at -y less that at y, over p0",
+            float(np.abs(pressure.values - pressure.values[:, ::-1]).max()) / PRESSURE,
+            0.0,
+        ),
+        Check("sphere, e = 0: y / a of the largest von Mises stress", float(beside["y"][int(by_y.argmax())]) / a, 0.0),
+        Check("sphere, e = 0: traction left on the end, over the peak", cells.end_traction_residual, 0.0),
+    ]
+
+
+def _roller_checks(roller: Indenter) -> list[Check]:
+    """Middle of the roller far from the edge: Hertz' line contact of the pressure there."""
+    case = roller.case(max(DISTANCES))
+    contact = pressed(case, cells_of(case, roller.accuracy).fine)
+    middle = case.roller_start + 0.5 * case.roller.length
+    half_width = float(contact.contact.contact_edges()["half_width"].sel(x=middle, method="nearest"))
+    pressure = float(contact["pressure"].sel(x=middle, method="nearest").max())
+    hertz = case.modulus * half_width / (2 * case.roller.radius)
+    name = f"cylinder, e = {max(DISTANCES):g} a, mid-length: pressure over that of Hertz' line contact as wide"
+    return [Check(name, pressure / hertz, 1.0)]
+
+
+def check_table(found: Sequence[Check]) -> str:
+    """Markdown: every check."""
+    lines = ["| check | found | expected | difference |", "|---|---|---|---|"]
+    lines += [f"| {name} | {value:.4f} | {known:.4f} | {value - known:.1e} |" for name, value, known in found]
+    return "\n".join(lines)
+
+
+def with_error(value: float, error: float) -> str:
+    """Value with its error, rounded up."""
+    return f"{value:.3f} ± {np.ceil(max(1e3 * error, 1.0)) / 1e3:.3f}"
+
+
+def table(found: xr.Dataset, indenter: str, held: str) -> str:
+    """Markdown: a row for each distance."""
+    answer = "approach" if held == "load" else "load"
+    one = found.sel(indenter=indenter, held=held)
+    names = (answer, "contact_area", "peak_pressure", "von_mises", "von_mises_depth")
+    lines = [f"| e / a | {QUANTITIES[answer]} | area | peak / p0 | von Mises / p0 | its depth / a |", "|---" * 6 + "|"]
+    for row in range(one.sizes["e_over_a"]):
+        cells = [with_error(float(one[name][row]), float(one[f"{name}_error"][row])) for name in names]
+        distance = float(one["e_over_a"][row])
+        lines.append(f"| {'half-space' if np.isinf(distance) else f'{distance:g}'} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def poisson_table(found: xr.Dataset) -> str:
+    """Markdown: load at equal depth and von Mises stress at equal depth and load of spheres of any Poisson's ratio."""
+    spheres = found.isel(indenter=[str(name).startswith("sphere") for name in found["indenter"].values])
+    spheres = spheres.sortby("poisson")
+    heads = [f"nu = {float(nu):g}: load, von Mises at equal depth, at equal load" for nu in spheres["poisson"]]
+    lines = [f"| e / a | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
+    for distance in spheres["e_over_a"].values:
+        cells = []
+        for i in range(spheres.sizes["indenter"]):
+            one = spheres.isel(indenter=i).sel(e_over_a=distance)
+            pairs = [("load", "depth"), ("von_mises", "depth"), ("von_mises", "load")]
+            values = [
+                (float(one[name].sel(held=way)), float(one[f"{name}_error"].sel(held=way))) for name, way in pairs
+            ]
+            cells.append(", ".join(with_error(*value) for value in values))
+        lines.append(f"| {'half-space' if np.isinf(distance) else f'{distance:g}'} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+LINES = {
+    "load": ("load", "o", "-"),
+    "approach": ("depth", "o", "-"),
+    "contact_area": ("contact area", "s", "--"),
+    "peak_pressure": ("largest pressure", "^", "-."),
+    "von_mises": ("largest von Mises stress", "D", ":"),
+}
+
+
+def draw(found: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -> plt.Figure:
+    """Every quantity over its value on the half-space against the distance: a panel for each shape and condition."""
+    figure, axes = plt.subplots(
+        2, len(indenters), figsize=(10.0, 7.0), layout="constrained", sharex=True, squeeze=False
+    )
+    near = found["e_over_a"].values[np.isfinite(found["e_over_a"].values)]
+    for (row, held), (column, indenter) in itertools.product(enumerate(HELD), enumerate(indenters)):
+        ax, one = axes[row, column], found.sel(indenter=indenter, held=held)
+        over = one.sel(e_over_a=near) / one.sel(e_over_a=HALF_SPACE)
+        ax.axhline(1.0, color="0.7", linewidth=0.8)
+        for name, (label, marker, dashes) in LINES.items():
+            if name != ("approach" if held == "depth" else "load"):
+                fill = "black" if name == "von_mises" else "white"
+                ax.plot(
+                    near,
+                    over[name],
+                    dashes,
+                    marker=marker,
+                    color="black",
+                    markerfacecolor=fill,
+                    markersize=5,
+                    label=label,
+                )
+        if indenter == "sphere" and held == "depth":
+            far = np.linspace(2.0, near[-1], 61)
+            line = [far_from_edge(float(one["poisson"]), float(e)) for e in far]
+            ax.plot(far, line, color="0.6", linewidth=3, zorder=0, label="load, point load far from the edge")
+        ax.set_title(f"{indenter}, equal {held}", fontsize="medium")
+        ax.legend(frameon=False, fontsize="small")
+        if column == 0:
+            ax.set_ylabel("over the half-space")
+        if row == 1:
+            end = "centre" if indenter.startswith("sphere") else "roller's end"
+            ax.set_xlabel(f"distance of the {end} from the edge, $e/a$")
+    return figure
+
+
+def main() -> None:
+    """Solve, check, print, draw, write."""
+    parser = argparse.ArgumentParser(description="A sphere and a cylinder near the edge of a quarter space.")
+    parser.add_argument("--out", type=Path, default=Path("results/quarter_space"))
+    options = parser.parse_args()
+    indenters = {
+        "sphere": sphere(),
+        "cylinder": cylinder(),
+        "sphere, nu = 0": sphere(0.0, accuracy=0.01),
+        "sphere, nu = 0.5": sphere(0.5, accuracy=0.01),
+    }
+    found = solved(indenters, DISTANCES)
+    options.out.mkdir(parents=True, exist_ok=True)
+    found.to_netcdf(options.out / "quarter_space.nc")
+    draw(found).savefig(options.out / "quarter_space.png", dpi=110)
+    for indenter, held in itertools.product(("sphere", "cylinder"), HELD):
+        print(f"{indenter.capitalize()}, {held} as on the half-space:\n\n{table(found, indenter, held)}\n")
+    print(f"Spheres:\n\n{poisson_table(found)}\n")
+    print(check_table(checks(indenters["sphere"], indenters["cylinder"])))
+
+
+if __name__ == "__main__":
+    main()
