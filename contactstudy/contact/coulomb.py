@@ -213,7 +213,7 @@ def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> Bool
     if exceeds.sum() <= most:
         return exceeds
     least = np.partition(excess[exceeds], -most)[-most]
-    return exceeds & (excess >= least)
+    return np.asarray(exceeds & (excess >= least))
 
 
 def _scale(problem: CoulombProblem, amplitudes: FloatArray) -> float:

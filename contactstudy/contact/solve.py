@@ -14,6 +14,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
+from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
 from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
@@ -31,7 +32,7 @@ def solve_contact(
     body: Body,
     gap: xr.DataArray,
     load: float | None = None,
-    friction: float = 0.0,
+    friction: Friction | xr.DataArray = 0.0,
     coupled: bool = False,
     *,
     approach: float | None = None,
@@ -53,9 +54,9 @@ def solve_contact(
         around the contact.
     load : float, optional
         Normal load, N. Either this or `approach` is given.
-    friction : float
-        Coefficient ``f``: in full sliding the shear traction on the body is ``f`` times the pressure along +y; in any
-        other motion that is the bound on it.
+    friction : float or DataArray (x)
+        Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
+        traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
     coupled : bool
         Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
         Poisson's ratio is 1/2, nor between half-spaces of one material).
@@ -126,7 +127,9 @@ def solve_contact(
     grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
     checks.instance("motion", motion, KINDS, MOTIONS)
-    friction = checks.finite("friction", friction)
+    coefficient = checked_friction(friction)
+    check_coupled(coefficient, motion, coupled=bool(coupled))
+    on_cells = on_columns(coefficient, grid.x)
     shape = Shape(
         body,
         grid,
@@ -134,22 +137,22 @@ def solve_contact(
         Prescribed(load, load_position, approach).checked(clearance, grid),
         counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        friction if coupled and isinstance(motion, Sliding) else 0.0,
+        on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
     )
     settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
     x, y = gap["x"].values, gap["y"].values
     if isinstance(motion, Sliding):
         contact = contact_of(shape, settings)
         contact.warn_unless_converged(stacklevel=2)
-        return contact_dataset(contact, friction, x=x, y=y)
+        return contact_dataset(contact, on_cells, x=x, y=y)
     facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
     middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-    found = frictional_contact(shape, settings, motion, friction, middle, coupled=bool(coupled))
+    found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled))
     found.warn_unless_converged(stacklevel=2)
-    return labelled(contact_dataset(found.contact, friction, x=x, y=y), found)
+    return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
 
 
-def contact_dataset(contact: Contact, friction: float, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
+def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
     """Label a contact; `x` and `y` are the cell centres as the caller wrote them."""
     shape = contact.shape
     fields = {
