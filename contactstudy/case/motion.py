@@ -23,7 +23,8 @@ class Sliding:
 class Shift:
     """One shift of the roller against the body, from rest, with Coulomb friction.
 
-    Along each axis either the shift or the force that it needs is prescribed.
+    Along each axis either the shift or the force that it needs is prescribed. `solve_contact` goes on from the result
+    of a step before instead, if it is given.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Tractions of a contact under Coulomb friction: after a shift from rest, or in steady rolling."""
+"""Tractions of a contact under Coulomb friction: after a shift, or in steady rolling."""
 
 from __future__ import annotations
 
@@ -105,6 +105,7 @@ def tractions_of(
     *,
     tolerance: float,
     max_steps: int,
+    before: Mapping[Load, FloatArray] | None = None,
 ) -> Tractions:
     """Tractions under a given pressure.
 
@@ -120,6 +121,8 @@ def tractions_of(
         Violation of Coulomb's law at which the iteration stops.
     max_steps : int
         Bound on the steps of Newton's method.
+    before : mapping of Load to array (x, y), optional
+        Pressure and tractions from which a shift begins; default: none.
 
     Raises
     ------
@@ -145,6 +148,9 @@ def tractions_of(
     if not cells.unknown.size:
         return _frictionless(motion, grid)
     bent = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
+    if before is not None:
+        for direction, each in surfaces.operator.displaced(before, TANGENTIAL).items():
+            bent[direction] = bent[direction] - each
 
     def relative(displaced: Mapping[Load, FloatArray]) -> FloatArray:
         """Slip (2, unknown) that displacements add."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -123,6 +124,7 @@ def frictional_contact(
     middle: float,
     *,
     coupled: bool,
+    before: Mapping[Load, FloatArray] | None = None,
 ) -> FrictionalContact:
     """Solve a contact whose parts are checked, with the tractions of a motion.
 
@@ -140,6 +142,8 @@ def frictional_contact(
         Position x about which spin and moment are taken, metres.
     coupled : bool
         Whether the tractions also displace the surfaces normally and so change the pressure.
+    before : mapping of Load to array (x, y), optional
+        Pressure and tractions from which a shift begins; default: none.
 
     Raises
     ------
@@ -169,6 +173,7 @@ def frictional_contact(
                 on_cells,
                 tolerance=settings.tolerance,
                 max_steps=settings.max_iterations,
+                before=before,
             )
 
     contact = contact_of(shape, settings)
@@ -178,10 +183,10 @@ def frictional_contact(
         wanted = max(settings.tolerance, LEAST_ACCURACY)
         for _ in range(ROUNDS):
             bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
-            before = contact.pressure
+            last = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
             tractions = rubbed(contact.pressure)
-            change = float(np.abs(contact.pressure - before).sum() / contact.pressure.sum())
+            change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
             if change <= wanted:
                 settled = True
                 break

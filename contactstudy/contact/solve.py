@@ -15,14 +15,16 @@ from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
 from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
-from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
+from contactstudy.case.motion import KINDS, MOTIONS, Motion, Shift, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.part import REFERENCE_LENGTHS
+from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.surface import displacement_reference
+from contactstudy.kernels.load import Load
 
 FULL_SLIDING = Sliding()
 """The default motion."""
@@ -39,6 +41,7 @@ def solve_contact(
     load_position: float | None = None,
     counterbody: Counterbody | None = None,
     motion: Motion = FULL_SLIDING,
+    after: xr.Dataset | None = None,
     tolerance: float = 1e-6,
     max_iterations: int = 500,
 ) -> xr.Dataset:
@@ -69,6 +72,9 @@ def solve_contact(
         Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
     motion : Sliding, Shift or Rolling
         How the shape moves against the body. Default: full sliding.
+    after : Dataset, optional
+        Result of the step before, on the same cells: a `Shift` then goes on from its pressure and tractions instead of
+        from rest. Loads and shifts of a history are solved one after the other.
     tolerance : float
         Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
         of the pressure, over its sum.
@@ -145,11 +151,28 @@ def solve_contact(
         contact = contact_of(shape, settings)
         contact.warn_unless_converged(stacklevel=2)
         return contact_dataset(contact, on_cells, x=x, y=y)
+    before = None if after is None else _before(after, motion, gap, body)
     facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
     middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-    found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled))
+    found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
     found.warn_unless_converged(stacklevel=2)
     return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
+
+
+def _before(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:
+    """Pressure and tractions of the step before, checked."""
+    checks.instance("after", after, xr.Dataset, "a result of solve_contact")
+    if not isinstance(motion, Shift):
+        raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady, it has no step before")
+    names = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load.ALONG_Y}
+    missing = [name for name in names if name not in after]
+    if missing:
+        raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
+    grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)[1]
+    given = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
+    if given.grid.shape != grid.shape or not np.allclose(given.grid.x, grid.x) or not np.allclose(given.grid.y, grid.y):
+        raise InvalidInputError("after", f"on {given.grid.shape} cells", "on the cells of the gap")
+    return {load: top.values for load, top in given.loads.items()}
 
 
 def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
