@@ -14,6 +14,7 @@ from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.compliance import TangentialInverse, contact_cells
 from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+from contactstudy.contact.fastsim import Pair, flexibilities, strip_tractions
 from contactstudy.contact.leading_edge import RollingCells
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.kernels.load import Load
@@ -147,6 +148,8 @@ def tractions_of(
     _check_forces(motion, bound, grid)
     if not cells.unknown.size:
         return _frictionless(motion, grid)
+    if isinstance(motion, Rolling) and motion.model == "fastsim":
+        return _of_strips(motion, surfaces, bound, weights)
     bent = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
     if before is not None:
         for direction, each in surfaces.operator.displaced(before, TANGENTIAL).items():
@@ -228,6 +231,39 @@ def _completed(
         steps=found.steps,
         applications=found.applications,
         converged=found.converged,
+    )
+
+
+def _of_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray, weights: FloatArray) -> Tractions:
+    """Tractions of FASTSIM's strips."""
+    grid = surfaces.grid
+    rows, columns = np.flatnonzero(bound.any(axis=1)), np.flatnonzero(bound.any(axis=0))
+    widths = 0.5 * rows.size * grid.dx, 0.5 * columns.size * grid.dy
+    names = ("x", "y", "spin")
+    rigid = {name: _amplitude(motion, name) for name in names}
+    soft = flexibilities(widths, Pair.of(surfaces.materials))
+    turning = rigid["spin"] / soft["spin"]
+    growth = np.zeros((2, *grid.shape))
+    growth[0] = rigid["x"] / soft["x"] - turning * grid.y
+    growth[1] = rigid["y"] / soft["y"] + turning * (grid.x - surfaces.middle)[:, None]
+    traction, lost = strip_tractions(bound, growth, grid.dy)
+    slip = np.array([soft["x"], soft["y"]])[:, None, None] * lost
+    force_x, force_y, moment = (weights * traction).sum(axis=(1, 2, 3)).tolist()
+    return Tractions(
+        traction=traction,
+        slip=slip,
+        sticks=(bound > 0) & ~lost.any(axis=0),
+        rigid=rigid,
+        force_x=force_x,
+        force_y=force_y,
+        moment_z=moment,
+        work=float((traction * slip).sum() * grid.cell_area),
+        bound_error=0.0,
+        slip_error=0.0,
+        force_error=0.0,
+        steps=0,
+        applications=0,
+        converged=True,
     )
 
 
