@@ -99,7 +99,8 @@ def solve(
     -------
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
-        `end_traction_residual`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
+        `end_traction_residual`; with stick and slip, tractions and slip as from `solve_contact` instead of
+        `shear_traction`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
         instead of ``(x, y, z)``. On refined columns also `peak_pressure`, `end_pressure_first` and
         `end_pressure_last`, each with its error ``<name>_error``. At a singular end both are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`

@@ -109,11 +109,11 @@ class FrictionalContact:
         return result
 
 
-def relative_operator(shape: Shape) -> PairOperator | SurfaceOperator:
-    """Operator from pressure and tractions to the displacements of the surfaces relative to each other."""
+def relative_operator(shape: Shape, directions: tuple[Load, ...]) -> PairOperator | SurfaceOperator:
+    """Operator from pressure and tractions to displacements of the surfaces relative to each other."""
     if shape.counterbody is None:
-        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=ALL))
-    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, ALL)
+        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=directions))
+    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
 
 
 def frictional_contact(
@@ -158,7 +158,7 @@ def frictional_contact(
             "friction", float(on_cells.min()), "not below zero with stick and slip", "the slip turns the traction round"
         )
     with one_blas_thread():
-        operator = relative_operator(shape)
+        operator = relative_operator(shape, ALL if coupled else TANGENTIAL)
     materials = [shape.body.material]
     if shape.counterbody is not None:
         materials.append(shape.counterbody.body.material)
