@@ -99,7 +99,8 @@ def solve(
     -------
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
-        `end_traction_residual`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
+        `end_traction_residual`; with stick and slip, tractions and slip as from `solve_contact` instead of
+        `shear_traction`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
         instead of ``(x, y, z)``. On refined columns also `peak_pressure` (and ``_first`` and ``_last``, of either
         half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
         `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
@@ -137,7 +138,7 @@ def solve(
         contact = _contact(case, grid, roughness, tolerance)
     grid = contact.shape.grid
     result = _labelled(case, contact).assign(known.data_vars)
-    loads = sliding(contact.pressure, case.friction)
+    loads = sliding(contact.pressure, case.friction_on(grid.x))
     if not slides:
         found = _with_tractions(case, contact)
         result, loads = labelled(_labelled(case, found.contact), found), found.loads
@@ -198,7 +199,7 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         ArrayKey(gap),
         Prescribed(case.normal_load, case.load_position).checked(gap, grid),
         case.counterbody,
-        case.friction if case.coupled and isinstance(case.motion, Sliding) else 0.0,
+        case.coupled_friction,
     )
     try:
         contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))
@@ -214,9 +215,8 @@ def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
     """Tractions of a case that does not slide fully."""
     assert not isinstance(case.motion, Sliding)
     middle = case.roller_start + 0.5 * case.roller.length
-    found = frictional_contact(
-        contact.shape, contact.settings, case.motion, case.friction, middle, coupled=case.coupled
-    )
+    friction = case.friction_on(contact.shape.grid.x)
+    found = frictional_contact(contact.shape, contact.settings, case.motion, friction, middle, coupled=case.coupled)
     found.warn_unless_converged(stacklevel=3)
     return found
 
@@ -231,7 +231,7 @@ def _checked(case: Case, contact: Contact) -> Contact:
 def _labelled(case: Case, contact: Contact) -> xr.Dataset:
     """Label the contact of a case; its tilt includes the case's own."""
     grid = contact.shape.grid
-    result = contact_dataset(contact, case.friction, x=grid.x, y=grid.y)
+    result = contact_dataset(contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
     result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
     result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
     return result
@@ -332,8 +332,9 @@ def roller_stress(
         raise InvalidInputError(
             "traction_x, traction_y", None, "those of the result: they do not follow from the pressure"
         )
-    friction = case.friction if slides and traction_y is None else 0.0
-    grid, on_body, _ = prescribed_loads(case.body, pressure, friction, traction_x, traction_y)
+    grid, on_body, _ = prescribed_loads(case.body, pressure, 0.0, traction_x, traction_y)
+    if slides and traction_y is None:
+        on_body = {**on_body, **sliding(on_body[Load.NORMAL].cells, case.friction_on(grid.x))}
     body, own = case.counterbody.body, case.counterbody.own_grid(grid)
     loads = {
         load: TopLoad(case.counterbody.load_on(grid, top.cells), top.factor if load is Load.NORMAL else -top.factor)

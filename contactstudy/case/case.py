@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
+import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
@@ -12,6 +13,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
+from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
 from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -51,9 +53,9 @@ class Case:
         Peak pressure ``p0`` of the Hertz line contact, Pa.
     load : float, optional
         Normal load ``W``, N.
-    friction : float
-        Coefficient ``f``: in full sliding the shear traction on the body is ``q = f p`` along +y; in any other motion
-        ``f p`` is the bound on it.
+    friction : float or DataArray (x)
+        Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
+        traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
     end_distance : float, optional
         Distance ``e`` from the body's end I to the roller's nearer end, metres; negative if the roller
         overhangs. Default: the roller is centred on a finite-length space, and begins at ``x = 0`` otherwise.
@@ -86,7 +88,7 @@ class Case:
     roller: Roller
     max_pressure: float | None = None
     load: float | None = None
-    friction: float = 0.0
+    friction: Friction | xr.DataArray = 0.0
     end_distance: float | None = None
     coupled: bool = False
     tilt: float = 0.0
@@ -102,10 +104,9 @@ class Case:
         checks.instance("roller", self.roller, Roller, "a Roller")
         checks.instance("motion", self.motion, KINDS, MOTIONS)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
-        checks.store(self, friction=checks.finite("friction", self.friction), tilt=small_tilt(self.tilt))
-        if self.friction < 0 and not isinstance(self.motion, Sliding):
-            allowed = "not below zero with stick and slip: the slip turns the traction round"
-            raise InvalidInputError("friction", self.friction, allowed)
+        friction = checked_friction(self.friction)
+        check_coupled(friction, self.motion, coupled=self.coupled)
+        checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_place()
         self._check_load()
 
@@ -178,6 +179,16 @@ class Case:
                     f"between {SHORTEST:g} and {LONGEST:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
                     "lengths are in metres, pressures and moduli in Pa, loads in N",
                 )
+
+    def friction_on(self, x: FloatArray) -> float | FloatArray:
+        """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
+        return on_columns(checked_friction(self.friction), x)
+
+    @property
+    def coupled_friction(self) -> float:
+        """Coefficient of full sliding's friction that displaces the surface normally; 0 where none does."""
+        bends = self.coupled and isinstance(self.motion, Sliding)
+        return float(self.friction) if bends and isinstance(self.friction, float) else 0.0
 
     @property
     def roller_start(self) -> float:

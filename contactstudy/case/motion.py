@@ -23,7 +23,8 @@ class Sliding:
 class Shift:
     """One shift of the roller against the body, from rest, with Coulomb friction.
 
-    Along each axis either the shift or the force that it needs is prescribed.
+    Along each axis either the shift or the force that it needs is prescribed. `solve_contact` goes on from the result
+    of a step before instead, if it is given.
 
     Parameters
     ----------
@@ -59,6 +60,9 @@ class Shift:
         return tuple(name for name in ("x", "y") if getattr(self, f"force_{name}") is not None)
 
 
+MODELS = ("exact", "fastsim")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Rolling:
     """Steady rolling along y, in which the contact moves along +y over both surfaces, with Coulomb friction.
@@ -76,11 +80,14 @@ class Rolling:
         Force on the body, N, instead of the creepage along that axis.
     moment_z : float, optional
         Moment on the body about the roller's middle, N m, instead of the spin.
+    model : str
+        "exact", or "fastsim" for a comparison: strips without an influence of neighbours and free ends. It takes
+        creepages only.
 
     Raises
     ------
     InvalidInputError
-        If a value is not a finite number, or a creepage is given together with its force.
+        If a value is not a finite number, a creepage is given together with its force, or the model is unknown.
 
     Examples
     --------
@@ -94,12 +101,17 @@ class Rolling:
     force_x: float | None = None
     force_y: float | None = None
     moment_z: float | None = None
+    model: str = "exact"
 
     def __post_init__(self) -> None:
         """Check the values."""
+        checks.instance("model", self.model, str, "a name")
+        checks.known_name("model", self.model, MODELS)
         _check_either(self, "longitudinal_creepage", "force_y", "", "N")
         _check_either(self, "lateral_creepage", "force_x", "", "N")
         _check_either(self, "spin", "moment_z", "rad/m", "N m")
+        if self.modes and self.model == "fastsim":
+            raise InvalidInputError("model", self.model, 'a model that takes forces: "exact"', "or give the creepages")
 
     @property
     def modes(self) -> tuple[str, ...]:

@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import linalg
@@ -135,15 +136,30 @@ class _Count:
         return self.operator(values)
 
 
-def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> CoulombSolution:
+class Guess(NamedTuple):
+    """What an iteration begins from.
+
+    Attributes
+    ----------
+    traction : array (2, cell)
+        Tractions; those on their bound slip.
+    amplitudes : array (mode)
+        Amplitudes of the unknown rigid slips.
+    """
+
+    traction: FloatArray
+    amplitudes: FloatArray
+
+
+def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
     """Solve for tractions, slip and the unknown rigid slips.
 
     Parameters
     ----------
     problem : CoulombProblem
         What is asked for.
-    start : array (2, cell), optional
-        Tractions of a guess: those on their bound slip. Default: all cells stick.
+    start : Guess, optional
+        What to begin from. Default: all cells stick.
     """
     relief = _Count(problem.relief)
     counted = CoulombProblem(**{**vars(problem), "relief": relief})
@@ -153,12 +169,12 @@ def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> C
     amplitudes = np.zeros(len(problem.modes))
     slip = problem.rigid.copy()
     if start is not None:
-        size = np.hypot(*start)
+        size, amplitudes = np.hypot(*start.traction), start.amplitudes
         sticks = size < (1 - GUESSED) * bound
-        traction = start * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
+        traction = start.traction * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
         slip = counted.slip(traction, amplitudes)
     steps, converged, accuracy = 0, False, LINEAR_TOLERANCE
-    seen, one_by_one = {sticks.tobytes()}, False
+    seen, share = {sticks.tobytes()}, 1.0
     while steps < problem.max_steps and not converged:
         steps += 1
         step = _Step(counted, traction, slip, sticks)
@@ -170,18 +186,14 @@ def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> C
         begins = exceeds & sticks
         if len(problem.modes):
             begins = _foremost(begins, size / bound, sticks)
-        if one_by_one:
-            begins = _first(begins)
+        begins = _some(begins, share)
         # Where a cell slips its traction has grown across; where it stuck and exceeds the bound it begins to slip.
         traction = traction * np.where(slipping | begins, bound / np.where(size > 0, size, 1.0), 1.0)
         slip = counted.slip(traction, amplitudes)
         along = (slip * traction).sum(axis=0)
         ends = slipping & (along < 0)
-        if one_by_one:
-            ends = np.zeros_like(ends) if begins.any() else _first(ends)
+        ends = _some(ends, share)
         sticks = (sticks & ~begins) | ends
-        if len(problem.modes) and not sticks.any():
-            sticks[np.where(begins, np.inf, np.hypot(*slip)).argmin()] = True
         scale = _scale(counted, amplitudes)
         missed = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
         whole = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
@@ -190,18 +202,22 @@ def solve_coulomb(problem: CoulombProblem, start: FloatArray | None = None) -> C
         if np.array_equal(sticks, before):
             accuracy = max(LINEAR_TOLERANCE * accuracy, 1e-3 * problem.tolerance)
         else:
-            accuracy = LINEAR_TOLERANCE
-            # Cells that go round in circles do not if they change one by one, the first of them first (Murty).
-            one_by_one = one_by_one or sticks.tobytes() in seen
+            # Cells that go round in circles do not if fewer of them change at once (in the end one by one: Murty).
+            again = sticks.tobytes() in seen
+            share = 0.5 * share if again else min(1.0, 2 * share)
+            accuracy = max(0.1 * accuracy, problem.tolerance) if again else LINEAR_TOLERANCE
             seen.add(sticks.tobytes())
     return CoulombSolution(traction, slip, sticks, amplitudes, steps, relief.number, converged)
 
 
-def _first(cells: BoolArray) -> BoolArray:
-    """Only the first of some cells."""
-    first = np.zeros_like(cells)
-    first[int(cells.argmax())] = cells.any()
-    return first
+def _some(cells: BoolArray, share: float) -> BoolArray:
+    """Only a share of some cells, the first of them, and one at least."""
+    if share == 1:
+        return cells
+    numbers = np.flatnonzero(cells)
+    some = np.zeros_like(cells)
+    some[numbers[: max(1, int(share * numbers.size))]] = True
+    return some
 
 
 def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
@@ -209,10 +225,10 @@ def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> Bool
 
     If no cell sticks, the rigid slip that makes a prescribed resultant has no value.
     """
-    most = max(int(sticks.sum()) // 2, 1)
+    most = int(sticks.sum()) // 2
     if exceeds.sum() <= most:
         return exceeds
-    least = np.partition(excess[exceeds], -most)[-most]
+    least = np.partition(excess[exceeds], -most)[-most] if most else np.inf
     return np.asarray(exceeds & (excess >= least))
 
 

@@ -1,10 +1,10 @@
-"""Tractions of a contact under Coulomb friction: after a shift from rest, or in steady rolling."""
+"""Tractions of a contact under Coulomb friction: after a shift, or in steady rolling."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
@@ -13,7 +13,8 @@ from contactstudy.bodies.material import Material
 from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.compliance import TangentialInverse, contact_cells
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation, solve_coulomb
+from contactstudy.contact.fastsim import Pair, flexibilities, strip_tractions
 from contactstudy.contact.leading_edge import RollingCells
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.kernels.load import Load
@@ -25,11 +26,27 @@ ALMOST_SLIDING = 1 - 1e-9
 """Part of the largest force up to which a force can be prescribed: at all of it the rigid slip has no value."""
 
 
+NESTED_CELLS = 600
+"""Cells of a contact from which on it is first solved on coarser ones. Speed."""
+
+COARSE_TOLERANCE = 1e-3
+"""Tolerance of a solution that serves as a guess. Speed."""
+
+STICKING = 0.999
+"""Largest part of its bound that a guess gives a cell that sticks. Speed."""
+
+
+@runtime_checkable
 class RelativeOperator(Protocol):
     """Displacements of the surfaces relative to each other."""
 
     def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Displacements (m) in some directions under loads on the first body (Pa)."""
+        ...
+
+    @property
+    def coarse(self) -> object:
+        """The operator on cells of twice the size, roughly; it may be of another kind."""
         ...
 
 
@@ -105,6 +122,7 @@ def tractions_of(
     *,
     tolerance: float,
     max_steps: int,
+    before: Mapping[Load, FloatArray] | None = None,
 ) -> Tractions:
     """Tractions under a given pressure.
 
@@ -120,6 +138,8 @@ def tractions_of(
         Violation of Coulomb's law at which the iteration stops.
     max_steps : int
         Bound on the steps of Newton's method.
+    before : mapping of Load to array (x, y), optional
+        Pressure and tractions from which a shift begins; default: none.
 
     Raises
     ------
@@ -144,7 +164,12 @@ def tractions_of(
     _check_forces(motion, bound, grid)
     if not cells.unknown.size:
         return _frictionless(motion, grid)
+    if isinstance(motion, Rolling) and motion.model == "fastsim":
+        return _of_strips(motion, surfaces, bound, weights)
     bent = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
+    if before is not None:
+        for direction, each in surfaces.operator.displaced(before, TANGENTIAL).items():
+            bent[direction] = bent[direction] - each
 
     def relative(displaced: Mapping[Load, FloatArray]) -> FloatArray:
         """Slip (2, unknown) that displacements add."""
@@ -174,7 +199,71 @@ def tractions_of(
         tolerance=tolerance,
         max_steps=max_steps,
     )
-    return _completed(problem, solve_coulomb(problem), motion, cells, weights, grid)
+    start = _from_coarser(motion, surfaces, pressure, bound, cells, max_steps=max_steps, before=before)
+    return _completed(problem, solve_coulomb(problem, start), motion, cells, weights, grid)
+
+
+def _from_coarser(
+    motion: Shift | Rolling,
+    surfaces: Surfaces,
+    pressure: FloatArray,
+    bound: FloatArray,
+    cells: RollingCells,
+    *,
+    max_steps: int,
+    before: Mapping[Load, FloatArray] | None,
+) -> Guess | None:
+    """Guess from cells of twice the size; None on few cells, or if they cannot be joined."""
+    grid = surfaces.grid
+    if cells.unknown.shape[1] < NESTED_CELLS or grid.cells_x % 2 or grid.cells_y % 2:
+        return None
+    operator = surfaces.operator.coarse
+    coarse = grid.coarsened()
+    if not isinstance(operator, RelativeOperator):
+        return None
+
+    def joined(values: FloatArray) -> FloatArray:
+        return np.asarray(values.reshape(coarse.cells_x, 2, coarse.cells_y, 2).mean(axis=(1, 3)))
+
+    pressed, bounded = joined(pressure), joined(bound)
+    if pressed[:, -2:].any():
+        return None
+    friction = bounded / np.where(pressed > 0, pressed, 1.0)
+    earlier = None if before is None else {load: joined(values) for load, values in before.items()}
+    found = tractions_of(
+        motion,
+        surfaces._replace(operator=operator, grid=coarse),
+        pressed,
+        friction,
+        tolerance=COARSE_TOLERANCE,
+        max_steps=max_steps,
+        before=earlier,
+    )
+    part = found.traction / np.where(bounded > 0, bounded, 1.0)
+    row, column = cells.unknown
+    # Cells that slip have all of their bound; inside the stick zone the part is interpolated.
+    own = part[:, row // 2, column // 2]
+    smooth = _between_cells(part)[:, row, column]
+    sticks = found.sticks[row // 2, column // 2]
+    size = np.hypot(*smooth)
+    limited = smooth * np.minimum(1.0, STICKING / np.where(size > 0, size, 1.0))
+    return Guess(
+        np.where(sticks, limited, own) * bound[row, column], np.array([found.rigid[name] for name in motion.modes])
+    )
+
+
+def _between_cells(values: FloatArray) -> FloatArray:
+    """Values (component, x, y) on cells of half the size, linear between the centres."""
+    for axis in (1, 2):
+        first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
+        padded = np.concatenate([first, values, last], axis=axis)
+        count = values.shape[axis]
+        middle, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
+        halves = np.stack([0.75 * middle + 0.25 * low, 0.75 * middle + 0.25 * high], axis=axis + 1)
+        shape = list(values.shape)
+        shape[axis] *= 2
+        values = halves.reshape(shape)
+    return values
 
 
 def _completed(
@@ -222,6 +311,39 @@ def _completed(
         steps=found.steps,
         applications=found.applications,
         converged=found.converged,
+    )
+
+
+def _of_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray, weights: FloatArray) -> Tractions:
+    """Tractions of FASTSIM's strips."""
+    grid = surfaces.grid
+    rows, columns = np.flatnonzero(bound.any(axis=1)), np.flatnonzero(bound.any(axis=0))
+    widths = 0.5 * rows.size * grid.dx, 0.5 * columns.size * grid.dy
+    names = ("x", "y", "spin")
+    rigid = {name: _amplitude(motion, name) for name in names}
+    soft = flexibilities(widths, Pair.of(surfaces.materials))
+    turning = rigid["spin"] / soft["spin"]
+    growth = np.zeros((2, *grid.shape))
+    growth[0] = rigid["x"] / soft["x"] - turning * grid.y
+    growth[1] = rigid["y"] / soft["y"] + turning * (grid.x - surfaces.middle)[:, None]
+    traction, lost = strip_tractions(bound, growth, grid.dy)
+    slip = np.array([soft["x"], soft["y"]])[:, None, None] * lost
+    force_x, force_y, moment = (weights * traction).sum(axis=(1, 2, 3)).tolist()
+    return Tractions(
+        traction=traction,
+        slip=slip,
+        sticks=(bound > 0) & ~lost.any(axis=0),
+        rigid=rigid,
+        force_x=force_x,
+        force_y=force_y,
+        moment_z=moment,
+        work=float((traction * slip).sum() * grid.cell_area),
+        bound_error=0.0,
+        slip_error=0.0,
+        force_error=0.0,
+        steps=0,
+        applications=0,
+        converged=True,
     )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -108,11 +109,11 @@ class FrictionalContact:
         return result
 
 
-def relative_operator(shape: Shape) -> PairOperator | SurfaceOperator:
-    """Operator from pressure and tractions to the displacements of the surfaces relative to each other."""
+def relative_operator(shape: Shape, directions: tuple[Load, ...]) -> PairOperator | SurfaceOperator:
+    """Operator from pressure and tractions to displacements of the surfaces relative to each other."""
     if shape.counterbody is None:
-        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=ALL))
-    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, ALL)
+        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=directions))
+    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
 
 
 def frictional_contact(
@@ -123,6 +124,7 @@ def frictional_contact(
     middle: float,
     *,
     coupled: bool,
+    before: Mapping[Load, FloatArray] | None = None,
 ) -> FrictionalContact:
     """Solve a contact whose parts are checked, with the tractions of a motion.
 
@@ -140,6 +142,8 @@ def frictional_contact(
         Position x about which spin and moment are taken, metres.
     coupled : bool
         Whether the tractions also displace the surfaces normally and so change the pressure.
+    before : mapping of Load to array (x, y), optional
+        Pressure and tractions from which a shift begins; default: none.
 
     Raises
     ------
@@ -154,7 +158,7 @@ def frictional_contact(
             "friction", float(on_cells.min()), "not below zero with stick and slip", "the slip turns the traction round"
         )
     with one_blas_thread():
-        operator = relative_operator(shape)
+        operator = relative_operator(shape, ALL if coupled else TANGENTIAL)
     materials = [shape.body.material]
     if shape.counterbody is not None:
         materials.append(shape.counterbody.body.material)
@@ -169,6 +173,7 @@ def frictional_contact(
                 on_cells,
                 tolerance=settings.tolerance,
                 max_steps=settings.max_iterations,
+                before=before,
             )
 
     contact = contact_of(shape, settings)
@@ -178,10 +183,10 @@ def frictional_contact(
         wanted = max(settings.tolerance, LEAST_ACCURACY)
         for _ in range(ROUNDS):
             bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
-            before = contact.pressure
+            last = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
             tractions = rubbed(contact.pressure)
-            change = float(np.abs(contact.pressure - before).sum() / contact.pressure.sum())
+            change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
             if change <= wanted:
                 settled = True
                 break

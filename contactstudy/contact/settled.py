@@ -194,7 +194,7 @@ class _Solver:
         case, grid = self.case, self.grid(edges)
         gap = case.gap(grid)
         prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, grid)
-        coupled = case.friction if case.coupled else 0.0
+        coupled = case.coupled_friction
         return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled)
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:

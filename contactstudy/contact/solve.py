@@ -14,14 +14,17 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
-from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
+from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
+from contactstudy.case.motion import KINDS, MOTIONS, Motion, Shift, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.part import REFERENCE_LENGTHS
+from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.surface import displacement_reference
+from contactstudy.kernels.load import Load
 
 FULL_SLIDING = Sliding()
 """The default motion."""
@@ -31,13 +34,14 @@ def solve_contact(
     body: Body,
     gap: xr.DataArray,
     load: float | None = None,
-    friction: float = 0.0,
+    friction: Friction | xr.DataArray = 0.0,
     coupled: bool = False,
     *,
     approach: float | None = None,
     load_position: float | None = None,
     counterbody: Counterbody | None = None,
     motion: Motion = FULL_SLIDING,
+    after: xr.Dataset | None = None,
     tolerance: float = 1e-6,
     max_iterations: int = 500,
 ) -> xr.Dataset:
@@ -53,9 +57,9 @@ def solve_contact(
         around the contact.
     load : float, optional
         Normal load, N. Either this or `approach` is given.
-    friction : float
-        Coefficient ``f``: in full sliding the shear traction on the body is ``f`` times the pressure along +y; in any
-        other motion that is the bound on it.
+    friction : float or DataArray (x)
+        Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
+        traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
     coupled : bool
         Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
         Poisson's ratio is 1/2, nor between half-spaces of one material).
@@ -68,6 +72,9 @@ def solve_contact(
         Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
     motion : Sliding, Shift or Rolling
         How the shape moves against the body. Default: full sliding.
+    after : Dataset, optional
+        Result of the step before, on the same cells: a `Shift` then goes on from its pressure and tractions instead of
+        from rest. Loads and shifts of a history are solved one after the other.
     tolerance : float
         Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
         of the pressure, over its sum.
@@ -126,7 +133,9 @@ def solve_contact(
     grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
     checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
     checks.instance("motion", motion, KINDS, MOTIONS)
-    friction = checks.finite("friction", friction)
+    coefficient = checked_friction(friction)
+    check_coupled(coefficient, motion, coupled=bool(coupled))
+    on_cells = on_columns(coefficient, grid.x)
     shape = Shape(
         body,
         grid,
@@ -134,22 +143,39 @@ def solve_contact(
         Prescribed(load, load_position, approach).checked(clearance, grid),
         counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        friction if coupled and isinstance(motion, Sliding) else 0.0,
+        on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
     )
     settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
     x, y = gap["x"].values, gap["y"].values
     if isinstance(motion, Sliding):
         contact = contact_of(shape, settings)
         contact.warn_unless_converged(stacklevel=2)
-        return contact_dataset(contact, friction, x=x, y=y)
+        return contact_dataset(contact, on_cells, x=x, y=y)
+    before = None if after is None else _before(after, motion, gap, body)
     facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
     middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-    found = frictional_contact(shape, settings, motion, friction, middle, coupled=bool(coupled))
+    found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
     found.warn_unless_converged(stacklevel=2)
-    return labelled(contact_dataset(found.contact, friction, x=x, y=y), found)
+    return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
 
 
-def contact_dataset(contact: Contact, friction: float, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
+def _before(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:
+    """Pressure and tractions of the step before, checked."""
+    checks.instance("after", after, xr.Dataset, "a result of solve_contact")
+    if not isinstance(motion, Shift):
+        raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady, it has no step before")
+    names = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load.ALONG_Y}
+    missing = [name for name in names if name not in after]
+    if missing:
+        raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
+    grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)[1]
+    given = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
+    if given.grid.shape != grid.shape or not np.allclose(given.grid.x, grid.x) or not np.allclose(given.grid.y, grid.y):
+        raise InvalidInputError("after", f"on {given.grid.shape} cells", "on the cells of the gap")
+    return {load: top.values for load, top in given.loads.items()}
+
+
+def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
     """Label a contact; `x` and `y` are the cell centres as the caller wrote them."""
     shape = contact.shape
     # The contact may be kept for other cases: what the caller does to a result must not change it.

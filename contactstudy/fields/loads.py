@@ -38,8 +38,8 @@ Loads = Mapping[Load, TopLoad]
 """What acts on the top, by direction."""
 
 
-def sliding(pressure: FloatArray, friction: float) -> Loads:
-    """Pressure and, in full sliding, the traction ``q = f p`` on the body along +y.
+def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
+    """Return the pressure and, in full sliding, the traction ``q = f p`` on the body along +y.
 
     Examples
     --------
@@ -47,6 +47,8 @@ def sliding(pressure: FloatArray, friction: float) -> Loads:
     ['ALONG_Y', 'NORMAL']
     """
     loads = {Load.NORMAL: TopLoad(pressure)}
+    if isinstance(friction, np.ndarray):
+        return loads | {Load.ALONG_Y: TopLoad(friction * pressure)}
     return loads | {Load.ALONG_Y: TopLoad(pressure, friction)} if friction else loads
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation, solve_coulomb
 
 
 def problem(
@@ -76,7 +76,7 @@ def test_a_guess_changes_the_work_and_not_the_result() -> None:
     bound = random.uniform(0.2, 1.0, 40)
     asked = problem(random.standard_normal((2, 40)), bound, skew=0.5)
     plain = solve_coulomb(asked)
-    guessed = solve_coulomb(asked, plain.traction)
+    guessed = solve_coulomb(asked, Guess(plain.traction, plain.amplitudes))
     assert guessed.steps < plain.steps
     assert guessed.traction == pytest.approx(plain.traction, abs=1e-6)
 

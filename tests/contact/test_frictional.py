@@ -212,6 +212,31 @@ def test_without_friction_there_is_no_traction() -> None:
     assert result.converged
 
 
+def test_a_history_of_shifts() -> None:
+    """Mindlin and Deresiewicz (1953): unloading doubles the slip's reach; a closed cycle returns to its state."""
+    largest = 0.6 * FRICTION * LOAD
+    steps = [rolled(Shift(force_y=largest))]
+    for force in (0.0, -largest, 0.0, largest):
+        steps.append(rolled(Shift(force_y=force), after=steps[-1]))
+    loaded, unloaded, reversed_, _, again = steps
+    for step in steps:
+        assert step.converged
+    bound = FRICTION * float(loaded.pressure.max())
+    assert np.abs(loaded.traction_y + reversed_.traction_y).max() < 1e-3 * bound
+    assert np.abs(loaded.traction_y - again.traction_y).max() < 1e-3 * bound
+    # Without force tractions remain: slip back at the edge, the old direction inside.
+    assert float(unloaded.traction_y.min()) < -0.02 * bound < 0.02 * bound < float(unloaded.traction_y.max())
+    # Each half of a cycle has the shift of twice the friction and half the force, doubled.
+    shift = float(loaded.shift_y)
+    back = float(unloaded.shift_y) + float(reversed_.shift_y)
+    assert back == pytest.approx(-2 * shift, rel=1e-3)
+    stepped = rolled(Shift(force_y=0.3 * FRICTION * LOAD))
+    stepped = rolled(Shift(force_y=largest), after=stepped)
+    assert np.abs(stepped.traction_y - loaded.traction_y).max() < 2e-3 * bound
+    unmoved = rolled(Shift(), after=loaded)
+    assert np.abs(unmoved.traction_y - loaded.traction_y).max() < 1e-3 * bound
+
+
 def test_bad_input_is_named() -> None:
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
         rolled(Rolling(), friction=-0.1)
@@ -219,6 +244,15 @@ def test_bad_input_is_named() -> None:
         rolled(Rolling(force_y=1.01 * FRICTION * LOAD))
     with pytest.raises(InvalidInputError, match=r"force_x, force_y = .*full sliding"):
         rolled(Rolling(force_y=0.0), friction=0.0)
+    shifted = rolled(Shift(y=0.01))
+    with pytest.raises(InvalidInputError, match="rolling is steady"):
+        rolled(Rolling(), after=shifted)
+    with pytest.raises(InvalidInputError, match=r"after = .*cells"):
+        rolled(Shift(y=0.01), after=shifted, gap=ball(20))
+    with pytest.raises(InvalidInputError, match="after = 'without traction_x'"):
+        rolled(Shift(y=0.01), after=shifted.drop_vars("traction_x"))
+    with pytest.raises(InvalidInputError, match=r"load = 0.0.*positive"):
+        rolled(Shift(y=0.01), after=shifted, load=0.0)
     with pytest.raises(InvalidInputError, match="motion = 'rolls'"):
         rolled("rolls")  # type: ignore[arg-type]
     with pytest.raises(WindowError, match=r"last two cells along \+y"):
