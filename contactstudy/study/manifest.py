@@ -1,8 +1,8 @@
 """Cache of what the files of a study say, so that a thousand of them need not be opened to know their state.
 
-One line for each file, written at its end as cases finish: a check sum and JSON. Of two lines for one file the later one
-counts. Lines that are not as they were written are passed over, because everything in the cache can be read again from
-the files.
+One line for each file, written at its end as cases finish: a check sum and JSON. Of two lines for one file the later
+one counts. Lines that are not as they were written are passed over, because everything in the cache can be read again
+from the files.
 """
 
 from __future__ import annotations
