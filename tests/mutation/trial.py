@@ -27,11 +27,14 @@ SECONDS = 600.0
 """Longest time for one mutant; a change that never ends is noticed by that."""
 
 TESTS = {
-    "kernels": (("tests/kernels",), ("tests/fields", "tests/contact/test_solve.py", "tests/verification")),
-    "overlapping": (("tests/overlapping",), ("tests/fields", "tests/kernels", "tests/verification")),
+    "kernels": (
+        ("tests/kernels",),
+        ("tests/fields", "tests/contact/test_solve.py", "tests/verification/test_checks.py"),
+    ),
+    "overlapping": (("tests/overlapping",), ("tests/fields", "tests/kernels", "tests/verification/test_checks.py")),
     "contact": (
         ("tests/contact/test_solve.py", "tests/contact/test_conjugate_gradients.py"),
-        ("tests/contact", "tests/test_solution.py"),
+        ("tests/contact/test_counterbody.py", "tests/contact/test_prescribed.py", "tests/contact/test_settled.py"),
     ),
 }
 """Tests of a package: those that are quick or near, and those that are tried if nothing is noticed."""
