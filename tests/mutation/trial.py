@@ -18,8 +18,8 @@ from tests.mutation.mutants import Mutant
 
 ROOT = Path(__file__).parents[2]
 
-COPIED = ("contactstudy", "tests", "data", "pyproject.toml")
-"""What tests of the solver need."""
+COPIED = ("contactstudy", "tests", "data", "docs", "studies", "README.md", "pyproject.toml")
+"""What tests of the solver need, those that compare it with the documentation among them."""
 
 NO_END = "no end"
 
