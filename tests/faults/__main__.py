@@ -18,11 +18,11 @@ def rows(kills: int) -> list[Row]:
         lambda: scenarios.kills(calm, kills // 4, workers=2),
         lambda: scenarios.full_disks(calm, max(2, kills // 10)),
         lambda: scenarios.dead_schedulers(calm, max(1, kills // 33)),
-        lambda: scenarios.damaged_files(calm, max(7, kills * 7 // 10)),
-        lambda: scenarios.damaged_records(calm, max(4, kills * 2 // 5)),
+        lambda: scenarios.damaged_files(calm, max(7, kills * 7 // 20)),
+        lambda: scenarios.damaged_records(calm, max(4, kills // 5)),
         lambda: scenarios.two_runs(calm, max(2, kills // 12)),
-        lambda: scenarios.at_once(calm, max(2, kills // 10)),
-        lambda: scenarios.clock_steps(calm, max(2, kills // 5)),
+        lambda: scenarios.at_once(calm, max(2, kills // 12)),
+        lambda: scenarios.clock_steps(calm, max(2, kills // 12)),
         lambda: scenarios.edited_study(calm, max(2, kills // 20)),
     )
     found = []

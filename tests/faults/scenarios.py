@@ -17,6 +17,7 @@ from unittest import mock
 import xarray as xr
 
 from contactstudy.study import run_study
+from contactstudy.study.lock import read_lock
 from tests.faults import studies
 from tests.faults.studies import CASES, STUDY
 from tests.faults.table import Row
@@ -34,6 +35,7 @@ chance = random.Random(17)
 def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
     """SIGKILL to the run and its workers, a random while after it began."""
     held = most = total = 0
+    longest = _seconds_of_a_run(workers)
     with studies.place() as folder:
         for _ in range(count):
             done = studies.finished(folder)
@@ -42,8 +44,8 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
                     path.unlink()
             before = {path: path.stat().st_mtime_ns for path in studies.finished(folder)}
             process = studies.start(folder, "--workers", str(workers))
-            _wait(process, lambda: (folder / "out" / "run.lock").exists())
-            time.sleep(chance.uniform(0.0, 0.6 + 1.5 * (workers > 0)))
+            _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
+            time.sleep(chance.uniform(0.0, longest))
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
             after = studies.finished(folder)
@@ -60,6 +62,16 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
         f"{most} in one run); resumed {'bit for bit as without kills, nothing left behind' if whole else 'WRONGLY'}"
     )
     return Row(f"run {kind}: SIGKILL at a random moment", count, held if whole else 0, found)
+
+
+def _seconds_of_a_run(workers: int) -> float:
+    """Time from the lock to the end if nothing happens, on this machine now."""
+    with studies.place() as folder:
+        process = studies.start(folder, "--workers", str(workers))
+        _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
+        began = time.monotonic()
+        process.communicate(timeout=SECONDS)
+        return time.monotonic() - began
 
 
 def full_disks(calm: xr.Dataset, count: int) -> Row:
@@ -289,12 +301,17 @@ def edited_study(calm: xr.Dataset, count: int) -> Row:
     for _ in range(count):
         with studies.place() as folder:
             process = studies.start(folder, "--workers", "0")
-            _wait(process, lambda: (folder / "out" / "run.lock").exists())
+            _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             text = as_toml(STUDY)
             (folder / "study.toml").write_text(text[: chance.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
             held += process.returncode == 0 and "Traceback" not in errors and studies.values(folder).identical(calm)
     return Row("the study's file torn while it runs", count, held, "the run goes on with what it read, bit for bit")
+
+
+def _holds_the_lock(pid: int, out: Path) -> bool:
+    """Whether a process, and not one that was killed before, has begun to work in a folder."""
+    return out.exists() and (read_lock(out) or {}).get("process") == pid
 
 
 def _wait(process: subprocess.Popen[str], condition: Callable[[], object]) -> None:

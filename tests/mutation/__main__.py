@@ -53,13 +53,14 @@ def main() -> int:
     """Try what is asked for."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
     parser.add_argument("--sample", type=int, help="number of mutants; default: all")
+    parser.add_argument("--package", choices=PACKAGES, action="append", help="only these; default: all three")
     parser.add_argument("--out", type=Path, required=True, help="file of notes, one line a mutant")
     parser.add_argument("--survivors", action="store_true", help="try those again that were not noticed")
     asked = parser.parse_args()
     lines = asked.out.read_text().splitlines() if asked.out.exists() else []
     notes = {note["mutant"]: note for note in map(json.loads, lines)}
     again = {name for name, note in notes.items() if asked.survivors and not note["killed"]}
-    mutants = chosen(all_mutants(ROOT, PACKAGES), None if asked.survivors else asked.sample)
+    mutants = chosen(all_mutants(ROOT, tuple(asked.package or PACKAGES)), None if asked.survivors else asked.sample)
     with tempfile.TemporaryDirectory(prefix="mutation-") as place:
         copy_repository(Path(place))
         for mutant in mutants:

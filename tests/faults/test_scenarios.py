@@ -1,0 +1,50 @@
+"""The table of faults stands in its page, and a scenario counts what went wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+from tests.faults import scenarios, studies
+from tests.faults.table import BEGIN, END, Row, write_table
+from tests.study.conftest import ROOT
+
+PAGE = ROOT / "docs" / "explanation" / "reliability.md"
+
+
+@pytest.fixture(scope="module")
+def calm() -> xr.Dataset:
+    return studies.calm_values()
+
+
+def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
+    for held in (1, 2):
+        write_table(page, [Row("kill", 2, held, "all")])
+    text = page.read_text()
+    assert text.startswith("before\n\n")
+    assert text.endswith("\n\nafter\n")
+    assert "| kill | 2 | 2 | all |" in text
+    assert "old" not in text
+    assert text.count("| kill") == 1
+
+
+def test_the_page_has_a_place_for_it() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    assert text.count(BEGIN) == text.count(END) == 1
+
+
+@pytest.mark.system
+def test_faults_hold(calm: xr.Dataset) -> None:
+    for row in (scenarios.damaged_files(calm, len(scenarios.DAMAGES)), scenarios.kills(calm, 2)):
+        assert row.held == row.tried, row
+
+
+@pytest.mark.system
+def test_a_lost_file_is_counted(calm: xr.Dataset, monkeypatch) -> None:
+    monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
+    monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
+    assert scenarios.damaged_files(calm, 1).held == 0

@@ -1,0 +1,43 @@
+"""Cases that random ones led to, by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, profiles, solve, stress_field
+
+
+@pytest.mark.parametrize("cells", [130, 128])
+def test_a_short_elastic_roller_converges_whatever_the_number_of_cells(cells: int) -> None:
+    """With 130 cells along x its coupled contact did not, with 128 it did."""
+    body = FiniteLengthSpace(material=Material(82323447553.80612, 0.5), length=2.1301408010505498e-07)
+    roller = Roller(
+        radius=0.0029670151688925748,
+        length=2.5064003993584664e-07,
+        profile=profiles.PartialCrown(straight_length=2.086192658853036e-07, crown_radius=0.004163218428832561),
+        material=Material(30514801145.037006, 0.5),
+    )
+    case = Case(
+        body=body,
+        roller=roller,
+        max_pressure=18316553.800983183,
+        friction=0.5,
+        end_distance=-3.754181617903073e-08,
+        coupled=True,
+    )
+    window = (-1.09849551913929e-05, 1.09849551913929e-05)
+    result = solve(case, Grid((0.0, body.length), window, cells, 34), stresses=False)
+    assert bool(result["converged"])
+    assert float(result["penetration_error"]) < 1e-6
+
+
+def test_stresses_below_a_contact_one_cell_wide() -> None:
+    """On 13 cells across a wide window a transform of no points was asked for."""
+    body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
+    case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)
+    result = solve(case, Grid((0.0, 0.001), (-1.1e-3, 1.1e-3), 16, 13), stresses=False)
+    pressure = result["pressure"]
+    (row,) = np.flatnonzero(pressure.any("x"))
+    stress = stress_field(body, pressure, x=pressure["x"][[7]], y=pressure["y"][[row]], z=[0.0])
+    assert stress["sigma_zz"].item() == pytest.approx(-pressure[7, row].item())
