@@ -257,7 +257,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
     options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solve, values)
     described: Described = {
         "e_over_a": sizes.end_distance / sizes.half_width,
-        "friction": case.friction,
+        "friction": float(values["friction"]),
         "gamma": sizes.body_length / sizes.radius,
         "profile": profile_label(values["profile"]),
     }
