@@ -32,6 +32,10 @@ FAR, TOGETHER = 3.0, 0.03
 """Distance along x over the load's width from which on columns are taken together, and their width over that distance.
 Accuracy: 1e-5 of the pressure."""
 
+MOST_PARTS = 6
+"""Parts of the shortest distance between positions along y that are tried as a step of all, and parts of a cell that
+such a step is at least. Speed."""
+
 BATCH = 64
 """Positions along x whose surroundings are made smooth at once. Speed."""
 
@@ -73,10 +77,22 @@ def columns_field(
         numbers = np.flatnonzero(near == wanted)
         if not numbers.size:
             continue
-        layers = [
-            _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], PARTS_Y if wanted else 0)
-            for column in aligned_points(y, begin, grid.dy)
-        ]
+        parts, columns = PARTS_Y if wanted else 0, aligned_points(y, begin, grid.dy)
+        step = common_step(y, grid.dy) if len(columns) > 1 and fine is not None else None
+        if step is None:
+            layers = [
+                _Layer.of(influence, column, z, numbers, begin, grid.dy, load.shape[1], parts) for column in columns
+            ]
+        else:
+            # One set of cells that has every point in the middle of one.
+            number = int(np.ceil(step * max(parts, 1) / grid.dy - OFFSET_TOLERANCE))
+            places = np.round((y - y.min()) / step).astype(np.int64) * number
+            span = load.shape[1] * grid.dy
+            layers = [
+                _Layer.centred(
+                    influence, np.arange(y.size), places, z, numbers, y.min() - begin, begin, span, step / number
+                )
+            ]
         seen = (
             _seen(x, layers, mirrored(grid.x_edges, extent), with_images(load, influence.load.sign_x, extent))
             if fine is None
@@ -89,6 +105,27 @@ def columns_field(
     if np.isfinite(extent).all() and not added:
         field += far_images(load, influence, grid, first, x, y, z, extent)
     return field
+
+
+def common_step(y: FloatArray, dy: float) -> float | None:
+    """Largest step that all distances between positions are multiples of; none if it is much shorter than a cell.
+
+    Examples
+    --------
+    >>> round(common_step(np.array([-0.9, 0.0, 0.6]), 0.25), 9), common_step(np.array([0.0, 1.0, np.pi]), 0.25)
+    (0.3, None)
+    """
+    ordered = np.unique(y)
+    if ordered.size < 2:
+        return None
+    distances = np.diff(ordered)
+    for parts in range(1, MOST_PARTS + 1):
+        step = float(distances.min()) / parts
+        if step < dy / MOST_PARTS:
+            return None
+        if np.abs(distances / step - np.round(distances / step)).max() < OFFSET_TOLERANCE:
+            return step
+    return None
 
 
 def gathered_far(edges: FloatArray, loads: FloatArray, x: float, reach: float) -> tuple[FloatArray, FloatArray]:
@@ -260,19 +297,49 @@ class _Layer:
         parts: int,
     ) -> _Layer:
         """Layer over `count` cells from the edge `start` on, each of so many `parts` or not split."""
-        offset, cells, step, edges = column.offset, column.cells, dy, None
         if parts:
-            # Fine cells have the points in their middles.
-            step = dy / parts
-            before = int(np.floor(-offset / step - 0.5))
-            begin = offset + step * (before + 0.5)
-            total = int(np.ceil((count * dy - begin) / step - 1e-9))
-            edges = np.asarray(start + begin + step * np.arange(total + 1.0))
-            offset, cells, count = 0.5 * step, parts * cells - before - 1, total
+            places, span = parts * column.cells, count * dy
+            return cls.centred(influence, column.points, places, z, numbers, column.offset, start, span, dy / parts)
+        return cls._seen(influence, column.points, column.cells, z, numbers, column.offset, dy, count, None)
+
+    @classmethod
+    def centred(
+        cls,
+        influence: Influence,
+        points: IntArray,
+        places: IntArray,
+        z: FloatArray,
+        numbers: IntArray,
+        offset: float,
+        start: float,
+        span: float,
+        step: float,
+    ) -> _Layer:
+        """Layer of points at ``start + offset + step * places``, which lie in the middle of cells from `start` on."""
+        before = int(np.floor(-offset / step - 0.5))
+        begin = offset + step * (before + 0.5)
+        total = int(np.ceil((span - begin) / step - 1e-9))
+        edges = np.asarray(start + begin + step * np.arange(total + 1.0))
+        return cls._seen(influence, points, places - before - 1, z, numbers, 0.5 * step, step, total, edges)
+
+    @classmethod
+    def _seen(
+        cls,
+        influence: Influence,
+        points: IntArray,
+        cells: IntArray,
+        z: FloatArray,
+        numbers: IntArray,
+        offset: float,
+        step: float,
+        count: int,
+        edges: FloatArray | None,
+    ) -> _Layer:
+        """Layer of points that see so many cells."""
         lowest = int(cells.min()) - count
         offsets: FloatArray = offset + step * np.arange(lowest, int(cells.max()) + 1.0)
         corners = [_EvenCorner(influence, offsets, float(z[number])) for number in numbers]
-        return cls(column.points, cells - int(cells.min()), numbers, corners, edges, FAR * step * count)
+        return cls(points, cells - int(cells.min()), numbers, corners, edges, FAR * step * count)
 
     def loads(self, smooth: SmoothLoad) -> FloatArray:
         """Return the loads of columns on the cells along y that the points see."""
