@@ -321,7 +321,7 @@ def roller_stress(
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, material=steel), max_pressure=1.5e9)
     >>> result = solve(case, y=[0.0], z=[5e-5])
     >>> inside = roller_stress(case, result.pressure, y=[0.0], z=[5e-5])  # two equal bodies carry equal stresses
-    >>> bool(np.allclose(inside.von_mises.values, result.von_mises.values, rtol=1e-6))
+    >>> bool(np.allclose(inside.von_mises.values, result.von_mises.values, rtol=1e-4))
     True
     """
     checks.instance("case", case, Case, "a Case")

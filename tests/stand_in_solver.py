@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.invariants import von_mises
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.case.case import Case
 from contactstudy.errors import WindowError
@@ -61,10 +62,10 @@ def solve_fake(
         }
         shape = tuple(axis.size for axis in points.values())
         depth = np.broadcast_to(points["z"] / half_width, shape)
-        for number, name in enumerate((*STRESSES, "von_mises")):
-            sign = 1 if name == "von_mises" else -1
-            result[name] = (tuple(points), sign * peak * np.exp(-depth) / (1 + number))
+        for number, name in enumerate(STRESSES):
+            result[name] = (tuple(points), -peak * np.exp(-depth) / (1 + number))
         result = result.assign_coords(points)
+        result["von_mises"] = von_mises(result)
     return describe(result, "made up for tests")
 
 

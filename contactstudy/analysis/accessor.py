@@ -77,6 +77,10 @@ class ContactAccessor:
         """See :func:`contactstudy.analysis.peak`."""
         return analysis.peak(self._dataset, variable)
 
+    def largest(self, variable: str = "von_mises") -> xr.Dataset:
+        """See :func:`contactstudy.analysis.largest`."""
+        return analysis.largest(self._dataset, variable)
+
     def section_peak(self, variable: str = "von_mises") -> xr.Dataset:
         """See :func:`contactstudy.analysis.section_peak`."""
         return analysis.section_peak(self._dataset, variable)

@@ -9,7 +9,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels.aligned import aligned_points
 from contactstudy.kernels.columns_field import columns_field
 from contactstudy.kernels.field import half_space_field
-from contactstudy.kernels.fine_cells import FineCells
+from contactstudy.kernels.fine_cells import FineCells, ends_in_steps
 from contactstudy.kernels.influence import Influence
 
 
@@ -23,8 +23,11 @@ def smooth_field(
     *,
     extent: tuple[float, float],
 ) -> FloatArray:
-    """Field in the half-space as by `half_space_field`, the load smooth where a step of it would be seen."""
-    if not load.any():
+    """Field in the half-space as by `half_space_field`, the load smooth where a step of it would be seen.
+
+    A load that ends in steps is uniform in each cell.
+    """
+    if not load.any() or ends_in_steps(load):
         return half_space_field(load, influence, grid, x, y, z, extent=extent)
     fine = FineCells(load, grid, extent, influence.load.sign_x)
     if not grid.uniform:

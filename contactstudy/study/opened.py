@@ -70,7 +70,7 @@ def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
     (['ok', 'ok'], ('max_pressure', 'x_over_a', 'y_over_a'))
     >>> own = open_study(folder, cells="own")
     >>> own.pressure.dims, round(float(own.gamma), 3), str(own.profile.item())
-    (('max_pressure', 'x_index', 'y_over_a'), 0.04, 'cylinder')
+    (('max_pressure', 'x_index', 'y_index'), 0.04, 'cylinder')
     """
     checks.known_name("cells", cells, CELLS)
     place = Folder(folder)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 from collections.abc import Callable
 from types import ModuleType
 
@@ -176,7 +177,7 @@ def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
         for name, array in dataset.data_vars.items():
             if name not in VARIABLES:
                 continue
-            dims = {str(dim).removesuffix("_index").removesuffix("_field") for dim in array.dims}
+            dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
             further = {*PARAMETERS, "case", "slice", *({"distance"} if function == "along_line" else ())}
             if not dims - further <= {*VARIABLES[str(name)].dims}:
                 unlike.append((function, name, array.dims))

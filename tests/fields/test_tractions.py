@@ -85,7 +85,8 @@ def test_top_moves_as_the_field_inside_says(body: Body, load: Load) -> None:
     inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)
     for axis in "xyz":
         apart = (top[f"displacement_{axis}"] - inside[f"u_{axis}"].isel(z=0)).sel(x=inner)
-        assert float(np.abs(apart).max()) < 2e-3 * largest, axis
+        # The field sees a smooth load, the operator of the top one that is uniform in each cell.
+        assert float(np.abs(apart).max()) < 6e-3 * largest, axis
 
 
 @pytest.mark.parametrize("body", [BODIES["quarter space"], BODIES["finite length"]], ids=["quarter", "finite"])

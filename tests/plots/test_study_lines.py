@@ -9,7 +9,7 @@ def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_noth
     figure = plots.plot_study_lines(opened, "e_over_a", "body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
     assert all(len(ax.lines) == 2 for ax in figure.axes)
-    expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e6
+    expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), expected)
     assert all("(" in ax.get_ylabel() for ax in figure.axes)
     assert_nothing_clipped(figure)

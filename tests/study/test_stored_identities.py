@@ -17,12 +17,12 @@ from tests.small_study import BASE
 from tests.study.conftest import ROOT
 
 STORED = {
-    "edge_effect": (48, "cec14fb311ed5b01"),
-    "end_distance": (27, "e7beb76f28d7c9ff"),
-    "friction": (33, "3e3aa0f1248bf1ad"),
-    "gamma": (18, "0bdcc9a518eb4d84"),
-    "profiles": (48, "be228be76d7d6e38"),
-    "regime_map": (624, "2fdebce9f302aeb1"),
+    "edge_effect": (48, "1e1773dae39e300b"),
+    "end_distance": (27, "63cb95128676bb57"),
+    "friction": (33, "96f92ee20a25bd8e"),
+    "gamma": (18, "7cac20daa29f13d6"),
+    "profiles": (48, "de4bef948587bafc"),
+    "regime_map": (780, "53a5d7d42d069fdb"),
 }
 
 DEFAULTS = {
