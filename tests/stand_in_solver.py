@@ -62,8 +62,11 @@ def solve_fake(
         }
         shape = tuple(axis.size for axis in points.values())
         depth = np.broadcast_to(points["z"] / half_width, shape)
+        # Largest in the middle of the points, so that it does not lie at their edge.
+        x, y = (np.linspace(-1, 1, size) if size > 1 else np.zeros(1) for size in shape[:2])
+        hill = (1 - 0.1 * x[:, None, None] ** 2) * (1 - 0.1 * y[:, None] ** 2)
         for number, name in enumerate(STRESSES):
-            result[name] = (tuple(points), -peak * np.exp(-depth) / (1 + number))
+            result[name] = (tuple(points), -peak * hill * np.exp(-depth) / (1 + number))
         result = result.assign_coords(points)
         result["von_mises"] = von_mises(result)
     return describe(result, "made up for tests")

@@ -27,6 +27,11 @@ QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 MARKERS = "osD^vPX*"
 """Of the lines, in turn."""
 
+OPEN: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
+"""Marker of a value that may be larger beyond the points where it was looked for."""
+
+AT_EDGE = "at the edge of the points: no error known"
+
 WIDEST_LABEL, WIDEST_LEGEND = 34, 22
 """Characters after which the text of an axis and of the legend's title goes on in the next line."""
 
@@ -57,8 +62,9 @@ def plot_study_lines(
     Returns
     -------
     Figure
-        Its title says at which values of the other parameters. An open triangle at the top stands for a value without a
-        limit, such as the peak pressure at a sharp end inside the face.
+        Its title says at which values of the other parameters. An open triangle at the top stands for a value without
+        a limit, such as the peak pressure at a sharp end inside the face. An open marker is a largest value at the edge
+        of the points where it was looked for.
 
     Raises
     ------
@@ -93,9 +99,10 @@ def plot_study_lines(
         sharex=True,
     )
     chosen = _first_solved(dataset[drawn[0]], kept, selection or {})
-    singular = False
+    singular = at_edge = False
     for ax, name in zip(axes[0], drawn, strict=True):
         values, meaning = readable(one_value(dataset[name], kept, chosen), name)
+        unsure = _without_error(dataset, name, kept, chosen)
         numeric = np.issubdtype(values[x].dtype, np.number)
         across, label = readable(values[x], x) if numeric else (values[x], x.replace("_", " "))
         places = across.values if numeric else np.arange(across.size)
@@ -106,6 +113,12 @@ def plot_study_lines(
             endless = np.isinf(line.values)
             shown = np.where(endless, np.nan, line.values)
             ax.plot(places, shown, **style, marker=marker, markersize=4, label=text)
+            if unsure is not None:
+                own = unsure if hue is None else unsure.isel({hue: number})
+                open_marks = np.where(own.values, shown, np.nan)
+                if np.isfinite(open_marks).any():
+                    ax.plot(places, open_marks, color=style["color"], marker=marker, **OPEN)
+                    at_edge = True
             mark_at_top(ax, list(places[endless]), style["color"])
             singular |= bool(endless.any())
         if not numeric:
@@ -121,9 +134,12 @@ def plot_study_lines(
         handles, labels = axes[0, 0].get_legend_handles_labels()
         small = {"fontsize": "small", "title_fontsize": "small"}
         figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
-    if singular:
-        key = Line2D([], [], color="0.3", **MARK)
-        figure.legend([key], [MEANING], loc="outside lower right", frameon=False, fontsize="small")
+    keys = {MEANING: MARK} if singular else {}
+    if at_edge:
+        keys[AT_EDGE] = {"marker": "o", **OPEN}
+    if keys:
+        marks = [Line2D([], [], color="0.3", **style) for style in keys.values()]
+        figure.legend(marks, list(keys), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
     if chosen:
         stated = ", ".join(
             f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {as_written(value)}"
@@ -131,6 +147,18 @@ def plot_study_lines(
         )
         figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")
     return figure
+
+
+def _without_error(
+    dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mapping[str, Any]
+) -> xr.DataArray | None:
+    """Where a largest value, or its place, has an infinite error because it lies at the edge of the points."""
+    base = name.removesuffix("_x").removesuffix("_y").removesuffix("_z")
+    error = f"{base}_error"
+    if error not in dataset:
+        return None
+    endless = one_value(dataset[error], kept, chosen) == np.inf
+    return endless & (one_value(dataset[base], kept, chosen) < np.inf)
 
 
 def _texts(values: xr.DataArray, name: str) -> list[str]:

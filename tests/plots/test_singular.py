@@ -57,3 +57,13 @@ def test_without_singular_cases_there_is_no_mark():
 def test_a_map_says_where_there_is_no_limit():
     ax = plots.plot_study_map(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "peak_pressure")
     assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
+
+
+def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker():
+    one = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
+    one["peak_von_mises_error"] = one["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
+    figure = plots.plot_study_lines(one, "e_over_a", "friction", variables=["peak_von_mises"])
+    _, line, marks = figure.axes[0].lines
+    assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
+    assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
+    assert any("edge of the points" in text.get_text() for legend in figure.legends for text in legend.get_texts())
