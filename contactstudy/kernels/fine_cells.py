@@ -115,7 +115,8 @@ class FineCells:
     @cached_property
     def gathered(self) -> FloatArray:
         """Load on the cells and their nearest images that far away along x makes the field of the smooth one."""
-        return with_images(self.cells, self._image, self._extent) + self.sent.total.T
+        # The smooth load shares the force of the last two cells anew where less than half of the last is pressed.
+        return with_images(self._along_x.cell_means.T, self._image, self._extent) + self.sent.total.T
 
     @property
     def parts(self) -> tuple[int, int]:
