@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.invariants import von_mises
 from contactstudy.arrays.variables import STRESSES, describe
@@ -37,6 +38,7 @@ def stress_field(
     *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
+    smooth: bool = True,
 ) -> xr.Dataset:
     """Stresses at the tensor product of any x, y and z.
 
@@ -57,6 +59,9 @@ def stress_field(
         Depths in metres, not negative.
     traction_x, traction_y : DataArray (x, y), optional
         Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
+    smooth : bool
+        Whether the load is smooth near to a point, as `solve` takes it. False: it is uniform in each cell. Only then is
+        the stress of a sum of loads the sum of their stresses near the top.
 
     Returns
     -------
@@ -85,12 +90,16 @@ def stress_field(
     """
     grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     positions = field_positions(body, grid, x, y, z, own)
-    return stress_dataset(body, loads, grid, positions)
+    checks.instance("smooth", smooth, (bool, np.bool_), "True or False")
+    return stress_dataset(body, loads, grid, positions, smooth=bool(smooth))
 
 
-def stress_dataset(body: Body, loads: Loads, grid: Grid, positions: FieldPositions) -> xr.Dataset:
+def stress_dataset(
+    body: Body, loads: Loads, grid: Grid, positions: FieldPositions, *, smooth: bool = True
+) -> xr.Dataset:
     """Stresses under `loads` on the cells of `grid`, labelled."""
-    return _labelled(body, grid, stress_under(body, loads, grid, *positions.axes), positions)
+    (stresses,) = stresses_at(body, loads, grid, [Place(*positions.axes)], smooth=smooth)
+    return _labelled(body, grid, stresses, positions)
 
 
 def _labelled(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
@@ -118,15 +127,19 @@ def stress_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatAr
     return stresses
 
 
-def stresses_at(body: Body, loads: Loads, grid: Grid, places: Sequence[Place]) -> list[FloatArray]:
+def stresses_at(
+    body: Body, loads: Loads, grid: Grid, places: Sequence[Place], *, smooth: bool = True
+) -> list[FloatArray]:
     """Stresses (6, x, y, z) at each of some places; what frees the ends is solved for once.
 
     The fields under each load's distribution are kept, so that a sweep over the friction computes them once.
     """
     keys = tuple(tuple(ArrayKey(axis) for axis in place) for place in places)
-    return superposed(
-        loads, lambda directions, cells: _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), keys))
-    )
+
+    def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
+        return _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), keys, smooth))
+
+    return superposed(loads, unit_fields)
 
 
 class _StressRequest(NamedTuple):
@@ -137,6 +150,7 @@ class _StressRequest(NamedTuple):
     loads: tuple[Load, ...]
     cells: ArrayKey
     places: tuple[tuple[ArrayKey, ...], ...]
+    smooth: bool
 
 
 @kept("stress fields", lambda fields: sum(each.nbytes for field in fields.values() for each in field))
@@ -151,16 +165,19 @@ def _unit_stress(request: _StressRequest) -> dict[Load, list[FloatArray]]:
 
 def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatArray]]:
     """Stresses of one part of a body, times its weight."""
-    body, grid, loads, cells, keys = request
+    body, grid, loads, cells, keys, smooth = request
     places = [Place(*(axis.values for axis in key)) for key in keys]
     poisson, extent = body.material.poisson, part.extent
     fields = {
-        load: [half_space_stress(load, cells.values, poisson, grid, *place, extent=extent) for place in places]
+        load: [
+            half_space_stress(load, cells.values, poisson, grid, *place, extent=extent, smooth=smooth)
+            for place in places
+        ]
         for load in loads
     }
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells.values, grid, length)
+        seen, seen_on = seen_by_ends(cells.values, grid, length) if smooth else (cells.values, grid)
         problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         reference = reference_of(part.extent)
         for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places, reference), strict=True)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
@@ -23,6 +24,7 @@ def half_space_stress(
     z: FloatArray,
     *,
     extent: tuple[float, float],
+    smooth: bool = True,
 ) -> FloatArray:
     """Stresses of the half-space under a load and all its mirror images in the ends of `extent`.
 
@@ -40,6 +42,8 @@ def half_space_stress(
         Points, as a tensor product, metres.
     extent : tuple of float
         Where the mirrors stand; infinite for none.
+    smooth : bool
+        Whether the load is smooth where a step of it would be seen; else it is uniform in each cell.
 
     Returns
     -------
@@ -47,4 +51,5 @@ def half_space_stress(
         xx, yy, zz, xy, xz, yz in Pa.
     """
     influence = Influence.of(STRESS_CORNERS[load], poisson, load, UNDER_PRESSURE)
-    return smooth_field(cells, influence, grid, x, y, z, extent=extent)
+    field = smooth_field if smooth else half_space_field
+    return field(cells, influence, grid, x, y, z, extent=extent)

@@ -275,9 +275,10 @@ def superposition(solved: Solved) -> bool:
     both = pressure + 0.5 * other
     friction = chance.uniform(-1.0, 1.0)
     points = inner_points(solved)
-    fields = [stacked(stress_field(case.body, each, friction, **points)) for each in (pressure, other, both)]
+    uniform = {"smooth": False, **points}
+    fields = [stacked(stress_field(case.body, each, friction, **uniform)) for each in (pressure, other, both)]
     close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, QUADRATURE)
-    frictionless, full = (stacked(stress_field(case.body, pressure, f, **points)) for f in (0.0, 1.0))
+    frictionless, full = (stacked(stress_field(case.body, pressure, f, **uniform)) for f in (0.0, 1.0))
     close("stresses with friction", frictionless + friction * (full - frictionless), fields[0], peak, 1e-9)
     sunk = [surface_displacement(case.body, each, friction).values for each in (pressure, other, both)]
     close("displacements of a sum", sunk[0] + 0.5 * sunk[1], sunk[2], float(np.abs(sunk[2]).max()), 1e-9)
