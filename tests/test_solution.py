@@ -159,7 +159,7 @@ def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
     peak = float(result.pressure.max())
     for stress, load in (("tau_yz", "traction_y"), ("tau_xz", "traction_x"), ("sigma_zz", "pressure")):
         assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
-    assert float(result.end_traction_residual) < 6e-4  # on a few uniform cells, from a depth of 0.02 a on
+    assert float(result.end_traction_residual) < 2e-4
     tractions = {name: result[name] for name in ("traction_x", "traction_y")}
     inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
     reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))

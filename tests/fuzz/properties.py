@@ -405,8 +405,8 @@ def free_ends(solved: Solved) -> bool:
     return True
 
 
-FREE = 5e-3
-"""Largest traction left on the ends: on few cells the smooth load that either side sees differs by this much."""
+FREE = 2e-3
+"""Largest traction left on the ends."""
 
 
 def stated_errors(solved: Solved) -> bool:
