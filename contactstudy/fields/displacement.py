@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
@@ -33,6 +34,7 @@ def displacement_field(
     *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
+    smooth: bool = True,
 ) -> xr.Dataset:
     """Displacements at the tensor product of any x, y and z.
 
@@ -53,6 +55,9 @@ def displacement_field(
         Depths in metres, not negative.
     traction_x, traction_y : DataArray (x, y), optional
         Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
+    smooth : bool
+        Whether the load is smooth near to a point. False: it is uniform in each cell, as for `surface_displacement`.
+        Only then is the displacement under a sum of loads the sum of their displacements near the top.
 
     Returns
     -------
@@ -80,7 +85,8 @@ def displacement_field(
     """
     grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     positions = field_positions(body, grid, x, y, z, own)
-    displacement = displacement_under(body, loads, grid, *positions.axes)
+    checks.instance("smooth", smooth, (bool, np.bool_), "True or False")
+    displacement = displacement_under(body, loads, grid, *positions.axes, smooth=bool(smooth))
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     reference = REFERENCE_LENGTHS * body.unbounded_row
     if np.isfinite(reference):
@@ -90,13 +96,15 @@ def displacement_field(
     return describe(fields, "displacements under a prescribed pressure")
 
 
-def displacement_under(body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+def displacement_under(
+    body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray, *, smooth: bool = True
+) -> FloatArray:
     """Displacements (3, x, y, z), metres."""
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
         fields: dict[Load, FloatArray] = {load: np.zeros((3, x.size, y.size, z.size)) for load in directions}
         for part in body.parts:
-            for load, field in _part_displacement(body, part, directions, cells, grid, x, y, z).items():
+            for load, field in _part_displacement(body, part, directions, cells, grid, x, y, z, smooth).items():
                 fields[load] += part.weight * field
         return {load: [field] for load, field in fields.items()}
 
@@ -113,17 +121,20 @@ def _part_displacement(
     x: FloatArray,
     y: FloatArray,
     z: FloatArray,
+    smooth: bool,
 ) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z) of one part of a body, before its weight."""
     material, extent = body.material, part.extent
     reference = REFERENCE_LENGTHS * (extent[1] - extent[0])
     fields = {
-        load: half_space_displacement(load, cells, material, grid, x, y, z, extent=extent, reference=reference)
+        load: half_space_displacement(
+            load, cells, material, grid, x, y, z, extent=extent, reference=reference, smooth=smooth
+        )
         for load in loads
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells, grid, length)
+        seen, seen_on = seen_by_ends(cells, grid, length, smooth=smooth)
         problem = EndProblem(
             length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid)
         )

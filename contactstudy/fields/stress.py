@@ -177,7 +177,7 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
     }
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells.values, grid, length) if smooth else (cells.values, grid)
+        seen, seen_on = seen_by_ends(cells.values, grid, length, smooth=smooth)
         problem = EndProblem(length, poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid))
         reference = reference_of(part.extent)
         for number, (place, by_load) in enumerate(zip(places, end_stress(problem, places, reference), strict=True)):

@@ -7,6 +7,7 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch_displacement import DISPLACEMENT_CORNERS
@@ -28,6 +29,7 @@ def half_space_displacement(
     *,
     extent: tuple[float, float],
     reference: float,
+    smooth: bool = True,
 ) -> FloatArray:
     """Displacements of the half-space under a load and all its mirror images in the ends of `extent`.
 
@@ -48,6 +50,8 @@ def half_space_displacement(
     reference : float
         With two mirrors the displacement in the direction of the load grows like a logarithm; it is taken relative to
         the top at this distance along y, metres.
+    smooth : bool
+        Whether the load is smooth where a step of it would be seen; else it is uniform in each cell.
 
     Returns
     -------
@@ -56,7 +60,7 @@ def half_space_displacement(
     """
     nu, length = material.poisson, extent[1] - extent[0]
     influence = displacement_influence(load, nu, length, reference)
-    field = smooth_field(cells, influence, grid, x, y, z, extent=extent)
+    field = (smooth_field if smooth else half_space_field)(cells, influence, grid, x, y, z, extent=extent)
     return field / (4 * np.pi * material.shear_modulus)
 
 

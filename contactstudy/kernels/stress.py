@@ -51,5 +51,4 @@ def half_space_stress(
         xx, yy, zz, xy, xz, yz in Pa.
     """
     influence = Influence.of(STRESS_CORNERS[load], poisson, load, UNDER_PRESSURE)
-    field = smooth_field if smooth else half_space_field
-    return field(cells, influence, grid, x, y, z, extent=extent)
+    return (smooth_field if smooth else half_space_field)(cells, influence, grid, x, y, z, extent=extent)
