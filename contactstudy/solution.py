@@ -100,7 +100,7 @@ def solve(
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
         `end_traction_residual`; with stick and slip, tractions and slip as from `solve_contact` instead of
-        `shear_traction`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
+        `traction_y`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
         instead of ``(x, y, z)``. On refined columns also `peak_pressure` (and ``_first`` and ``_last``, of either
         half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
         `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and

@@ -172,7 +172,7 @@ def measured(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str
     pressure = contact["pressure"].sel(x=slice(None, last))
     stress, depth = largest_von_mises(indenter, case, contact)
     return {
-        "load": float(contact["load"]),
+        "load": float(contact["normal_load"]),
         "approach": float(contact["approach"]),
         "contact_area": float(contact.contact.contact_edges()["contact_area"]),
         "peak_pressure": float(pressure.max()),

@@ -59,7 +59,7 @@ def solve_fake(
             "gap": (("x", "y"), np.where(pressure > 0, 0.0, 1e-6)),
             "hertz_half_width": half_width,
             "hertz_max_pressure": peak,
-            "load": case.normal_load,
+            "normal_load": case.normal_load,
             "iterations": 7,
             "converged": True,
             "end_traction_residual": 1e-5,

@@ -37,11 +37,11 @@ def result():
 
 def test_everything_the_interface_promises_is_there_with_its_unit(result) -> None:
     promised = (
-        *("pressure", "shear_traction", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
+        *("pressure", "traction_y", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
         *(
             "hertz_half_width",
             "hertz_max_pressure",
-            "load",
+            "normal_load",
             "approach",
             "tilt",
             "load_position",
@@ -82,7 +82,7 @@ def test_top_carries_the_load(result) -> None:
     top = result.isel(z=0)
     away = top["pressure"] > 0.75e9  # nearer to the contact's border the pressure bends within a cell
     assert np.allclose(top["sigma_zz"].where(away, 0.0), -top["pressure"].where(away, 0.0), atol=1.5e-2 * 1.5e9)
-    assert np.allclose(top["tau_yz"].where(away, 0.0), -top["shear_traction"].where(away, 0.0), atol=1.5e-3 * 1.5e9)
+    assert np.allclose(top["tau_yz"].where(away, 0.0), -top["traction_y"].where(away, 0.0), atol=1.5e-3 * 1.5e9)
 
 
 def test_result_survives_netcdf(result, tmp_path) -> None:

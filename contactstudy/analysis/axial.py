@@ -105,7 +105,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     along, place, half_cell = dimension_along(load, "x"), positions(load, "x"), 0.5 * cell_size(load, "x")
     shared = (np.minimum(place + half_cell, stop) - np.maximum(place - half_cell, start)).clip(0.0)
     carried = (load * shared).sum(along, min_count=1)
-    return named("load", carried).assign_attrs(comment="between two positions along the axis")
+    return named("normal_load", carried).assign_attrs(comment="between two positions along the axis")
 
 
 def half_width(dataset: xr.Dataset) -> xr.Dataset:

@@ -33,8 +33,8 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Along `slice` = 1, 2, ...: `position` (m, its middle), `width` (m), `load` (N), `axial_pressure` (Pa, largest),
-        `half_width` (m, mean over its cells), `unloaded_gap` (m, mean). With stresses also `peak_von_mises`,
+        Along `slice` = 1, 2, ...: `position` (m, its middle), `width` (m), `normal_load` (N), `axial_pressure` (Pa,
+        largest), `half_width` (m, mean over its cells), `unloaded_gap` (m, mean). With stresses also `peak_von_mises`,
         `peak_maximum_shear`, `peak_orthogonal_shear_amplitude` (Pa, largest) and their depths ``..._z`` (m); NaN for
         a slice without stress points. ``.to_dataframe()`` makes it a table.
 
@@ -48,7 +48,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     >>> cells = {"x": np.arange(4) + 0.5, "y": [-0.5, 0.5]}
     >>> pressure = xr.DataArray([[1, 1], [3, 3], [1, 1], [0, 0]], dims=("x", "y"), coords=cells)
     >>> table = slices(xr.Dataset({"pressure": pressure}), 2).to_dataframe()
-    >>> table["load"].tolist(), table["axial_pressure"].tolist()
+    >>> table["normal_load"].tolist(), table["axial_pressure"].tolist()
     ([8.0, 2.0], [3.0, 1.0])
     """
     require(dataset, "pressure")
@@ -72,7 +72,9 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         {
             "position": ("slice", 0.5 * (borders[1:] + borders[:-1])),
             "width": ("slice", np.full(number, width)),
-            "load": named("load", (weights * cells["line_load"]).sum(x)).assign_attrs(comment="of the slice"),
+            "normal_load": named("normal_load", (weights * cells["line_load"]).sum(x)).assign_attrs(
+                comment="of the slice"
+            ),
         },
         coords={"slice": np.arange(1, number + 1)},
     )

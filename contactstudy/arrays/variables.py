@@ -111,7 +111,7 @@ def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.Da
 
     Examples
     --------
-    >>> named("load", xr.DataArray(1.0)).attrs
+    >>> named("normal_load", xr.DataArray(1.0)).attrs
     {'units': 'N', 'long_name': 'normal load'}
     """
     renamed = array.rename(name)
@@ -139,7 +139,7 @@ def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
 
     Examples
     --------
-    >>> describe(xr.Dataset({"load": 1.0}), "a load")["load"].attrs["units"]
+    >>> describe(xr.Dataset({"normal_load": 1.0}), "a load")["normal_load"].attrs["units"]
     'N'
     """
     described = dataset.copy()

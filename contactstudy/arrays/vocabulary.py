@@ -26,7 +26,7 @@ class Variable(NamedTuple):
 
     Examples
     --------
-    >>> VARIABLES["load"].attrs
+    >>> VARIABLES["normal_load"].attrs
     {'units': 'N', 'long_name': 'normal load'}
     """
 
@@ -69,7 +69,6 @@ COORDINATES = {
 
 CONTACT = {
     "pressure": Variable(XY, "Pa", "p", "contact pressure"),
-    "shear_traction": Variable(XY, "Pa", "q", "shear traction on the body along +y"),
     "traction_x": Variable(XY, "Pa", "q_x", "traction on the body along the roller's axis"),
     "traction_y": Variable(XY, "Pa", "q_y", "traction on the body along +y"),
     "slip_x": Variable(XY, "", "s_x", "slip of the roller against the body along x, per distance rolled or of a shift"),
@@ -81,7 +80,7 @@ CONTACT = {
     "displacement_x": Variable(XY, "m", "u_x", "displacement of the top along the roller's axis"),
     "displacement_y": Variable(XY, "m", "u_y", "displacement of the top along rolling"),
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
-    "load": Variable(SCALAR, "N", "W", "normal load"),
+    "normal_load": Variable(SCALAR, "N", "W", "normal load"),
     "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
     "tilt": Variable(
         SCALAR, "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"

@@ -199,6 +199,6 @@ def frictional_contact(
 
 def labelled(result: xr.Dataset, found: FrictionalContact) -> xr.Dataset:
     """Add tractions and slip to the labelled contact, whose full sliding they replace."""
-    complete = result.drop_vars("shear_traction").assign(found.dataset().data_vars)
+    complete = result.assign(found.dataset().data_vars)
     complete["converged"] = found.converged
     return describe(complete)

@@ -107,7 +107,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         "edge_factor": factor,
     }
     result = xr.Dataset(
-        {name: ("x", values) for name, values in fields.items()} | {"load": case.normal_load, "approach": approach},
+        {name: ("x", values) for name, values in fields.items()}
+        | {"normal_load": case.normal_load, "approach": approach},
         coords={"x": x},
         attrs={"slices": slices, "tilt": tilt},
     )

@@ -84,10 +84,10 @@ def solve_contact(
     Returns
     -------
     Dataset
-        `pressure`, `shear_traction`, `gap`, `displacement_z` (of `body`) (x, y); `load`, `approach` (where the load
+        `pressure`, `traction_y`, `gap`, `displacement_z` (of `body`) (x, y); `normal_load`, `approach` (where the load
         acts, or at ``x = 0``), `tilt`, `load_position` of the resultant, `iterations`, `converged`; and the
         certificate, recomputed from the pressure alone: `load_error`, `penetration_error`, `open_pressure_error`. With
-        stick and slip, instead of `shear_traction`: `traction_x`, `traction_y`, `slip_x`, `slip_y`, `stick` (x, y);
+        stick and slip, instead of `traction_y`: `traction_x`, `traction_y`, `slip_x`, `slip_y`, `stick` (x, y);
         `force_x`, `force_y`, `moment_z` on the body about the middle of the shape; `longitudinal_creepage`,
         `lateral_creepage`, `spin`, or `shift_x`, `shift_y`; `friction_work`; and the certificate of the tractions,
         `bound_error`, `slip_error` and `force_error`.
@@ -181,12 +181,12 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
     # The contact may be kept for other cases: what the caller does to a result must not change it.
     fields = {
         "pressure": contact.pressure.copy(),
-        "shear_traction": friction * contact.pressure,
+        "traction_y": friction * contact.pressure,
         "gap": contact.gap.copy(),
         "displacement_z": contact.displacement.copy(),
     }
     scalars: dict[str, float | int | bool] = {
-        "load": contact.carried if shape.prescribed.load is None else shape.prescribed.load,
+        "normal_load": contact.carried if shape.prescribed.load is None else shape.prescribed.load,
         "approach": contact.approach,
         "tilt": contact.tilt,
         "load_position": contact.load_position,

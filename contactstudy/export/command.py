@@ -8,6 +8,7 @@ from pathlib import Path
 
 import xarray as xr
 
+from contactstudy.arrays.old_names import with_present_names
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.table import Line, csv_text, to_csv, to_table
 from contactstudy.export.vtk import to_vtk
@@ -68,7 +69,7 @@ def _open(path: Path) -> xr.Dataset:
         return open_study(path)
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
+            return with_present_names(dataset.load())
     except (OSError, ValueError) as error:
         missing = isinstance(error, FileNotFoundError)
         reason = "there is no such file" if missing else "this file is not netCDF"

@@ -21,7 +21,7 @@ from contactstudy.checks import FloatArray
 LEAST_WIDTH = 0.5
 """Width of a common cell over the narrowest of the cases' own there, at least. Accuracy."""
 
-AVERAGED = frozenset({"pressure", "shear_traction"})
+AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})
 """Variables that are averaged over a common cell."""
 
 AVERAGE = "averaged over cells that all cases share: loads are kept, peaks may be a little lower"

@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from contactstudy.arrays.old_names import with_present_names
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StoreError
@@ -180,7 +181,7 @@ def read_header(path: Path, *, verify: bool = False) -> Header:
     StoreError
         If the file is damaged or not of this package.
     """
-    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+    with _opened(path) as dataset:
         if ID_ATTRIBUTE not in dataset.attrs or CASE_ATTRIBUTE not in dataset.attrs:
             raise StoreError(f"{path} is not a case of a contactstudy study")
         if verify:
@@ -203,6 +204,13 @@ def read_header(path: Path, *, verify: bool = False) -> Header:
     return header
 
 
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[xr.Dataset]:
+    """Open a file; an error of its format becomes our own, old names of variables those of today."""
+    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+        yield with_present_names(dataset)
+
+
 def load_case(path: Path) -> xr.Dataset:
     """Everything in a case's file, in memory.
 
@@ -211,7 +219,7 @@ def load_case(path: Path) -> xr.Dataset:
     StoreError
         If the file is damaged.
     """
-    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+    with _opened(path) as dataset:
         return dataset.load()
 
 
@@ -223,13 +231,13 @@ def load_variable(path: Path, name: str) -> npt.NDArray[Any]:
     StoreError
         If the file is damaged or has no such variable.
     """
-    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+    with _opened(path) as dataset:
         return np.asarray(dataset[name].values)
 
 
 def read_structure(path: Path) -> tuple[dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]], xr.Dataset]:
     """Dimensions, type and attributes of each variable that is not a scalar, and the coordinates, in memory."""
-    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+    with _opened(path) as dataset:
         variables = {
             str(name): (tuple(map(str, variable.dims)), variable.dtype, dict(variable.attrs))
             for name, variable in dataset.data_vars.items()
@@ -241,7 +249,7 @@ def read_structure(path: Path) -> tuple[dict[str, tuple[tuple[str, ...], np.dtyp
 
 def scalar_attributes(path: Path) -> dict[str, dict[str, Any]]:
     """Attributes of each scalar variable of a case's file."""
-    with _netcdf(path, "read"), xr.open_dataset(path, engine="netcdf4", cache=False) as dataset:
+    with _opened(path) as dataset:
         return {str(name): dict(entry.attrs) for name, entry in dataset.data_vars.items() if entry.ndim == 0}
 
 

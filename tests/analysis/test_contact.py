@@ -94,8 +94,8 @@ def test_line_contact_has_hertz_load_and_half_width(strip_result) -> None:
 
 def test_real_contact(solved: xr.Dataset) -> None:
     result = analysis.contact_results(solved)
-    assert float(result["resultant"]) == pytest.approx(float(solved["load"]), rel=1e-9)
-    assert abs(float(result["moment"])) < 1e-6 * float(solved["load"]) * 0.5e-3
+    assert float(result["resultant"]) == pytest.approx(float(solved["normal_load"]), rel=1e-9)
+    assert abs(float(result["moment"])) < 1e-6 * float(solved["normal_load"]) * 0.5e-3
     middle = analysis.half_width(solved)["half_width"].sel(x=0.26e-3, method="nearest")
     line_load = analysis.line_load(solved).sel(x=0.26e-3, method="nearest")
     # Hertz' half-width of the load that the section carries, to a fraction of a cell (a/12).
@@ -160,7 +160,7 @@ def test_nothing_in_contact() -> None:
 )
 def test_missing_variables_are_named(function) -> None:
     with pytest.raises(InvalidInputError, match=r"(pressure|initial_gap) is missing"):
-        function(xr.Dataset({"load": 1.0}))
+        function(xr.Dataset({"normal_load": 1.0}))
     with pytest.raises(InvalidInputError, match="Dataset"):
         function(np.zeros(3))
 

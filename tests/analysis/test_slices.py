@@ -15,8 +15,8 @@ from contactstudy import InvalidInputError, analysis
 def test_slices_carry_the_whole_load_however_many(strip_result, count: int) -> None:
     result = strip_result()
     table = analysis.slices(result, count)
-    assert float(table["load"].sum()) == pytest.approx(float(analysis.contact_results(result)["resultant"]))
-    assert table["load"].values == pytest.approx(float(table["load"].mean()))
+    assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(result)["resultant"]))
+    assert table["normal_load"].values == pytest.approx(float(table["normal_load"].mean()))
     assert float(table["width"].sum()) == pytest.approx(4.0)
     assert float(table["position"].mean()) == pytest.approx(3.0)
 
@@ -40,12 +40,12 @@ def test_surfaces_only(opened: xr.Dataset) -> None:
     surface = one.drop_vars([name for name in one.data_vars if "z" in one[name].dims])
     table = analysis.slices(surface, 5)
     assert "peak_von_mises" not in table
-    assert float(table["load"].sum()) == pytest.approx(float(analysis.contact_results(one)["resultant"]))
+    assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(one)["resultant"]))
 
 
 def test_real_contact_is_symmetric(solved: xr.Dataset) -> None:
     table = analysis.slices(solved, 6)
-    for name in ("load", "axial_pressure", "half_width"):
+    for name in ("normal_load", "axial_pressure", "half_width"):
         assert np.allclose(table[name], table[name][::-1], rtol=1e-5)
 
 

@@ -37,8 +37,8 @@ def test_a_roller_that_slides_both_ways() -> None:
     grid = choose_grid(asked, cells_x=3, cells_y=8, window=1.5)
     result = solve(asked, grid, z=[2e-5])
     along = 0.2 * (result.x / LENGTH) - 0.1
-    assert np.allclose(result.shear_traction, along * result.pressure)
-    assert float(result.shear_traction.sum()) == pytest.approx(0.0, abs=1e-6 * float(result.pressure.sum()))
+    assert np.allclose(result.traction_y, along * result.pressure)
+    assert float(result.traction_y.sum()) == pytest.approx(0.0, abs=1e-6 * float(result.pressure.sum()))
     # About mid-length the traction is odd: so is the shear that it makes, and the pressure's part is even.
     plain = solve(replace(asked, friction=0.0), grid, z=[2e-5])
     change = (result.tau_yz - plain.tau_yz).values
@@ -51,7 +51,7 @@ def test_equal_values_are_the_number() -> None:
         solve(case(friction), grid, z=[2e-5])
         for friction in (0.1, xr.DataArray([0.1, 0.1], coords={"x": [0.0, LENGTH]}, dims="x"))
     )
-    for name in ("shear_traction", "von_mises"):
+    for name in ("traction_y", "von_mises"):
         assert np.allclose(numbers[name], values[name], rtol=1e-9)
 
 
@@ -89,8 +89,8 @@ def test_any_shape_may_have_it() -> None:
     gap = xr.DataArray(case(0.1).gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     body = FiniteLengthSpace(length=LENGTH, material=STEEL)
     found = solve_contact(body, gap, 100.0, BOTH_WAYS)
-    assert float(found.shear_traction[0].max()) <= 0 <= float(found.shear_traction[-1].min())
-    dragged = surface_displacement(body, 0 * found.pressure, traction_y=found.shear_traction, components="y")
+    assert float(found.traction_y[0].max()) <= 0 <= float(found.traction_y[-1].min())
+    dragged = surface_displacement(body, 0 * found.pressure, traction_y=found.traction_y, components="y")
     assert np.abs(dragged.displacement_y.values + dragged.displacement_y.values[::-1]).max() < 1e-6 * float(
         np.abs(dragged.displacement_y).max()
     )

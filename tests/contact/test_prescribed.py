@@ -78,7 +78,7 @@ def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
     by_load = solve_contact(body, gap, case.normal_load)
     by_approach = solve_contact(body, gap, approach=float(by_load.approach))
     assert bool(by_approach.converged)
-    assert float(by_approach["load"]) == pytest.approx(case.normal_load, rel=1e-5)
+    assert float(by_approach["normal_load"]) == pytest.approx(case.normal_load, rel=1e-5)
     np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-4 * float(by_load.pressure.max()))
     assert float(by_approach.approach) == float(by_load.approach)
 
@@ -87,7 +87,7 @@ def test_hertz_point_contact_by_its_approach():
     centres = np.linspace(-1.5, 1.5, 97)
     gap = xr.DataArray(0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y"))
     contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # contact radius 1, load 4/3
-    assert float(contact["load"]) == pytest.approx(4 / 3, rel=1e-3)
+    assert float(contact["normal_load"]) == pytest.approx(4 / 3, rel=1e-3)
     assert float(contact.pressure.max()) == pytest.approx(2 / np.pi, rel=1e-3)
 
 

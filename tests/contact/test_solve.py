@@ -108,7 +108,7 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
     gap = cylinder_gap(8.0, (48, 64))
     plain = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4)
     coupled = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4, coupled=True)
-    assert np.allclose(plain["shear_traction"], 0.4 * plain["pressure"])
+    assert np.allclose(plain["traction_y"], 0.4 * plain["pressure"])
 
     def centre(contact: xr.Dataset) -> float:
         return float((contact["pressure"] * contact["y"]).sum() / contact["pressure"].sum())

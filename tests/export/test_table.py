@@ -45,7 +45,7 @@ def test_a_case_of_a_study(opened: xr.Dataset) -> None:
         ({}, "name some of them"),
         ({"variables": ["pressure", "von_mises"]}, "same points"),
         ({"variables": "pressures"}, "did you mean"),
-        ({"variables": "load"}, "same points"),
+        ({"variables": "normal_load"}, "same points"),
         ({"line": 3}, "pair of points"),
         ({"line": ((0, 0, 0),)}, "pair of points"),
         ({"line": ((0, 0, 0), (1, 0, 0))}, "within the result"),

@@ -66,7 +66,7 @@ def test_bad_input(solved: xr.Dataset, opened: xr.Dataset, tmp_path) -> None:
         (lambda: export.to_vtk(solved, tmp_path / "case.vtk"), "ends with .vtr or .vtu"),
         (lambda: export.to_vtk(solved, 3), "path"),
         (lambda: export.to_vtk(solved, tmp_path / "a.vtr", ["pressure", "von_mises"]), "same points"),
-        (lambda: export.to_vtk(solved, tmp_path / "a.vtr", "load"), "same points"),
+        (lambda: export.to_vtk(solved, tmp_path / "a.vtr", "normal_load"), "same points"),
         (lambda: export.to_vtk(opened, tmp_path / "a.vtr"), "single case"),
         (lambda: export.to_vtk(xr.Dataset(), tmp_path / "a.vtr"), "same points"),
     ):

@@ -74,7 +74,7 @@ def test_bad_input(solved, opened, one):
         (lambda: plots.plot_stress_plane(one.drop_vars(["von_mises", "sigma_xx"])), "level"),
         (lambda: plots.plot_stress_plane(solved, x=0.0, z=0.0), "exactly one"),
         (lambda: plots.plot_stress_plane(solved.isel(z=[0])), "two or more positions"),
-        (lambda: plots.plot_stress_plane(solved, "load"), "same points"),
+        (lambda: plots.plot_stress_plane(solved, "normal_load"), "same points"),
         (lambda: plots.plot_end_face(solved, end="left"), "one of first, last"),
         (lambda: plots.plot_end_face(solved, side=0), "side"),
         (lambda: plots.plot_end_face(solved.isel(x_field=slice(1, None))), "end face"),

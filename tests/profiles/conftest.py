@@ -46,7 +46,7 @@ def along(result: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Distance from mid-length over half the length, largest pressure over p0, and load per length over its mean."""
     middle = 0.5 * result.attrs["length"]
     step = float(result["y"][1] - result["y"][0])
-    mean = float(result["load"]) / result.attrs["length"]
+    mean = float(result["normal_load"]) / result.attrs["length"]
     pressure = result["pressure"]
     peak = pressure.max("y").values / float(result["hertz_max_pressure"])
     return (result["x"].values - middle) / middle, peak, pressure.sum("y").values * step / mean

@@ -92,7 +92,7 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
             on_common, on_own = (each.sel(max_pressure=p0, e_over_a=e) for each in (common, own))
             # All of the load, and that on the last half-width, which no common cell straddles unevenly for a fine axis.
             whole = load_between(on_common, -np.inf, np.inf)
-            assert float(whole) == pytest.approx(float(on_own["load"]), rel=1e-6)
+            assert float(whole) == pytest.approx(float(on_own["normal_load"]), rel=1e-6)
             a = float(on_own["hertz_half_width"])
             last = load_between(on_own, e * a, (e + 1) * a)
             assert float(last) == pytest.approx(float(on_own["end_load_first"]), rel=1e-6, abs=1e-9)

@@ -82,6 +82,20 @@ def test_a_swept_load_is_not_doubled(tmp_path):
     assert opened["load"].values.tolist() == [50, 100]
 
 
+def test_files_of_before_have_the_names_of_today(tmp_path):
+    run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
+    for path in (tmp_path / "cases").glob("*.nc"):
+        case = load_case(path)
+        path.unlink()
+        old = case.rename(normal_load="load").assign(shear_traction=0.1 * case["pressure"])
+        old.to_netcdf(path, engine="netcdf4")
+    opened = open_study(tmp_path)
+    assert (opened["status"] == "ok").all()
+    assert {"normal_load", "traction_y"} <= set(opened.data_vars)
+    assert float(opened["traction_y"].max()) > 0
+    assert not {"load", "shear_traction"} & set(opened.data_vars)
+
+
 def test_an_unfinished_study_opens(tmp_path):
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
     Folder(tmp_path).case_path(identity(e_over_a=0.0)).unlink()
