@@ -228,6 +228,25 @@ FATIGUE = {
 }
 """What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
 
+HEAT = {
+    "temperature_rise": Variable(XY, "K", "T", "temperature rise of the body's surface"),
+    "roller_temperature_rise": Variable(XY, "K", "T_2", "temperature rise of the roller's surface"),
+    "body_temperature_rise": Variable(XYZ, "K", "T", "temperature rise in the body"),
+    "frictional_heat": Variable(XY, "W m-2", r"\dot{q}", "heat that friction makes, per area"),
+    "heat_into_body": Variable(XY, "W m-2", r"\dot{q}_1", "heat that goes into the body, per area"),
+    "heat_partition": Variable(XY, "1", r"\dot{q}_1/\dot{q}", "part of the frictional heat that goes into the body"),
+    "body_heat_share": Variable(SCALAR, "1", "", "part of the whole frictional heat that goes into the body"),
+    "max_temperature_rise": Variable(SCALAR, "K", r"\max T", "largest temperature rise of the surfaces"),
+    "max_temperature_rise_x": Variable(SCALAR, "m", "", "x of the largest temperature rise"),
+    "max_temperature_rise_y": Variable(SCALAR, "m", "", "y of the largest temperature rise"),
+    "friction_power": Variable(SCALAR, "W", "", "power that friction turns into heat"),
+    "heat_error": Variable(SCALAR, "1", "", "heat into both bodies minus the frictional power, over the latter"),
+    "temperature_mismatch": Variable(
+        SCALAR, "1", "", "largest difference of the surfaces' temperatures where they touch, over the largest rise"
+    ),
+}
+"""What :func:`contactstudy.flash_temperature` returns."""
+
 STUDIES = {
     "status": Variable(SCALAR, "", "", "state of the case"),
     "message": Variable(SCALAR, "", "", "why the case is not ok"),
@@ -255,7 +274,7 @@ VERIFICATION = {
 }
 """What :func:`contactstudy.verification.verify` returns."""
 
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | STUDIES | VERIFICATION
+VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | STUDIES | VERIFICATION
 """Every variable of the package but those that are named by a rule."""
 
 RULES = {

@@ -12,6 +12,7 @@ from contactstudy.plots.stress import plot_end_face, plot_stress_plane
 from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
+from contactstudy.plots.temperature import plot_temperature_map
 
 __all__ = [
     "COLORS",
@@ -26,6 +27,7 @@ __all__ = [
     "plot_stress_plane",
     "plot_study_lines",
     "plot_study_map",
+    "plot_temperature_map",
     "save",
     "study_figures",
 ]

@@ -45,6 +45,7 @@ FIRST = (
     "fields",
     "analysis",
     "fatigue",
+    "heat",
     "plots",
     "export",
     "study",

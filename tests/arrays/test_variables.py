@@ -69,6 +69,7 @@ def _rubbed(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -
 def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
     """What every public function returns, by its name."""
     steel = cs.Material(210e9, 0.3)
+    metal = cs.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
@@ -105,6 +106,9 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "surface_displacement, all": cs.surface_displacement(body, pressure, components="xyz"),
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
+        "flash_temperature": cs.flash_temperature(
+            case, solved, body=metal, roller=metal, body_speed=-1.0, roller_speed=1.0, z=depths
+        ),
         "summarize": cs.summarize(solved),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
