@@ -59,7 +59,7 @@ COORDINATES = {
     "y_field": Variable(("y_field",), "m", "y", "position of the stresses along rolling and sliding"),
     "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells along the roller's axis"),
     "x_width": Variable(X, "m", "w", "width of the cells along the roller's axis"),
-    "distance": Variable(("distance",), "m", "s", "distance along the line"),
+    "distance": Variable(("distance",), "m", "s", "distance along the line, or slid or rolled"),
     "slice": Variable(SLICE, "1", "k", "number of the slice, from end I"),
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
@@ -247,6 +247,18 @@ HEAT = {
 }
 """What :func:`contactstudy.flash_temperature` returns."""
 
+DISTANCE_X = ("distance", "x")
+
+WEAR = {
+    "wear_depth": Variable(DISTANCE_X, "m", "h", "depth worn off the roller's profile"),
+    "profile_drop": Variable(DISTANCE_X, "m", "d", "drop of the worn profile"),
+    "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
+    "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
+    "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
+    "volume_error": Variable(SCALAR, "1", "", "worn volume minus what the law gives for it, over the latter"),
+}
+"""What :func:`contactstudy.passes.wear_in` returns."""
+
 STUDIES = {
     "status": Variable(SCALAR, "", "", "state of the case"),
     "message": Variable(SCALAR, "", "", "why the case is not ok"),
@@ -274,7 +286,7 @@ VERIFICATION = {
 }
 """What :func:`contactstudy.verification.verify` returns."""
 
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | STUDIES | VERIFICATION
+VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | WEAR | STUDIES | VERIFICATION
 """Every variable of the package but those that are named by a rule."""
 
 RULES = {
