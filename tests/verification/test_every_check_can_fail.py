@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,15 +17,20 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
 from contactstudy.contact import solve as contact
 from contactstudy.fields import stress, surface
+from contactstudy.heat import flash
+from contactstudy.heat.moving_source import MovingBody
+from contactstudy.heat.partition import Shared
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.passes.worn_contact import WornContact
 from contactstudy.verification import (
     consistency,
     convergence,
     finite_elements,
     friction,
     half_space,
+    heat,
     limits,
     published,
     quarter_space,
@@ -140,6 +146,35 @@ def twice_the_friction(patch: Patch) -> None:
     patch.setattr(friction, "solve_contact", wrong)
 
 
+def conducting_ends(patch: Patch) -> None:
+    real = heat.MovingBody
+    patch.setattr(heat, "MovingBody", lambda properties, speed, ends: real(properties, speed, heat.EVERYWHERE))
+
+
+def slower_surfaces(patch: Patch) -> None:
+    """Heat stays behind a surface that moves away."""
+    patch.setattr(MovingBody, "drift", property(lambda body: 1e-3 * body.speed / (2 * body.properties.diffusivity)))
+
+
+def better_conductors(patch: Patch) -> None:
+    patch.setattr(heat, "UNIT", replace(heat.UNIT, conductivity=1.1, density=1.1))
+
+
+def heat_in_halves(patch: Patch) -> None:
+    """The heat is shared whatever temperatures come of it, and not quite in halves."""
+    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: Shared(0.49 * density, 0.0))
+
+
+def wear_that_changes_nothing(patch: Patch) -> None:
+    real = WornContact.pressed
+    patch.setattr(WornContact, "pressed", lambda contact, depth, *further: real(contact, 0 * depth, *further))
+
+
+def milder_wear(patch: Patch) -> None:
+    real = WornContact.slip
+    patch.setattr(WornContact, "slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
+
+
 def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
@@ -175,6 +210,8 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "finite elements": (ends_only_mirrored, no_ends),
     "published": (ends_only_mirrored, wrong_poisson, distorted),
     "friction": (softer_bodies, twice_the_friction),
+    "heat": (conducting_ends, slower_surfaces, better_conductors, heat_in_halves),
+    "wear": (wear_that_changes_nothing, milder_wear),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 
