@@ -137,7 +137,7 @@ def wear_in(
     first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth)
     if not first.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
-    _check_depth(case, stepper, first, stops[-1])
+    _check_depth(case, stepper, first, float(stops[-1]))
     states, steps = [first], [stepper.first_step(first) if step is None else step]
     for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
         if every or state.distance in stops:

@@ -13,6 +13,7 @@ from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
 from contactstudy.plots.temperature import plot_temperature_map
+from contactstudy.plots.wear import plot_wear
 
 __all__ = [
     "COLORS",
@@ -28,6 +29,7 @@ __all__ = [
     "plot_study_lines",
     "plot_study_map",
     "plot_temperature_map",
+    "plot_wear",
     "save",
     "study_figures",
 ]

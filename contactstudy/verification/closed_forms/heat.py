@@ -37,7 +37,7 @@ def fast_line() -> tuple[float, float]:
     Examples
     --------
     >>> [round(value, 4) for value in fast_line()]
-    [2.1883, 0.6504]
+    [2.1883, 0.6522]
     """
 
     def rise(behind: float) -> float:
