@@ -139,7 +139,7 @@ def flash_temperature(
     own = SourceOperator(moving, grid, whole)
     other = None
     if roller is not None:
-        columns, ends = _under_roller(case, grid)
+        columns, ends = _under_roller(case, grid, pressure)
         other = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
     mismatch = np.nan
     if share is None:
@@ -162,7 +162,7 @@ def flash_temperature(
     scalars = _largest(grid, rises)
     scalars["friction_power"] = heat.power
     scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
-    entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid)[0]].sum()
+    entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
     scalars["heat_error"] = float(entered / heat.power - 1) if heat.power else 0.0
     scalars["temperature_mismatch"] = mismatch
     kept = {name: one.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in one.coords}
@@ -255,13 +255,14 @@ def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float) ->
     )
 
 
-def _under_roller(case: Case, grid: Grid) -> tuple[slice, Ends]:
-    """Columns of the roller and its insulated ends, moved to the nearest borders of cells."""
+def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
+    """Columns of the roller, all that it presses among them, and its insulated ends, moved to borders of cells."""
     if case.roller.ends == "none":
         return slice(0, grid.cells_x), Ends(-np.inf, np.inf)
     low, high = case.roller_start, case.roller_start + case.roller.length
     edges = grid.x_edges
-    under = np.flatnonzero((grid.x > low) & (grid.x < high))
+    # A centre right under the end may count as under the roller or not, by rounding.
+    under = np.flatnonzero(((grid.x > low) & (grid.x < high)) | (pressure > 0).any(axis=1))
     first, stop = int(under[0]), int(under[-1]) + 1
     start = edges[first] if first > 0 else min(low, edges[0])
     end = edges[stop] if stop < grid.cells_x else max(high, edges[-1])

@@ -1,4 +1,4 @@
-"""A worn profile as one that other cases can take."""
+"""A worn profile as one that other cases can take: the unworn one, and the worn depth on top of it."""
 
 from __future__ import annotations
 
@@ -7,17 +7,20 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.required import require
-from contactstudy.case.case import Case
+from contactstudy.case.case import GAP_NODES, Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured import Measured
 
-OVERHANG_POINTS = 33
-"""Points of the unworn profile where the roller overhangs the body."""
+ROUNDING = 1e-9
+"""Distance over another that is rounding. Accuracy."""
+
+CORRECTIONS = 8
+"""Rounds in which points are moved until the interpolation has the columns' depths as its means. Accuracy."""
 
 
-def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Measured:
+def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Sum:
     """Profile of a worn roller.
 
     Parameters
@@ -31,8 +34,9 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
 
     Returns
     -------
-    Measured
-        Points at the middles of the columns and at the roller's ends, where the depth is that of the nearest column.
+    Sum
+        Of the unworn profile, as it was, and of the worn depth as a `Measured`, whose points are the middles of the
+        columns and the roller's ends. Over columns of different widths its means are the depths that wore off.
 
     Raises
     ------
@@ -62,26 +66,41 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
             raise InvalidInputError("distance", wanted, f"one of those of the result, such as {known[at]:g} m")
     half = 0.5 * case.roller.length
     x = worn["x"].values - (case.roller_start + half)
-    under = (x > -half) & (x < half)
-    places, depth = x[under], worn["wear_depth"].values[at, under]
-    points, depths = _to_the_ends(case, places, depth)
-    drops = checked_drop(case.roller.profile, points, case.roller.length) + depths
-    # A profile may drop without end at the very ends: the last column's drop stands in for it.
-    finite = np.isfinite(drops)
-    drops = np.interp(points, points[finite], drops[finite])
-    return Measured((half + points).tolist(), drops.tolist(), largest_spike=float(max(drops.max(), half)))
+    under = np.abs(x) <= half * (1 + ROUNDING)
+    depth = worn["wear_depth"].values[at, under]
+    points = depth
+    profile = _measured(case, x[under], points)
+    if "x_width" in worn.coords:
+        nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
+        within = x[under][:, None] + 0.5 * worn["x_width"].values[under][:, None] * nodes
+        for _ in range(CORRECTIONS):
+            means = 0.5 * profile.drop(within.ravel(), case.roller.length).reshape(within.shape) @ weights
+            points = np.maximum(points + depth - means, 0.0)
+            profile = _measured(case, x[under], points)
+    own = case.roller.profile
+    return Sum((*(own.terms if isinstance(own, Sum) else (own,)), profile))
 
 
-def _to_the_ends(case: Case, places: FloatArray, depth: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Add the roller's ends, and points between them and the body where it overhangs, unworn."""
+def _overhanging(length: float, step: float) -> FloatArray:
+    """Distances from the body's end of unworn points on a part of the roller that overhangs; none without one."""
+    if length <= ROUNDING * step:
+        return np.zeros(0)
+    # Steps that grow by a factor that a measured profile may have.
+    count = max(1, int(np.ceil(np.log2(1 + length / step))))
+    steps = 2.0 ** np.arange(count)
+    return np.concatenate([[0.0], length * np.cumsum(steps) / steps.sum()])
+
+
+def _measured(case: Case, places: FloatArray, depth: FloatArray) -> Measured:
+    """Worn depth at distances from mid-length, continued to the roller's ends, as a profile."""
     half = 0.5 * case.roller.length
-    parts = [(places, depth)]
-    for side in (-1, 1):
-        met = case.contact_range[0 if side < 0 else 1] - (case.roller_start + half)
-        if side * met >= half * (1 - 1e-9):
-            added = (np.array([side * half]), depth[[0 if side < 0 else -1]])
-        else:
-            beyond = np.linspace(met, side * half, OVERHANG_POINTS)
-            added = (np.sort(beyond), np.zeros(OVERHANG_POINTS))
-        parts = [added, *parts] if side < 0 else [*parts, added]
-    return np.concatenate([each[0] for each in parts]), np.concatenate([each[1] for each in parts])
+    start, stop = (end - (case.roller_start + half) for end in case.contact_range)
+    # Where the roller overhangs the body nothing is worn off; else the last column reaches to the end.
+    before = _overhanging(start + half, places[0] - start)
+    behind = _overhanging(half - stop, stop - places[-1])
+    left = np.column_stack([start - before[::-1], np.zeros(before.size)]) if before.size else [(-half, depth[0])]
+    right = np.column_stack([stop + behind, np.zeros(behind.size)]) if behind.size else [(half, depth[-1])]
+    # The middle of a uniform cell may lie right under an end.
+    inside = np.abs(places) < half * (1 - ROUNDING)
+    x, drops = np.concatenate([left, np.column_stack([places[inside], depth[inside]]), right]).T
+    return Measured((half + x).tolist(), drops.tolist(), largest_spike=half)

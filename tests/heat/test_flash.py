@@ -3,7 +3,9 @@ import pytest
 
 from contactstudy import (
     Case,
+    FiniteLengthSpace,
     InvalidInputError,
+    Material,
     QuarterSpace,
     Roller,
     Rolling,
@@ -81,9 +83,19 @@ def test_temperature_falls_with_the_depth(hot, line_case, on_line, steel):
     assert below[-1] < 1e-6 * below[0]
 
 
-def test_a_long_roller_on_a_quarter_space_is_insulated_at_both_its_ends(steel):
-    from contactstudy import Material
+def test_a_roller_that_ends_in_the_middle_of_a_cell_heats_both_its_ends_alike(line_case, steel):
+    body = FiniteLengthSpace(length=1.2e-3, material=line_case.body.material)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
+    grid = Grid((0.0, 1.2e-3), (-2.4 * 65e-6, 2.4 * 65e-6), 150, 48)
+    assert np.isclose(grid.x, 1e-4, rtol=1e-9).any()
+    result = solve(case, grid, stresses=False)
+    found = flash_temperature(case, result, body=steel, roller=steel, body_speed=-10.0, roller_speed=-9.0)
+    hottest = found.temperature_rise.max("y").values
+    assert abs(float(found.heat_error)) < 1e-9
+    assert hottest == pytest.approx(hottest[::-1], rel=1e-3)
 
+
+def test_a_long_roller_on_a_quarter_space_is_insulated_at_both_its_ends(steel):
     case = Case(
         body=QuarterSpace(material=Material(210e9, 0.3)),
         roller=Roller(radius=5e-3, length=0.3e-3),

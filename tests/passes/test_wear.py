@@ -6,6 +6,7 @@ from contactstudy import (
     Case,
     ConvergenceWarning,
     FiniteLengthSpace,
+    Grid,
     InvalidInputError,
     Material,
     Roller,
@@ -202,13 +203,29 @@ def test_worn_profile_ends_where_the_body_does_if_the_roller_overhangs():
     assert drop[1] == pytest.approx(found.wear_depth.values[-1, grid.cells_x // 2], rel=0.01)
 
 
-def test_a_profile_without_limit_at_its_ends_stays_one_that_can_be_taken():
+def test_over_columns_of_different_widths_the_profile_has_their_depths_as_means():
+    case = roller_on(profile=FullCrown(crown_radius=0.05))
+    found = wear_in(case, K, [3e4])
+    edges = np.append(found.x_bounds.values[:, 0], found.x_bounds.values[-1, 1])
+    grid = Grid.from_edges(edges, (float(found.y[0]), float(found.y[-1])), found.sizes["y"])
+    again = Case(
+        body=case.body,
+        roller=Roller(radius=5e-3, length=0.4e-3, profile=worn_profile(case, found)),
+        max_pressure=1.5e9,
+    )
+    wanted = (case.gap(grid) + found.wear_depth.values[-1][:, None])[:, 0]
+    under = np.isfinite(wanted)
+    assert again.gap(grid)[under, 0] == pytest.approx(wanted[under], abs=1e-5 * found.wear_depth.values.max())
+
+
+def test_a_profile_without_limit_at_its_ends_is_kept_beside_its_wear():
     profile = Lundberg(amplitude=0.2e-6)
     assert np.isinf(profile.drop(np.array([0.2e-3]), 0.4e-3)).all()
     case = roller_on(profile=profile)
     found = wear_in(case, K, [1e4], grid=choose_grid(case, cells_x=3, cells_y=8))
     taken = worn_profile(case, found)
-    assert np.isfinite(taken.drop(np.array([-0.2e-3, 0.2e-3]), 0.4e-3)).all()
+    assert taken.terms[0] is profile
+    assert np.isfinite(taken.terms[1].drop(np.array([-0.2e-3, 0.2e-3]), 0.4e-3)).all()
 
 
 @pytest.mark.parametrize(

@@ -194,3 +194,19 @@ def test_quarter_space_does_not_take_the_border_of_its_points_for_the_largest_st
     shallow = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
     with pytest.raises(ValueError, match="border of the points"):
         module.both(shallow, module.HALF_SPACE, None, ("load",))
+
+
+def test_worn_profile_is_flat_at_its_own_load_only():
+    module = script("worn_profile")
+    task = module.Task(length=0.6e-3, mean_depths=(1e-6, 1e-5), pressures=(1.5e9, 2e9), tilts=(0.0,))
+    worn = module.worn_in(task)
+    found = module.judged(task, worn).sel(tilt=0.0)
+    off_the_ends = found["relative_load"].where(found["relative_load"].max(["profile", "max_pressure"]) > 0)
+    worn_in = off_the_ends.sel(profile="worn by 10 µm")
+    assert float(abs(worn_in.sel(max_pressure=1.5e9) - 1).max()) < 0.02
+    assert float(worn_in.sel(max_pressure=2e9).max()) > 1.1
+    largest = found["largest_pressure"].sel(max_pressure=1.5e9)
+    assert float(largest.sel(profile="best crown")) < float(largest.sel(profile="worn by 10 µm"))
+    assert float(largest.sel(profile="worn by 10 µm")) < float(largest.sel(profile="sharp"))
+    assert len(module.draw(task, worn, found.expand_dims(tilt=[0.0])).axes) == 3
+    assert "| best crown |" in module.table(found.expand_dims(tilt=[0.0]))
