@@ -10,8 +10,12 @@ from scipy.fft import irfft, irfft2, next_fast_len, rfft, rfft2
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.errors import InvalidInputError
 from contactstudy.heat.properties import ThermalProperties
 from contactstudy.heat.spreading import Ends, along_x, along_y, between_offsets, spread_lengths
+
+SLOWEST = 1e-7
+"""Peclet number of the window below which a surface counts as resting."""
 
 CHUNK = 2**22
 """Numbers in the factors along x that are made at a time. Speed."""
@@ -64,12 +68,20 @@ class SourceOperator:
         edges = grid.x_edges[columns.start : columns.stop + 1]
         x = grid.x[columns]
         length = body.ends.high - body.ends.low
+        window = grid.dy * grid.cells_y
+        if np.isfinite(length) and abs(body.drift) * window < SLOWEST:
+            raise InvalidInputError(
+                "speed",
+                body.speed,
+                "such that the surface of a body with two ends leaves the contact",
+                "resting under it, it gets hotter without limit: in the end the other body takes all heat, which a "
+                "stated partition says",
+            )
         spread, weights = spread_lengths(
             min(float(np.diff(edges).min()), grid.dy),
             grid.dy,
-            grid.dy * grid.cells_y,
+            window,
             body.drift,
-            bounded=bool(np.isfinite(length)),
         )
         weights = weights * np.exp(-((depth / spread) ** 2)) / (body.properties.conductivity * np.sqrt(np.pi))
         steps = np.arange(self._length)

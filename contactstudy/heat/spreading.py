@@ -18,7 +18,6 @@ import numpy as np
 from scipy.special import erf
 
 from contactstudy.checks import FloatArray
-from contactstudy.errors import InvalidInputError
 
 NODES = 6
 """Gauss points in each panel of the integral over the length of spreading. Accuracy."""
@@ -49,9 +48,7 @@ class Ends(NamedTuple):
     high: float
 
 
-def spread_lengths(
-    smallest: float, step: float, window: float, drift: float, *, bounded: bool
-) -> tuple[FloatArray, FloatArray]:
+def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
     """Nodes and weights of the integral over the length of spreading s.
 
     Parameters
@@ -60,26 +57,12 @@ def spread_lengths(
         Width of the smallest cell, of a cell along y, and of the whole window along y, metres.
     drift : float
         ``v = V / (2 kappa)`` (1/m): heat that has spread by s has moved by ``v s**2 / 2``.
-    bounded : bool
-        Whether the body has two ends, so that heat spreads in a plane only.
-
-    Raises
-    ------
-    InvalidInputError
-        If the integral has no limit: heat at rest in a body with two ends.
     """
     speed = abs(drift)
     # Cells of the window drift out of it; after that their heat is gone when it no longer reaches back.
     last = LONGEST * window
     if speed:
         last = min((TAIL + np.sqrt(TAIL**2 + 2 * speed * window)) / speed, last)
-    if bounded and last >= LONGEST * window:
-        raise InvalidInputError(
-            "speed",
-            2 * drift,
-            "such that the surface of a body with two ends leaves the contact",
-            "at rest its temperature rises without limit",
-        )
     first = FIRST_PANEL * smallest
     count = max(1, int(np.ceil(np.log(last / first) / np.log(GROWTH))))
     edges = [np.zeros(1), np.geomspace(first, last, count + 1)]

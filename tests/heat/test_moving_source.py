@@ -105,5 +105,5 @@ def test_below_the_surface_a_source_at_rest_is_a_point_from_afar(unit):
 
 def test_between_two_ends_a_surface_at_rest_has_no_steady_temperature(unit):
     grid = Grid((0, 1), (-1, 1), 4, 4)
-    with pytest.raises(InvalidInputError, match="rises without limit"):
+    with pytest.raises(InvalidInputError, match="hotter without limit"):
         SourceOperator(MovingBody(unit, 0.0, Ends(0.0, 1.0)), grid, slice(0, 4))

@@ -9,6 +9,7 @@ from contactstudy import (
     Grid,
     InvalidInputError,
     Material,
+    QuarterSpace,
     Roller,
     Rolling,
     Shift,
@@ -114,6 +115,29 @@ def test_going_on_is_as_good_as_not_having_stopped(sharp, worn):
     assert float(second.distance[0]) == float(first.distance[-1])
     assert second.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
     assert float(second.volume_error) < 1e-12
+
+
+def test_a_load_off_the_middle_ends_in_the_linear_load_that_balances_it(sharp):
+    """The roller then wears askew, and turns with its wear."""
+    case, grid = sharp
+    off = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
+    found = wear_in(off, K, [1e5], grid=grid)
+    load, x = found.line_load.values[-1], grid.x
+    under = load > 0
+    length = grid.dx * under.sum()
+    # w = W / L (1 + 12 e x' / L**2)
+    lever = 12 * (0.32e-3 - 0.3e-3) * (x[under] - 0.3e-3) / (length**2 - grid.dx**2)
+    expected = off.normal_load / length * (1 + lever)
+    assert load[under] == pytest.approx(expected, rel=2e-3)
+    assert float(found.volume_error) < 1e-9
+
+
+def test_a_roller_wears_on_a_quarter_space_too():
+    body = QuarterSpace(material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9, end_distance=0.05e-3)
+    found = wear_in(case, K, [1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
+    assert spread(found.line_load.values[-1]) < 1.001
+    assert float(found.volume_error) < 1e-12
 
 
 def test_without_cells_those_of_the_unworn_contact_are_taken():
