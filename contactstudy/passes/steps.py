@@ -22,6 +22,10 @@ SAFETY, LARGEST_GROWTH, LARGEST_CUT = 0.85, 4.0, 0.2
 """Factor on the next step, and its bounds. Speed."""
 
 
+SHORTEST = 1e-6
+"""Length over the first one below which a step is taken in spite of its error, which is stated. Speed."""
+
+
 class State(NamedTuple):
     """Where the wear stands.
 
@@ -89,24 +93,28 @@ class Stepper:
 
     def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
         """Go on to a distance; after each step give its state and the length of the next."""
+        least = SHORTEST * min(step, until - state.distance)
         while state.distance < until:
             remaining = until - state.distance
             taken = min(step, remaining)
             if remaining < 1.5 * taken:
                 taken = remaining
-            whole = self._stepped(state, taken)
-            halved = self._stepped(self._stepped(state, 0.5 * taken), 0.5 * taken)
+            here = state._replace(converged=True)
+            whole = self._stepped(here, taken)
+            halved = self._stepped(self._stepped(here, 0.5 * taken), 0.5 * taken)
             # Two halves of a scheme of second order err by a quarter of the whole.
             error = float(np.abs(halved.depth - whole.depth).max()) / 3
             allowed = self.tolerance * float(halved.depth.max())
             growth = SAFETY * (allowed / error) ** (1 / 3) if error > 0 else LARGEST_GROWTH
             factor = min(max(growth, LARGEST_CUT), LARGEST_GROWTH)
-            if error > allowed:
-                step = factor * taken
+            solved = halved.converged and whole.converged
+            if (error > allowed or not solved) and taken > least:
+                step = (factor if solved else LARGEST_CUT) * taken
                 continue
             reached = until if taken == remaining else state.distance + taken
             worn = state.worn + 0.5 * taken * (self._area_per_distance(state) + self._area_per_distance(halved))
-            state = halved._replace(distance=reached, error=state.error + error, worn=worn)
+            converged = state.converged and halved.converged
+            state = halved._replace(distance=reached, error=state.error + error, worn=worn, converged=converged)
             step = max(step, factor * taken)
             yield state, step
 

@@ -32,6 +32,9 @@ LAWS = ("slip", "work")
 DEEPEST = 0.01
 """Mean worn depth over the roller's radius up to which the radius counts as unchanged. Accuracy."""
 
+TOLERANCES = (1e-5, 0.1)
+"""Tolerances that the contact is solved well enough for, and that mean something."""
+
 ROOM = 1.4
 """Width of the window over that which the unworn contact needs: load moves along the axis as the ends wear."""
 
@@ -72,7 +75,7 @@ def wear_in(
     after : Dataset, optional
         Result of this function from whose last state to go on.
     tolerance : float
-        Error of the worn depth that one step may make, over the largest depth.
+        Error of the worn depth that one step may make, over the largest depth: from 1e-5 to 0.1.
     max_steps : int
         Bound on the steps.
 
@@ -125,6 +128,8 @@ def wear_in(
     around = 2 * np.pi * case.roller.radius if circumference is None else circumference
     around = checks.positive("circumference", around, "metres")
     tolerance = checks.positive("tolerance", tolerance)
+    if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
+        raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
     begun, depth, cells, step = (0.0, None, _cells(case, grid), None) if after is None else _state_of(after, case, grid)
     stops, every = _stops(distance, begun)

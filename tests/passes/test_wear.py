@@ -70,7 +70,7 @@ def test_steps_grow_as_the_load_evens_out(worn):
 
 def test_explicit_steps_by_hand_wear_off_the_same(sharp):
     case, grid = sharp
-    distance, count = 4e3, 400
+    distance, count = 4e3, 200
     gap = xr.DataArray(case.gap(grid), dims=("x", "y"), coords={"x": grid.x, "y": grid.y})
     depth = np.zeros(grid.cells_x)
     for _ in range(count):
@@ -192,7 +192,7 @@ def test_rolling_wears_by_its_own_slip(rolling, law):
 
 def test_rolling_long_enough_wears_every_section_alike(rolling):
     case, grid = rolling
-    found = wear_in(case, 1e-14, [10.0, 4e4, 1e5], grid=grid, tolerance=0.02)
+    found = wear_in(case, 1e-14, [10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
     assert float(found.volume_error) < 0.02
     under = found.line_load.values[0] > 0
     depth = found.wear_depth.values[:, under]
@@ -265,6 +265,7 @@ def test_a_profile_without_limit_at_its_ends_is_kept_beside_its_wear():
         ({"law": "work"}, "friction"),
         ({"circumference": 0.0}, "circumference"),
         ({"tolerance": 0.0}, "tolerance"),
+        ({"tolerance": 1e-7}, "tolerance"),
         ({"max_steps": 0}, "max_steps"),
         ({"after": xr.Dataset()}, "after"),
         ({"grid": "fine"}, "grid"),
