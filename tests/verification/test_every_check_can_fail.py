@@ -183,7 +183,9 @@ def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
 
 
 def coarse_quadratures(patch: Patch) -> None:
-    coarse = Resolution(order=3, ratio=6.0, reach=12.5, lateral_nodes=4, lateral_order=4, lateral_reach=2.5)
+    coarse = Resolution(
+        order=3, ratio=6.0, reach=12.5, lateral_nodes=4, lateral_ratio=6.0, lateral_order=4, lateral_reach=2.5
+    )
     patch.setattr(convergence, "Resolution", lambda: coarse)
 
 
