@@ -225,6 +225,16 @@ FATIGUE = {
     "risk_density": Variable(X, "Pa**c m**(1 - h)", "", "risk of fatigue per length of the roller and of the raceway"),
     "risk": Variable(SCALAR, "Pa**c m**(2 - h)", "", "risk of fatigue per length of the raceway"),
     "relative_life": Variable(SCALAR, "1", "", "life over that of the reference"),
+    "first_yield_stress": Variable(XZ, "Pa", "k_e", "yield stress in shear below which the first passage yields"),
+    "shakedown_stress": Variable(XZ, "Pa", "k_s", "yield stress in shear below which every passage yields"),
+    "residual_sigma_yy": Variable(
+        XZ, "Pa", r"\rho_{yy}", "residual stress along rolling that lets the point shake down"
+    ),
+    "residual_sigma_xx": Variable(
+        XZ, "Pa", r"\rho_{xx}", "residual stress along the axis that lets the point shake down"
+    ),
+    "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
+    "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
 }
 """What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
 

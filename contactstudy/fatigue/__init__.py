@@ -10,6 +10,7 @@ from contactstudy.fatigue.history import window_remainder
 from contactstudy.fatigue.invariant_criteria import crossland, dang_van
 from contactstudy.fatigue.life import LifeExponents, ioannides_harris, lundberg_palmgren, relative_life
 from contactstudy.fatigue.limits import FatigueLimits
+from contactstudy.fatigue.shakedown import shakedown, shakedown_limit
 
 __all__ = [
     "FatigueLimits",
@@ -20,5 +21,7 @@ __all__ = [
     "ioannides_harris",
     "lundberg_palmgren",
     "relative_life",
+    "shakedown",
+    "shakedown_limit",
     "window_remainder",
 ]

@@ -127,6 +127,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
+        "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
     for name in FUNCTIONS.keys() - values.keys():
         values[name] = FUNCTIONS[name](strip if name == "window_remainder" else solved)  # type: ignore[assignment]
