@@ -233,6 +233,9 @@ FATIGUE = {
     "residual_sigma_xx": Variable(
         XZ, "Pa", r"\rho_{xx}", "residual stress along the axis that lets the point shake down"
     ),
+    "residual_sigma_zz": Variable(XZ, "Pa", r"\rho_{zz}", "residual stress along depth that lets the point shake down"),
+    "residual_tau_xz": Variable(XZ, "Pa", r"\rho_{xz}", "residual shear stress xz that lets the point shake down"),
+    "program_gap": Variable(SCALAR, "1", "", "part of the yield stress that the convex program could still gain"),
     "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
     "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
 }

@@ -121,13 +121,13 @@ class EigenstrainBody:
     @cached_property
     def in_plane(self) -> StressFunction:
         """Airy's function."""
-        x, z = (Splines(edges, self.degree, 1) for edges in self.elements)
+        x, z = (Splines(edges, self.degree, continuity=1, vanishing=2) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property
     def across(self) -> StressFunction:
         """Function of the stresses xy and yz."""
-        x, z = (Splines(edges, self.degree - 1, 0) for edges in self.elements)
+        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing=1) for edges in self.elements)
         return StressFunction(x, z)
 
     @cached_property

@@ -23,11 +23,13 @@ class Splines:
     degree : int
         Of the polynomials.
     continuity : int
-        Derivatives that are continuous between elements, and that vanish, with the value, on both sides.
+        Derivatives that are continuous between elements.
+    vanishing : int
+        How many of value, slope, ... vanish on both sides.
 
     Examples
     --------
-    >>> splines = Splines(np.array([0.0, 1.0, 2.0, 4.0]), degree=3, continuity=1)
+    >>> splines = Splines(np.array([0.0, 1.0, 2.0, 4.0]), degree=3, continuity=1, vanishing=2)
     >>> splines.count, float(np.abs(splines.values(np.array([0.0, 4.0]), 1)).max())
     (4, 0.0)
     """
@@ -35,12 +37,12 @@ class Splines:
     edges: FloatArray
     degree: int
     continuity: int
+    vanishing: int
 
     @property
     def count(self) -> int:
         """Number of functions."""
-        dropped = 2 * (self.continuity + 1)
-        return self._knots.size - self.degree - 1 - dropped
+        return self._knots.size - self.degree - 1 - 2 * self.vanishing
 
     @cached_property
     def _knots(self) -> FloatArray:
@@ -52,8 +54,7 @@ class Splines:
         """Functions, or a derivative of them, at points: array (point, function). Between elements the right one's."""
         whole = self._knots.size - self.degree - 1
         found = BSpline(self._knots, np.eye(whole), self.degree)(points, nu=derivative)
-        dropped = self.continuity + 1
-        return np.asarray(found[:, dropped : whole - dropped])
+        return np.asarray(found[:, self.vanishing : whole - self.vanishing])
 
     @cached_property
     def _gauss(self) -> tuple[FloatArray, FloatArray]:

@@ -33,7 +33,7 @@ class StressFunction:
     Attributes
     ----------
     x, z : Splines
-        Of one continuity: 1 for Airy's function, 0 for that across the plane.
+        With their slopes, they vanish on the faces for Airy's function; without, for that across the plane.
     """
 
     x: Splines
@@ -52,7 +52,7 @@ class StressFunction:
     @property
     def _derivatives(self) -> dict[tuple[int, int], float]:
         """Weight of the square of each derivative (along x, along z) in the energy."""
-        if self.x.continuity:
+        if self.x.vanishing == 2:
             return {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}
         return {(1, 0): 1.0, (0, 1): 1.0}
 

@@ -127,6 +127,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
+        "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
     for name in FUNCTIONS.keys() - values.keys():
