@@ -2,6 +2,7 @@ from . import analysis as analysis
 from . import cache as cache
 from . import export as export
 from . import fatigue as fatigue
+from . import passes as passes
 from . import plots as plots
 from . import profiles as profiles
 from .analysis.summary import summarize as summarize

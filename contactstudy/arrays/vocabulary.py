@@ -64,6 +64,7 @@ COORDINATES = {
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
+    "pass_number": Variable(("pass_number",), "1", "N", "number of the pass of the contact"),
 }
 """Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
 
@@ -241,6 +242,21 @@ FATIGUE = {
 }
 """What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
 
+PASSES = {
+    "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
+    "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
+    "plastic_strain_zz": Variable(XZ, "1", r"\varepsilon^p_{zz}", "plastic strain along depth"),
+    "plastic_strain_xy": Variable(XZ, "1", r"\varepsilon^p_{xy}", "plastic shear strain xy, of the tensor"),
+    "plastic_strain_xz": Variable(XZ, "1", r"\varepsilon^p_{xz}", "plastic shear strain xz, of the tensor"),
+    "plastic_strain_yz": Variable(XZ, "1", r"\varepsilon^p_{yz}", "plastic shear strain yz, of the tensor"),
+    "equivalent_plastic_strain": Variable(XZ, "1", r"\alpha", "equivalent plastic strain, accumulated"),
+    "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
+    "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
+    "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
+    "flow_contained": Variable(SCALAR, "1", "", "whether the elastic body contains the flow of every instant"),
+}
+"""What :mod:`contactstudy.passes` returns."""
+
 STUDIES = {
     "status": Variable(SCALAR, "", "", "state of the case"),
     "message": Variable(SCALAR, "", "", "why the case is not ok"),
@@ -268,7 +284,7 @@ VERIFICATION = {
 }
 """What :func:`contactstudy.verification.verify` returns."""
 
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | STUDIES | VERIFICATION
+VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | PASSES | STUDIES | VERIFICATION
 """Every variable of the package but those that are named by a rule."""
 
 RULES = {

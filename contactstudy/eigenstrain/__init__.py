@@ -9,5 +9,6 @@ and of all functions the one with the least complementary energy is taken.
 splines.py         piecewise polynomials along one axis that vanish, with their slope, on both sides
 stress_function.py stress functions of (x, z) as their products: stresses, and the equations of least energy
 body.py            elements for a body with two ends, one or none, and the stresses under eigenstrains on cells
+influence.py       stress in some cells per eigenstrain in the same cells
 =================  ===================================================================================================
 """

@@ -131,24 +131,26 @@ class EigenstrainBody:
         return StressFunction(x, z)
 
     @cached_property
-    def _airy_integrals(self) -> CellAverages:
+    def airy_integrals(self) -> CellAverages:
+        """Integrals of Airy's functions and their derivatives over the cells."""
         return _integrals(self.in_plane, self.x_edges, self.z_edges, 2)
 
     @cached_property
-    def _across_integrals(self) -> CellAverages:
+    def across_integrals(self) -> CellAverages:
+        """Integrals of the functions across the plane and their slopes over the cells."""
         return _integrals(self.across, self.x_edges, self.z_edges, 1)
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
         """Solve for the stress functions of eigenstrains (6, cell x, cell z): xx, yy, zz, xy, xz, yz (tensor's)."""
         nu, young = self.material.poisson, self.material.young
         e = eigenstrain
-        x, z = self._airy_integrals
+        x, z = self.airy_integrals
         right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T
         right -= 2 * x[1] @ e[XZ] @ z[1].T
         airy = self.in_plane.solve(-young / (1 - nu**2) * right)
         shear: FloatArray = np.zeros((self.across.x.count, self.across.z.count))
         if e[[XY, YZ]].any():
-            x, z = self._across_integrals
+            x, z = self.across_integrals
             right = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
             shear = self.across.solve(-self.material.shear_modulus * right)
         return EigenstrainSolution(self, e, airy, shear)
@@ -191,7 +193,7 @@ class EigenstrainSolution:
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
         airy, across = (
             ([matrix.T / widths for matrix in own.x], [matrix.T / heights for matrix in own.z])
-            for own in (body._airy_integrals, body._across_integrals)
+            for own in (body.airy_integrals, body.across_integrals)
         )
         return self._assembled(airy, across, self.eigenstrain)
 

@@ -127,6 +127,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
+        "rolled_in": cs.passes.rolled_in(strip.isel(x_field=[4]), body, cs.passes.ElasticPlastic(yield_stress=8e8), 2),
         "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
@@ -180,7 +181,7 @@ def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
             if name not in VARIABLES:
                 continue
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
-            further = {*PARAMETERS, "case", "slice", *({"distance"} if function == "along_line" else ())}
+            further = {*PARAMETERS, "case", "slice", "pass_number", *({"distance"} if function == "along_line" else ())}
             if not dims - further <= {*VARIABLES[str(name)].dims}:
                 unlike.append((function, name, array.dims))
     assert unlike == []
