@@ -18,6 +18,7 @@ from contactstudy.verification import (
     friction,
     half_space,
     limits,
+    passes,
     published,
     quarter_space,
 )
@@ -34,6 +35,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "finite elements": lambda full: finite_elements.checks(full=full),
     "published": lambda full: published.checks(),
     "friction": lambda full: friction.checks(),
+    "passes": lambda full: passes.checks(),
     "consistency": lambda full: consistency.checks(),
 }
 """Checks by what they compare with; those of convergence are added at the full level."""

@@ -13,8 +13,9 @@ import xarray as xr
 from contactstudy import cache
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
+from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, HalfSpace, Part
 from contactstudy.contact import solve as contact
+from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
@@ -26,6 +27,7 @@ from contactstudy.verification import (
     friction,
     half_space,
     limits,
+    passes,
     published,
     quarter_space,
     suite,
@@ -140,6 +142,25 @@ def twice_the_friction(patch: Patch) -> None:
     patch.setattr(friction, "solve_contact", wrong)
 
 
+def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
+    """Line contacts that pass with another pressure than the checks believe."""
+
+    def patched(patch: Patch) -> None:
+        real = passes.line_contact
+        patch.setattr(passes, "line_contact", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+
+    return patched
+
+
+def passed_over_a_body_without_ends(patch: Patch) -> None:
+    patch.setattr(passes, "FiniteLengthSpace", lambda length, material: HalfSpace(material=material))
+
+
+def strained_more(patch: Patch) -> None:
+    real = EigenstrainBody.solve
+    patch.setattr(EigenstrainBody, "solve", lambda body, strain: real(body, 1.01 * strain))
+
+
 def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
@@ -175,6 +196,12 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "finite elements": (ends_only_mirrored, no_ends),
     "published": (ends_only_mirrored, wrong_poisson, distorted),
     "friction": (softer_bodies, twice_the_friction),
+    "passes": (
+        pressed_harder_by(1.05),
+        pressed_harder_by(0.9),
+        passed_over_a_body_without_ends,
+        strained_more,
+    ),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 

@@ -10,6 +10,8 @@ Sources, by the names used in the docstrings:
 * McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact;
 * Carter, *Proc. R. Soc. Lond.* A 112 (1926) 151 and Mindlin, *J. Appl. Mech.* 16 (1949) 259: stick and slip in rolling
   and shifting contact, by Johnson, sections 7.2 and 8.3;
+* Eshelby, *Proc. R. Soc.* A 241 (1957) 376 and Muskhelishvili, *Some Basic Problems of the Mathematical Theory of
+  Elasticity*, chapter 19: eigenstrain in a half-plane;
 * Bufler, *Ing.-Arch.* 27 (1959) 137 and Johnson, section 7.2: sliding line contact of unlike materials.
 
 Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
@@ -24,6 +26,7 @@ from contactstudy.verification.closed_forms.circle import (
     sliding_circle_surface,
 )
 from contactstudy.verification.closed_forms.components import COMPONENTS, Stress, von_mises
+from contactstudy.verification.closed_forms.eigenstrain import rectangle_in_half_plane
 from contactstudy.verification.closed_forms.friction import (
     carter_creepage,
     carter_force,
@@ -71,6 +74,7 @@ __all__ = [
     "point_load",
     "rectangle",
     "rectangle_displacement",
+    "rectangle_in_half_plane",
     "sliding_circle_surface",
     "sliding_line",
     "von_mises",
