@@ -11,8 +11,9 @@ rolled_in.py    passes of a stress field over an elastic-plastic body
 ==============  ======================================================================================================
 """
 
+from contactstudy.arrays.variables import STRESSES
 from contactstudy.passes.plastic import ElasticPlastic
 from contactstudy.passes.residual import residual_stress
-from contactstudy.passes.rolled_in import rolled_in
+from contactstudy.passes.rolled_in import STRAINS, rolled_in
 
-__all__ = ["ElasticPlastic", "residual_stress", "rolled_in"]
+__all__ = ["STRAINS", "STRESSES", "ElasticPlastic", "residual_stress", "rolled_in"]

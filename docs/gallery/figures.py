@@ -154,6 +154,7 @@ PAGES = {
     "how-to/elastic_roller.md": ("elastic_roller",),
     "how-to/tilt.md": ("tilt",),
     "how-to/fatigue_life.md": ("fatigue",),
+    "how-to/passes.md": ("passes",),
 }
 """Figures that pages save, by page."""
 
