@@ -34,8 +34,9 @@ from contactstudy.fatigue.shakedown import in_ball_axes
 DEGREE, CONTINUITY = 5, 3
 """Of the stress function's polynomials: stresses that are smooth between the points."""
 
-POINTS_PER_ELEMENT = 2
-"""Points per element along either axis: the stress must not be freer than the points that bind it."""
+POINTS_PER_ELEMENT = 4
+"""Points per element along either axis. Accuracy: an element has two functions of its own along each, and with as few
+points it would yield between them where it does not at them."""
 
 FEWEST_POINTS = 5
 """Along x and z, for a stress function with something to choose."""

@@ -12,6 +12,7 @@ import xarray as xr
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, fatigue, stress_field
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.verification.closed_forms import hertz_strip
+from tests.finite_elements.shakedown import least_shear_yield_stress, points
 
 DEPTHS = np.linspace(0, 3, 25)
 SOFT = Material(1.0, 0.3)
@@ -52,6 +53,24 @@ def test_a_short_body_holds_less(fading_line_contact) -> None:
     assert alone[0] == pytest.approx(alone[1])
     assert between[1] < 0.9 * alone[1]
     assert between[1] * 1.01 < between[0] < alone[0]
+
+
+def test_equilibrium_elements_find_no_more() -> None:
+    """An independent program, with linear stresses in triangles: it is less free, so its load is a little lower."""
+    length, x_edges, z_edges = 0.5, np.linspace(0, 0.5, 7), np.linspace(0, 2.4, 11)
+    x, z, y = points(x_edges, 0), points(z_edges, 1), np.linspace(-2.4, 2.4, 25)
+    found = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, 0.0)
+    share = 1 - 0.2 * np.abs(2 * x / length - 1)[:, None, None] ** 2
+    stress = xr.Dataset(
+        {name: (("x", "y", "z"), share * values) for name, values in found.items()}, {"x": x, "y": y, "z": z}
+    )
+    flat = [stress[name].transpose("x", "z", "y").values.reshape(-1, y.size) for name in STRESSES]
+    history = np.stack([np.pad(one, ((0, 0), (0, 1))) for one in flat], axis=-1)
+    elements = 1 / least_shear_yield_stress(history, x_edges, z_edges)
+    body = FiniteLengthSpace(length=length, material=SOFT)
+    splines = 1 / float(fatigue.shakedown_in_plane(stress, body)["peak_shakedown_stress"])
+    alone = 1 / float(fatigue.shakedown(stress)["shakedown_stress"].max())
+    assert alone * 1.03 < elements < splines < elements * 1.03
 
 
 def test_flush_roller(short_body, strip_pressure) -> None:
