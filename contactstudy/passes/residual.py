@@ -41,7 +41,8 @@ def residual_stress(
     x, z : sequence of float, optional
         Positions of the stresses, metres; default: those of the eigenstrain.
     x_edges, z_edges : sequence of float, optional
-        Edges of the cells, metres; default: half-way between the positions, from the top and the free ends on.
+        Edges of the cells, metres; default: half-way between the positions, and on the top or a free end if that is as
+        near to the outer position as the next one.
 
     Returns
     -------

@@ -197,3 +197,10 @@ def test_bad_input(passing, steel_half_space, change, message) -> None:
     arguments = {"body": steel_half_space, "material": perfectly_plastic(1.0)} | change
     with pytest.raises(InvalidInputError, match=message):
         rolled_in(passing(), **arguments)
+
+
+def test_positions_have_to_reach_to_the_ends(passing, steel_between_ends) -> None:
+    contact = passing(0.0, length=8.0)
+    for part in (contact.isel(x=slice(0, 6)), contact.isel(z=slice(4, None)), contact.isel(x=slice(3, None))):
+        with pytest.raises(InvalidInputError, match="reach to"):
+            rolled_in(part, steel_between_ends, perfectly_plastic(0.2))
