@@ -5,6 +5,7 @@ from . import fatigue as fatigue
 from . import passes as passes
 from . import plots as plots
 from . import profiles as profiles
+from . import wear as wear
 from .analysis.summary import summarize as summarize
 from .arrays.grid import Grid as Grid
 from .arrays.invariants import hydrostatic as hydrostatic

@@ -19,8 +19,8 @@ import numpy as np
 import xarray as xr
 
 import contactstudy as cs
-from contactstudy.passes import wear_in, worn_profile
 from contactstudy.plots.style import line_styles
+from contactstudy.wear import wear_in, worn_profile
 
 BESIDE_END = 0.05
 """Distance from the roller's end over the half-width from which on pressures are compared: some are singular there."""

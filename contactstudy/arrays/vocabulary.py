@@ -64,6 +64,7 @@ COORDINATES = {
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
+    "pass_number": Variable(("pass_number",), "1", "N", "number of the pass of the contact"),
 }
 """Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
 
@@ -225,6 +226,19 @@ FATIGUE = {
     "risk_density": Variable(X, "Pa**c m**(1 - h)", "", "risk of fatigue per length of the roller and of the raceway"),
     "risk": Variable(SCALAR, "Pa**c m**(2 - h)", "", "risk of fatigue per length of the raceway"),
     "relative_life": Variable(SCALAR, "1", "", "life over that of the reference"),
+    "first_yield_stress": Variable(XZ, "Pa", "k_e", "yield stress in shear below which the first passage yields"),
+    "shakedown_stress": Variable(XZ, "Pa", "k_s", "yield stress in shear below which every passage yields"),
+    "residual_sigma_yy": Variable(
+        XZ, "Pa", r"\rho_{yy}", "residual stress along rolling that lets the point shake down"
+    ),
+    "residual_sigma_xx": Variable(
+        XZ, "Pa", r"\rho_{xx}", "residual stress along the axis that lets the point shake down"
+    ),
+    "residual_sigma_zz": Variable(XZ, "Pa", r"\rho_{zz}", "residual stress along depth that lets the point shake down"),
+    "residual_tau_xz": Variable(XZ, "Pa", r"\rho_{xz}", "residual shear stress xz that lets the point shake down"),
+    "program_gap": Variable(SCALAR, "1", "", "part of the yield stress that the convex program could still gain"),
+    "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
+    "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
 }
 """What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
 
@@ -257,7 +271,22 @@ WEAR = {
     "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
     "volume_error": Variable(SCALAR, "1", "", "worn volume minus what the law gives for it, over the latter"),
 }
-"""What :func:`contactstudy.passes.wear_in` returns."""
+"""What :func:`contactstudy.wear.wear_in` returns."""
+
+PASSES = {
+    "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
+    "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
+    "plastic_strain_zz": Variable(XZ, "1", r"\varepsilon^p_{zz}", "plastic strain along depth"),
+    "plastic_strain_xy": Variable(XZ, "1", r"\varepsilon^p_{xy}", "plastic shear strain xy, of the tensor"),
+    "plastic_strain_xz": Variable(XZ, "1", r"\varepsilon^p_{xz}", "plastic shear strain xz, of the tensor"),
+    "plastic_strain_yz": Variable(XZ, "1", r"\varepsilon^p_{yz}", "plastic shear strain yz, of the tensor"),
+    "equivalent_plastic_strain": Variable(XZ, "1", r"\alpha", "equivalent plastic strain, accumulated"),
+    "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
+    "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
+    "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
+    "flow_contained": Variable(SCALAR, "1", "", "whether the elastic body contains the flow of every instant"),
+}
+"""What :mod:`contactstudy.passes` returns."""
 
 STUDIES = {
     "status": Variable(SCALAR, "", "", "state of the case"),
@@ -286,7 +315,9 @@ VERIFICATION = {
 }
 """What :func:`contactstudy.verification.verify` returns."""
 
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | WEAR | STUDIES | VERIFICATION
+VARIABLES = (
+    CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | WEAR | PASSES | STUDIES | VERIFICATION
+)
 """Every variable of the package but those that are named by a rule."""
 
 RULES = {

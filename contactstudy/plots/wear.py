@@ -24,7 +24,7 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     Parameters
     ----------
     worn : Dataset
-        What `passes.wear_in` returned.
+        What `wear.wear_in` returned.
     ax : Axes, optional
         Where to draw; default: a new figure.
     variable : str

@@ -19,6 +19,7 @@ from contactstudy.verification import (
     half_space,
     heat,
     limits,
+    passes,
     published,
     quarter_space,
     wear,
@@ -38,6 +39,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "friction": lambda full: friction.checks(),
     "heat": lambda full: heat.checks(),
     "wear": lambda full: wear.checks(),
+    "passes": lambda full: passes.checks(),
     "consistency": lambda full: consistency.checks(),
 }
 """Checks by what they compare with; those of convergence are added at the full level."""

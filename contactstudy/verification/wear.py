@@ -12,11 +12,11 @@ from contactstudy.case import Case, Roller, choose_grid
 from contactstudy.case.motion import Rolling
 from contactstudy.checks import FloatArray
 from contactstudy.contact.solve import solve_contact
-from contactstudy.passes import wear_in, worn_profile
 from contactstudy.profiles import FullCrown
 from contactstudy.solution import solve
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
 from contactstudy.verification.problems import on_grid
+from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
 COEFFICIENT = 1e-17

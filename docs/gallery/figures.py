@@ -155,6 +155,7 @@ PAGES = {
     "how-to/tilt.md": ("tilt",),
     "how-to/fatigue_life.md": ("fatigue",),
     "how-to/heat_and_wear.md": ("flash_temperature", "wear"),
+    "how-to/passes.md": ("passes",),
 }
 """Figures that pages save, by page."""
 

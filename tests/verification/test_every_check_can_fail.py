@@ -14,8 +14,9 @@ import xarray as xr
 from contactstudy import cache
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
+from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, HalfSpace, Part
 from contactstudy.contact import solve as contact
+from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
 from contactstudy.heat import flash
 from contactstudy.heat.moving_source import MovingBody
@@ -23,7 +24,6 @@ from contactstudy.heat.partition import Shared
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.passes.worn_contact import WornContact
 from contactstudy.verification import (
     consistency,
     convergence,
@@ -32,11 +32,13 @@ from contactstudy.verification import (
     half_space,
     heat,
     limits,
+    passes,
     published,
     quarter_space,
     suite,
 )
 from contactstudy.verification.check import Check
+from contactstudy.wear.worn_contact import WornContact
 
 MODULES = (half_space, limits, quarter_space, finite_elements, published, consistency, convergence)
 Patch = pytest.MonkeyPatch
@@ -175,6 +177,25 @@ def milder_wear(patch: Patch) -> None:
     patch.setattr(WornContact, "slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
 
 
+def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
+    """Line contacts that pass with another pressure than the checks believe."""
+
+    def patched(patch: Patch) -> None:
+        real = passes.line_contact
+        patch.setattr(passes, "line_contact", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+
+    return patched
+
+
+def passed_over_a_body_without_ends(patch: Patch) -> None:
+    patch.setattr(passes, "FiniteLengthSpace", lambda length, material: HalfSpace(material=material))
+
+
+def strained_more(patch: Patch) -> None:
+    real = EigenstrainBody.solve
+    patch.setattr(EigenstrainBody, "solve", lambda body, strain: real(body, 1.01 * strain))
+
+
 def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
@@ -214,6 +235,12 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "friction": (softer_bodies, twice_the_friction),
     "heat": (conducting_ends, slower_surfaces, better_conductors, heat_in_halves),
     "wear": (wear_that_changes_nothing, milder_wear),
+    "passes": (
+        pressed_harder_by(1.05),
+        pressed_harder_by(0.9),
+        passed_over_a_body_without_ends,
+        strained_more,
+    ),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 

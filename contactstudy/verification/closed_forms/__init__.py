@@ -12,6 +12,8 @@ Sources, by the names used in the docstrings:
   and shifting contact, by Johnson, sections 7.2 and 8.3;
 * Blok, *Proc. IMechE General Discussion on Lubrication* 2 (1937) 222, Jaeger, *Proc. R. Soc. N.S.W.* 76 (1942) 203, and
   Carslaw and Jaeger, *Conduction of Heat in Solids* (1959): moving and resting sources of heat;
+* Eshelby, *Proc. R. Soc.* A 241 (1957) 376 and Muskhelishvili, *Some Basic Problems of the Mathematical Theory of
+  Elasticity*, chapter 19: eigenstrain in a half-plane;
 * Bufler, *Ing.-Arch.* 27 (1959) 137 and Johnson, section 7.2: sliding line contact of unlike materials.
 
 Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
@@ -26,6 +28,7 @@ from contactstudy.verification.closed_forms.circle import (
     sliding_circle_surface,
 )
 from contactstudy.verification.closed_forms.components import COMPONENTS, Stress, von_mises
+from contactstudy.verification.closed_forms.eigenstrain import rectangle_in_half_plane
 from contactstudy.verification.closed_forms.friction import (
     carter_creepage,
     carter_force,
@@ -81,6 +84,7 @@ __all__ = [
     "point_load",
     "rectangle",
     "rectangle_displacement",
+    "rectangle_in_half_plane",
     "resting_hertz_circle",
     "resting_square",
     "sliding_circle_surface",

@@ -17,8 +17,8 @@ from contactstudy import (
     solve,
     solve_contact,
 )
-from contactstudy.passes import wear_in, worn_profile
 from contactstudy.profiles import FullCrown, Lundberg
+from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
 K = 1e-17

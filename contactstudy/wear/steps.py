@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.checks import FloatArray
-from contactstudy.passes.worn_contact import WornContact
+from contactstudy.wear.worn_contact import WornContact
 
 STAGE = 1 - np.sqrt(0.5)
 """Length of either implicit stage over that of the step, with which the scheme damps the stiffest wear fully

@@ -7,8 +7,8 @@ from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.contact import Settings, Shape
 from contactstudy.contact.prescribed import Prescribed
-from contactstudy.passes.steps import Stepper
-from contactstudy.passes.worn_contact import WornContact
+from contactstudy.wear.steps import Stepper
+from contactstudy.wear.worn_contact import WornContact
 
 
 @pytest.fixture

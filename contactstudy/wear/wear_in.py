@@ -22,9 +22,9 @@ from contactstudy.contact.contact import Settings, Shape
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
-from contactstudy.passes.steps import State, Stepper
-from contactstudy.passes.worn_contact import WornContact
 from contactstudy.profiles.base import checked_drop
+from contactstudy.wear.steps import State, Stepper
+from contactstudy.wear.worn_contact import WornContact
 
 LAWS = ("slip", "work")
 """What wear is proportional to: pressure times slip, or frictional work."""
