@@ -132,6 +132,9 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
+        "residual_stress": passes.residual_stress(
+            body, xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 2)))}, {"x": [1e-4, 2e-4], "z": depths[:2]})
+        ),
         "rolled_in": cs.passes.rolled_in(strip.isel(x_field=[4]), body, cs.passes.ElasticPlastic(yield_stress=8e8), 2),
         "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
