@@ -58,6 +58,8 @@ class CoulombProblem:
         Weights with which the tractions sum up to the resultant of each mode.
     resultants : array (mode)
         Prescribed resultants.
+    shares : array (cell)
+        Areas of the cells over their mean, by which the linear systems are symmetric and their residual is a mean.
     tolerance : float
         Violation, over the largest bound and the largest rigid slip, at which the iteration stops.
     max_steps : int
@@ -71,6 +73,7 @@ class CoulombProblem:
     modes: FloatArray
     works: FloatArray
     resultants: FloatArray
+    shares: FloatArray
     tolerance: float = 1e-6
     max_steps: int = 40
 
@@ -243,6 +246,7 @@ class _Step:
 
     def __init__(self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray) -> None:
         self._problem, self._sticks = problem, sticks
+        self._root = np.sqrt(problem.shares)
         size = np.hypot(*traction)
         self._direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
         self._base = problem.bound * self._direction
@@ -258,10 +262,11 @@ class _Step:
         cells = self._sticks.size
         traction = self._first * unknowns[:cells]
         traction[:, self._sticks] += self._second * unknowns[cells:]
-        return np.asarray(traction)
+        return np.asarray(traction / self._root)
 
     def _gathered(self, slip: FloatArray) -> FloatArray:
         """Parts of a slip (2, cell) that the unknowns work on."""
+        slip = self._root * slip
         first = (self._first * slip).sum(axis=0)
         second = (self._second * slip[:, self._sticks]).sum(axis=0)
         return np.concatenate([first, second])
@@ -271,7 +276,7 @@ class _Step:
         problem = self._problem
         turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
         modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(len(problem.modes), turning.size)
-        works = np.array([self._gathered(work) for work in problem.works]).reshape(modes.shape)
+        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(modes.shape)
         typical = _typical(problem)
         damped = np.sqrt(typical / (typical + turning))
 
