@@ -107,6 +107,8 @@ class FrictionalContact:
         scalars: dict[str, object] = {names[name]: amount for name, amount in found.rigid.items()}
         for name in ("force_x", "force_y", "moment_z", "bound_error", "slip_error", "force_error"):
             scalars[name] = getattr(found, name)
+        areas, pressed = shape.grid.weights, self.contact.pressure > 0
+        scalars["sticking_part"] = float((areas * found.sticks).sum() / (areas * pressed).sum())
         scalars["friction_work"] = found.work
         scalars["friction_steps"] = found.steps
         result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
