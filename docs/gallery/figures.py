@@ -153,6 +153,7 @@ PAGES = {
     "how-to/settled_number.md": ("settled",),
     "how-to/elastic_roller.md": ("elastic_roller",),
     "how-to/tilt.md": ("tilt",),
+    "how-to/rolling.md": ("rolling",),
     "how-to/fatigue_life.md": ("fatigue",),
 }
 """Figures that pages save, by page."""
