@@ -47,7 +47,9 @@ class TangentialInverse:
             change = _change(self._shape[1], cell[1])
             xx, xy, yy = change * xx, change * xy, change * yy
         determinant = xx * yy - xy * xy
-        self._inverse = (yy / determinant, -xy / determinant, xx / determinant)
+        # In single precision, which is enough for what is roughly right. Speed.
+        parts = (yy / determinant, -xy / determinant, xx / determinant)
+        self._inverse = tuple(part.astype(np.complex64) for part in parts)
 
     def _offsets(self, number: int, step: float) -> FloatArray:
         return np.asarray(step * np.arange(number // 2 + 1.0))
@@ -67,14 +69,15 @@ class TangentialInverse:
 
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Tractions (2, cell) that roughly take a slip (2, cell) away."""
+        scale = float(np.abs(slip).max()) or 1.0
         spectra = []
         for component in slip:
-            layer = np.zeros(self._shape)
-            layer[self._at] = component
+            layer = np.zeros(self._shape, np.float32)
+            layer[self._at] = component / scale
             spectra.append(fft.rfft2(layer))
         xx, xy, yy = self._inverse
         along = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
-        return np.stack([fft.irfft2(each, self._shape)[self._at] for each in along])
+        return scale * np.stack([fft.irfft2(each, self._shape)[self._at] for each in along]).astype(np.float64)
 
 
 class ColumnsInverse:

@@ -15,7 +15,6 @@ from contactstudy.contact.leading_edge import RollingCells
 from contactstudy.contact.nested import Coarser, guess_from, joined
 from contactstudy.contact.rubbed import RelativeOperator, Surfaces, amplitude, check_forces, motions_of, resultant
 from contactstudy.contact.tractions import Tractions, no_tractions, tractions_of_strips
-from contactstudy.errors import WindowError
 from contactstudy.kernels.load import Load
 
 TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)
@@ -62,17 +61,10 @@ def tractions_of(
     ------
     InvalidInputError
         If a prescribed force is as large as full sliding's.
-    WindowError
-        If rolling needs cells ahead of the contact that the grid does not have.
     """
     grid = surfaces.grid
     bound = friction * pressure
     rolling = isinstance(motion, Rolling)
-    if rolling and pressure[:, -2:].any():
-        raise WindowError(
-            "the contact reaches the last two cells along +y, and rolling takes the slip from the two cells ahead: "
-            "widen the window along y"
-        )
     cells = RollingCells.of(pressure, bound) if rolling else _all_cells(bound)
     check_forces(motion, float((bound * surfaces.areas).sum()))
     if not cells.unknown.size:
@@ -137,8 +129,6 @@ def _solved_on_coarser(
     if not isinstance(operator, RelativeOperator):
         return None
     pressed, bounded = joined(pressure), joined(bound)
-    if pressed[:, -2:].any():
-        return None
     coarse = grid.coarsened()
     found = tractions_of(
         motion,

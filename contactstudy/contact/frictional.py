@@ -19,7 +19,7 @@ from contactstudy.contact.nested import Coarser
 from contactstudy.contact.pair import PairOperator
 from contactstudy.contact.rubbed import Surfaces
 from contactstudy.contact.tractions import Tractions
-from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
 from contactstudy.fields.loads import Loads, TopLoad
 from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
@@ -178,6 +178,11 @@ def frictional_contact(
     surfaces = Surfaces(operator, shape.grid, materials, middle)
 
     def rubbed(pressure: FloatArray) -> Tractions:
+        if isinstance(motion, Rolling) and pressure[:, -2:].any():
+            raise WindowError(
+                "the contact reaches the last two cells along +y, and rolling takes the slip from the two cells ahead: "
+                "widen the window along y"
+            )
         with one_blas_thread():
             return tractions_of(
                 motion,

@@ -105,10 +105,13 @@ class RollingCells:
         return np.asarray(own)
 
     def change(self, displacement: FloatArray, dy: float) -> FloatArray:
-        """Change along y of a displacement (x, y), at the places where the slip is taken: array (unknown)."""
+        """Change along y of a displacement (x, y), at the places where the slip is taken: array (unknown).
+
+        Beyond the last cell it goes on as it is there: good enough for a guess.
+        """
         row, column = self.unknown
-        b = self.place
-        here, next_, second = (displacement[row, column + step] for step in (0, 1, 2))
+        b, last = self.place, displacement.shape[1] - 1
+        here, next_, second = (displacement[row, np.minimum(column + step, last)] for step in (0, 1, 2))
         return np.asarray(((b - 1.5) * here + (2 - 2 * b) * next_ + (b - 0.5) * second) / dy)
 
 
