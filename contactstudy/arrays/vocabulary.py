@@ -97,6 +97,7 @@ CONTACT = {
     "spin": Variable(SCALAR, "rad/m", r"\varphi", "angular velocity of the roller about z, over rolling"),
     "shift_x": Variable(SCALAR, "m", "", "shift of the roller against the body along x"),
     "shift_y": Variable(SCALAR, "m", "", "shift of the roller against the body along y"),
+    "sticking_part": Variable(SCALAR, "1", "", "area that sticks over that of the contact"),
     "friction_work": Variable(SCALAR, "", "A", "frictional work per distance rolled, or of a shift"),
     "friction_steps": Variable(SCALAR, "1", "", "steps of Newton's method for stick and slip"),
     "bound_error": Variable(SCALAR, "1", "", "largest traction above the friction's bound, over the largest bound"),

@@ -13,6 +13,7 @@ from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
 from contactstudy.plots.temperature import plot_temperature_map
+from contactstudy.plots.tractions import plot_stick_and_slip, plot_traction_curve
 from contactstudy.plots.wear import plot_wear
 
 __all__ = [
@@ -25,10 +26,12 @@ __all__ = [
     "plot_pressure_map",
     "plot_profile",
     "plot_profiles",
+    "plot_stick_and_slip",
     "plot_stress_plane",
     "plot_study_lines",
     "plot_study_map",
     "plot_temperature_map",
+    "plot_traction_curve",
     "plot_wear",
     "save",
     "study_figures",
