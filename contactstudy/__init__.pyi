@@ -4,6 +4,7 @@ from . import export as export
 from . import fatigue as fatigue
 from . import plots as plots
 from . import profiles as profiles
+from . import report as report
 from .analysis.summary import summarize as summarize
 from .arrays.grid import Grid as Grid
 from .arrays.invariants import hydrostatic as hydrostatic
@@ -43,3 +44,4 @@ from .study.errors import StoreError as StoreError
 from .study.errors import StudyFileError as StudyFileError
 from .study.opened import open_study as open_study
 from .study.run import run_study as run_study
+from .versions import show_versions as show_versions

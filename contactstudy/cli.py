@@ -74,6 +74,11 @@ def _parser() -> argparse.ArgumentParser:
     added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
     added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
     added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    text = "Write one HTML page of a case or of a study, for a reader without Python."
+    added = commands.add_parser("report", help=text, description=text)
+    added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
+    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
     return parser
 
 
@@ -101,6 +106,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         "status": _status,
         "collect": _collect,
         "export": _export,
+        "report": _report_page,
         "verify": _verify,
     }
     try:
@@ -275,6 +281,14 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         written = export_summaries(options.path, options.out)
     if written is not None:
         print(f"wrote {shown(written.resolve())}")
+    return ALL_OK
+
+
+def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.report import write
+    from contactstudy.study.report import shown
+
+    print(f"wrote {shown(write(options.path, options.out, title=options.title).resolve())}")
     return ALL_OK
 
 

@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.old_names import with_present_names
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError
@@ -36,7 +37,6 @@ ALMOST_FULL = 2**20
 PART = re.compile(r"(?P<name>.+)\.part-(?P<host>.+)-(?P<pid>\d+)")
 CASE_ATTRIBUTE = "contactstudy_case"
 ID_ATTRIBUTE = "contactstudy_case_id"
-RUN_ATTRIBUTE = "contactstudy_run"
 
 
 class Header(NamedTuple):

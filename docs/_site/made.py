@@ -33,7 +33,7 @@ from contactstudy.study.profile_kinds import PROFILES, MeasuredPoints, Numbers
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
-WHOLE = ("analysis", "export", "fatigue", "plots", "profiles", "study", "verification")
+WHOLE = ("analysis", "export", "fatigue", "plots", "profiles", "report", "study", "verification")
 """Packages of which everything in ``__all__`` is shown, also what ``contactstudy`` itself does not hand on."""
 
 FIRST = (
@@ -47,6 +47,7 @@ FIRST = (
     "fatigue",
     "plots",
     "export",
+    "report",
     "study",
 )
 """The order in which a reader needs the folders; any other follows."""
