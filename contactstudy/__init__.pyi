@@ -32,6 +32,7 @@ from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError
 from .errors import WindowError as WindowError
+from .explorer.show import explore as explore
 from .fields.displacement import displacement_field as displacement_field
 from .fields.equivalent import equivalent_loads as equivalent_loads
 from .fields.stress import stress_field as stress_field

@@ -74,6 +74,9 @@ def _parser() -> argparse.ArgumentParser:
     added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
     added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
     added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    explore = command("explore", "Serve a page to look through a study, on this machine.", takes_study=False)
+    explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
+    explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
     added = commands.add_parser("report", help=text, description=text)
     added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
@@ -107,6 +110,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         "collect": _collect,
         "export": _export,
         "report": _report_page,
+        "explore": _explore,
         "verify": _verify,
     }
     try:
@@ -289,6 +293,13 @@ def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.report import shown
 
     print(f"wrote {shown(write(options.path, options.out, title=options.title).resolve())}")
+    return ALL_OK
+
+
+def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.explorer import serve
+
+    serve(options.folder, port=options.port, show=not options.no_browser)
     return ALL_OK
 
 

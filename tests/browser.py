@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import shutil
 import tempfile
+import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any
 
 QUIET = (
@@ -17,6 +18,16 @@ QUIET = (
 def chromium() -> str | None:
     """Path of Chromium; None if it is not installed."""
     return shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+def open_served(page: Any, address: str) -> None:
+    """Open the page of a server that listens a moment after it has said where, and wait for its figures."""
+    for _ in range(100):
+        with suppress(Exception):
+            page.goto(address)
+            break
+        time.sleep(0.1)
+    page.wait_for_selector("canvas")
 
 
 @contextmanager

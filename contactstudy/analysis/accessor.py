@@ -8,6 +8,8 @@ and any public name of contactstudy has been used. To open a file with xarray al
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -54,6 +56,11 @@ class ContactAccessor:
             swept = ", ".join(f"{dim} ({self._dataset.sizes[dim]})" for dim in self._dataset["status"].dims)
             return f"study of {self._dataset['status'].size} cases over {swept}: {said}; select one for its numbers"
         return analysis.short(self._dataset)
+
+    def explore(self) -> Any:
+        """See :func:`contactstudy.explore`."""
+        # The page stands above the analysis, which need not know it: it is found by its name.
+        return import_module("contactstudy.explorer").explore(self._dataset)
 
     def short(self) -> ShortView:
         """See :func:`contactstudy.analysis.short`."""

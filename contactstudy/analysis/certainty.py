@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
-from contactstudy.analysis.short import short
+from contactstudy.analysis.short import ShortView, short
 from contactstudy.arrays.required import require
 
 YES, CARE, NO, UNKNOWN = "yes", "with care", "no", "not known"
@@ -92,10 +92,15 @@ def certainty(dataset: xr.Dataset) -> Certainty:
     """
     require(dataset)
     one = single_case(dataset).assign_attrs(dataset.attrs)
-    return Certainty(tuple(_answers(one)))
+    return certainty_of(one, short(one))
 
 
-def _answers(one: xr.Dataset) -> Iterator[Answer]:
+def certainty_of(one: xr.Dataset, view: ShortView) -> Certainty:
+    """Return what :func:`certainty` does, for one case whose main numbers are known already."""
+    return Certainty(tuple(_answers(one, view)))
+
+
+def _answers(one: xr.Dataset, view: ShortView) -> Iterator[Answer]:
     """Every answer."""
     yield _converged(one)
     yield _load(one)
@@ -104,7 +109,6 @@ def _answers(one: xr.Dataset) -> Iterator[Answer]:
         yield _friction(one)
     yield _ends(one)
     yield _cells(one)
-    view = short(one)
     if "peak_von_mises" in view:
         row = view["peak_von_mises"]
         if np.isinf(row.error) or np.isinf(row.value) or np.isnan(row.error):

@@ -19,6 +19,9 @@ UNITS: dict[str, tuple[tuple[float, float, str], ...]] = {
 ROUNDING = 1e-6
 """Part of a size by which rounding may miss a step of units."""
 
+NEGLIGIBLE = 1e-6
+"""Part of a value below which an error is that of rounding."""
+
 DIGITS, ERROR_DIGITS = 4, 2
 """Digits of a number whose error is not known, and of an error."""
 
@@ -82,7 +85,7 @@ def with_error(value: float, error: float | None, units: str) -> str:
     >>> with_error(2.2531e9, 0.012e9, "Pa"), with_error(65e-6, None, "m"), with_error(0.0, 0.0, "Pa")
     ('2.253 ± 0.012 GPa', '65 µm', '0 MPa')
     """
-    if error is None or not math.isfinite(value) or not error or not math.isfinite(error):
+    if error is None or not math.isfinite(value) or not NEGLIGIBLE * abs(value) < error < math.inf:
         return quantity(value, units)
     factor, unit = unit_for(max(abs(value), error), units)
     value, error = value / factor, error / factor

@@ -23,7 +23,7 @@ SAMPLES = 401
 """Points at which a profile of the user's own is kept."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sampled(Shape):
     """What a file keeps of a profile that is not of this package: its drop at some points, with lines between.
 
@@ -45,6 +45,9 @@ class Sampled(Shape):
     says: str
     positions: tuple[float, ...]
     drops: tuple[float | None, ...]
+
+    def __repr__(self) -> str:
+        return self.says
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

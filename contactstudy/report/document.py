@@ -15,10 +15,11 @@ from contactstudy.analysis import certainty, citations, short, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.old_names import with_present_names
 from contactstudy.arrays.variables import package_version
+from contactstudy.case.words import inputs
 from contactstudy.errors import InvalidInputError
 from contactstudy.report.drawing import draw
 from contactstudy.report.figures import case_pictures
-from contactstudy.report.inputs import case_of, inputs
+from contactstudy.report.inputs import case_of
 from contactstudy.report.study_page import study_context
 
 CELLS = {

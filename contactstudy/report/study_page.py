@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.engineering import quantity, with_error
+from contactstudy.arrays.engineering import with_error
 from contactstudy.errors import ContactStudyError
 from contactstudy.plots import study_figures
 from contactstudy.report.figures import Picture, as_address
@@ -16,7 +16,7 @@ from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.opened import collect, open_study
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, label
+from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
 
 SHOWN = {
     "peak_pressure": "largest pressure",
@@ -72,7 +72,7 @@ def study_context(path: Path) -> dict[str, Any]:
         "description": study.description,
         "shape": _shape(plan),
         "counts": Counter(entry.status for entry in entries),
-        "base": [(_meaning(name), parameter_text(name, value)) for name, value in study.base.items()],
+        "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
         "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
         "headings": [_meaning(name) for name in swept],
         "number_headings": [SHOWN[name] for name in numbers],
@@ -94,23 +94,6 @@ def _meaning(name: str) -> str:
     return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
 
 
-def parameter_text(name: str, value: Any) -> str:
-    """Value of a study's parameter in the units of engineers.
-
-    Examples
-    --------
-    >>> parameter_text("radius", 5e-3), parameter_text("body", "half-space"), parameter_text("field_y_over_a", [0.0])
-    ('5 mm', 'half-space', '1 value, 0')
-    """
-    shown = label(name, value) if isinstance(value, dict) else value
-    if isinstance(shown, (list, tuple)):
-        ends = f"{shown[0]:g}" if len(shown) == 1 else f"{shown[0]:g} to {shown[-1]:g}"
-        return f"{len(shown)} value{'s' if len(shown) > 1 else ''}, {ends}"
-    if isinstance(shown, bool) or not isinstance(shown, (int, float)):
-        return {True: "yes", False: "no"}.get(shown, str(shown)) if isinstance(shown, bool) else str(shown)
-    return quantity(float(shown), PARAMETERS[name].units if name in PARAMETERS else "1")
-
-
 def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     """Values of the swept parameters of a case, as the study names them."""
     given = with_defaults(case.parameters)
@@ -118,7 +101,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     for name in swept:
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else given.get(name)
-        found.append("" if value is None else parameter_text(name, value))
+        found.append("" if value is None else in_engineers_words(name, value))
     return found
 
 
