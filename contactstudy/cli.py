@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import signal
 import sys
@@ -31,6 +32,8 @@ def _parser() -> argparse.ArgumentParser:
         "130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
     parser.add_argument("--version", action="store_true", help="show the version and end")
+    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parser.add_argument("--verbose", action="store_true", help="say on the error output what is being done")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(name: str, text: str, *, takes_study: bool) -> argparse.ArgumentParser:
@@ -119,6 +122,14 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
 
             print(f"contactstudy {package_version()}")
             return ALL_OK
+        if options.versions:
+            from contactstudy.versions import show_versions
+
+            show_versions()
+            return ALL_OK
+        if options.verbose:
+            logging.basicConfig(format="%(asctime)s %(message)s")
+            logging.getLogger("contactstudy").setLevel(logging.INFO)
         if options.command is None:
             parser.print_help()
             return USAGE
