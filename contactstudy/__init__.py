@@ -6,10 +6,14 @@ stands in ``__init__.pyi``.
 
 from __future__ import annotations
 
+import logging
 import sys
 from importlib import import_module
 
 import lazy_loader
+
+# By default the package logs nothing; logging.basicConfig(level="INFO") shows its stages.
+logging.getLogger(__name__).addHandler(logging.NullHandler())
 
 _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 

@@ -5,6 +5,7 @@ from . import fatigue as fatigue
 from . import passes as passes
 from . import plots as plots
 from . import profiles as profiles
+from . import report as report
 from . import wear as wear
 from .analysis.summary import summarize as summarize
 from .arrays.grid import Grid as Grid
@@ -34,6 +35,7 @@ from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError
 from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
+from .explorer.show import explore as explore
 from .fields.displacement import displacement_field as displacement_field
 from .fields.equivalent import equivalent_loads as equivalent_loads
 from .fields.stress import stress_field as stress_field
@@ -48,3 +50,4 @@ from .study.errors import StoreError as StoreError
 from .study.errors import StudyFileError as StudyFileError
 from .study.opened import open_study as open_study
 from .study.run import run_study as run_study
+from .versions import show_versions as show_versions

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import logging
 import os
 import signal
 import sys
@@ -31,6 +32,8 @@ def _parser() -> argparse.ArgumentParser:
         "130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
     parser.add_argument("--version", action="store_true", help="show the version and end")
+    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parser.add_argument("--verbose", action="store_true", help="say on the error output what is being done")
     commands = parser.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(name: str, text: str, *, takes_study: bool) -> argparse.ArgumentParser:
@@ -74,6 +77,14 @@ def _parser() -> argparse.ArgumentParser:
     added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
     added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
     added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    explore = command("explore", "Serve a page to look through a study, on this machine.", takes_study=False)
+    explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
+    explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
+    text = "Write one HTML page of a case or of a study, for a reader without Python."
+    added = commands.add_parser("report", help=text, description=text)
+    added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
+    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
     return parser
 
 
@@ -101,6 +112,8 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         "status": _status,
         "collect": _collect,
         "export": _export,
+        "report": _report_page,
+        "explore": _explore,
         "verify": _verify,
     }
     try:
@@ -109,6 +122,14 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
 
             print(f"contactstudy {package_version()}")
             return ALL_OK
+        if options.versions:
+            from contactstudy.versions import show_versions
+
+            show_versions()
+            return ALL_OK
+        if options.verbose:
+            logging.basicConfig(format="%(asctime)s %(message)s")
+            logging.getLogger("contactstudy").setLevel(logging.INFO)
         if options.command is None:
             parser.print_help()
             return USAGE
@@ -275,6 +296,21 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
         written = export_summaries(options.path, options.out)
     if written is not None:
         print(f"wrote {shown(written.resolve())}")
+    return ALL_OK
+
+
+def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.report import write
+    from contactstudy.study.report import shown
+
+    print(f"wrote {shown(write(options.path, options.out, title=options.title).resolve())}")
+    return ALL_OK
+
+
+def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.explorer import serve
+
+    serve(options.folder, port=options.port, show=not options.no_browser)
     return ALL_OK
 
 

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import logging
+import time
+
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.discretisation import discretisation_error
+from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
@@ -27,6 +31,8 @@ from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.stress import end_traction_residual, stress_and_residual, stress_dataset
 from contactstudy.kernels.load import Load
+
+LOGGER = logging.getLogger(__name__)
 
 DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0, 5.0)
 """Default depths of the stresses, over the Hertz half-width."""
@@ -107,7 +113,9 @@ def solve(
         `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
         or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end. With stick and
-        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well.
+        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well. Its attributes
+        hold the case, the settings, the versions, and the seconds of each stage, see
+        `contactstudy.analysis.solved_case`.
 
     Raises
     ------
@@ -128,9 +136,16 @@ def solve(
     """
     checks.instance("case", case, Case, "a Case")
     _check_balanced(case)
+    began = time.perf_counter()
     known = xr.Dataset()
     slides = isinstance(case.motion, Sliding)
     found: FrictionalContact | None = None
+    settings = {
+        "cells": "refined" if grid is None and roughness is None else "chosen" if grid is None else "given",
+        "accuracy": float(accuracy),
+        "tolerance": float(tolerance),
+        "rough": roughness is not None,
+    }
     if grid is None and roughness is None:
         accuracy = check_accuracy(accuracy)
         settled = settled_contact(case, accuracy, checks.positive("tolerance", tolerance))
@@ -161,6 +176,8 @@ def solve(
             raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
         coarse = _labelled(case, _contact(case, grid.coarsened(), None, tolerance))
         result = result.assign(discretisation_error(result, coarse).data_vars)
+    contact_seconds = time.perf_counter() - began
+    LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
     half_width = case.hertz_half_width
     result["initial_gap"] = (("x", "y"), contact.shape.gap.values.copy())
     result["hertz_half_width"] = half_width
@@ -177,7 +194,10 @@ def solve(
         residual = end_traction_residual(case.body, loads, grid, *looked_at)
     result["end_traction_residual"] = residual
     result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
-    return describe(result, "roller on an elastic body: contact and stresses")
+    stages = {"contact": contact_seconds, "stresses": time.perf_counter() - began - contact_seconds}
+    LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
+    described = describe(result, "roller on an elastic body: contact and stresses")
+    return with_provenance(described, case, settings, stages)
 
 
 def check_accuracy(value: object) -> float:

@@ -13,6 +13,8 @@ from contactstudy.analysis.axial import (
     load_between,
     unloaded_gap,
 )
+from contactstudy.analysis.certainty import certainty
+from contactstudy.analysis.citations import citations
 from contactstudy.analysis.contact import contact_results, edge_pressure
 from contactstudy.analysis.cuts import along_line, in_plane
 from contactstudy.analysis.discretisation import discretisation_error
@@ -21,7 +23,9 @@ from contactstudy.analysis.factors import edge_factors
 from contactstudy.analysis.largest import largest
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.analysis.peaks import peak, section_peak
+from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.scaling import normalized
+from contactstudy.analysis.short import short
 from contactstudy.analysis.slices import slices
 
 __all__ = [
@@ -29,6 +33,8 @@ __all__ = [
     "along_line",
     "axial_pressure",
     "axial_profiles",
+    "certainty",
+    "citations",
     "contact_edges",
     "contact_results",
     "dimension_along",
@@ -45,7 +51,9 @@ __all__ = [
     "peak",
     "positions",
     "section_peak",
+    "short",
     "single_case",
     "slices",
+    "solved_case",
     "unloaded_gap",
 ]

@@ -8,10 +8,17 @@ and any public name of contactstudy has been used. To open a file with xarray al
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from contactstudy import analysis
+from contactstudy.analysis.certainty import Certainty
+from contactstudy.analysis.citations import Citations
+from contactstudy.analysis.short import ShortView
+from contactstudy.case.case import Case
 
 
 @xr.register_dataset_accessor("contact")
@@ -32,6 +39,44 @@ class ContactAccessor:
 
     def __init__(self, dataset: xr.Dataset) -> None:
         self._dataset = dataset
+
+    def __repr__(self) -> str:
+        text = self._summary()
+        return text if isinstance(text, str) else repr(text)
+
+    def _repr_html_(self) -> str:
+        text = self._summary()
+        return f"<pre>{text}</pre>" if isinstance(text, str) else text._repr_html_()
+
+    def _summary(self) -> ShortView | str:
+        """Return the main numbers of a case, or how many cases of which status a study has."""
+        if "status" in self._dataset and self._dataset["status"].size > 1:
+            found, counts = np.unique(self._dataset["status"].values, return_counts=True)
+            said = ", ".join(f"{count} {name}" for name, count in zip(found, counts, strict=True))
+            swept = ", ".join(f"{dim} ({self._dataset.sizes[dim]})" for dim in self._dataset["status"].dims)
+            return f"study of {self._dataset['status'].size} cases over {swept}: {said}; select one for its numbers"
+        return analysis.short(self._dataset)
+
+    def explore(self) -> Any:
+        """See :func:`contactstudy.explore`."""
+        # The page stands above the analysis, which need not know it: it is found by its name.
+        return import_module("contactstudy.explorer").explore(self._dataset)
+
+    def short(self) -> ShortView:
+        """See :func:`contactstudy.analysis.short`."""
+        return analysis.short(self._dataset)
+
+    def certainty(self) -> Certainty:
+        """See :func:`contactstudy.analysis.certainty`."""
+        return analysis.certainty(self._dataset)
+
+    def citations(self) -> Citations:
+        """See :func:`contactstudy.analysis.citations`."""
+        return analysis.citations(self._dataset)
+
+    def solved_case(self) -> Case:
+        """See :func:`contactstudy.analysis.solved_case`."""
+        return analysis.solved_case(self._dataset)
 
     def axial_pressure(self) -> xr.DataArray:
         """See :func:`contactstudy.analysis.axial_pressure`."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import xarray as xr
 
 from contactstudy.arrays.vocabulary import AXES, COORDINATES, RULES, STRESSES, VARIABLES, Variable
+from contactstudy.versions import version_of
 
 __all__ = [
     "AXES",
@@ -121,10 +121,7 @@ def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.Da
 
 def package_version() -> str:
     """Version of the installed package."""
-    try:
-        return version("contactstudy")
-    except PackageNotFoundError:
-        return "unknown"
+    return version_of("contactstudy")
 
 
 def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.errors import InvalidInputError
 
 
@@ -41,6 +42,9 @@ class Material:
         if not -1 < poisson <= 0.5:
             raise InvalidInputError("poisson", self.poisson, "in (-1, 0.5]")
         checks.store(self, poisson=poisson)
+
+    def __repr__(self) -> str:
+        return f"Material(E = {quantity(self.young, 'Pa')}, nu = {self.poisson:g})"
 
     @property
     def shear_modulus(self) -> float:

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.errors import InvalidInputError
@@ -61,7 +62,7 @@ LONGEST_CELL, WIDEST_WINDOW = 1e6, 1e4
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Body:
     """An elastic body below ``z = 0``; use one of its kinds.
 
@@ -78,6 +79,13 @@ class Body:
         if type(self) in (Body, EndedBody):
             raise InvalidInputError("body", type(self).__name__, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
         checks.instance("material", self.material, Material, "a Material")
+
+    def __repr__(self) -> str:
+        low, high = self.extent
+        said = [f"L = {quantity(high, 'm')}"] if np.isfinite(high - low) else []
+        said.append(f"E = {quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
+        model = getattr(self, "model", "exact")
+        return f"{type(self).__name__}({', '.join(said if model == 'exact' else [*said, f'model={model!r}'])})"
 
     @property
     def extent(self) -> Extent:
@@ -115,7 +123,7 @@ class Body:
         return min(part.extent[1] - part.extent[0] for part in self.parts)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class HalfSpace(Body):
     """Elastic half-space ``z >= 0``: no free end.
 
@@ -129,7 +137,7 @@ class HalfSpace(Body):
 MODELS = ("exact", "mirror", "mirror-factor", "single-mirror")
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class EndedBody(Body):
     """A body with free ends; use one of its kinds.
 
@@ -179,7 +187,7 @@ def guilbault_factor(poisson: float) -> float:
     return 1.29 - (0.08 - 0.5 * poisson) / (1 - poisson)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class QuarterSpace(EndedBody):
     """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
 
@@ -210,7 +218,7 @@ class QuarterSpace(EndedBody):
         return (0.0, np.inf)
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class FiniteLengthSpace(EndedBody):
     """Elastic body ``0 <= x <= length``, ``z >= 0`` with free end faces I at ``x = 0`` and II at ``x = length``.
 

@@ -16,6 +16,7 @@ from contactstudy.bodies.models import Body
 from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
 from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
+from contactstudy.case.words import as_html, in_lines
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -109,6 +110,12 @@ class Case:
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_place()
         self._check_load()
+
+    def __repr__(self) -> str:
+        return in_lines(self)
+
+    def _repr_html_(self) -> str:
+        return as_html(self)
 
     def _check_place(self) -> None:
         """Raise unless the roller lies over the body, and the load on both."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
@@ -63,6 +64,14 @@ class Roller:
         local_radius(self.profile, tried, self.length, self.radius)
         if np.isinf(checked_drop(self.profile, tried, self.length)).all():
             raise InvalidInputError("profile", self.profile, "a profile whose drop is finite but at the very ends")
+
+    def __repr__(self) -> str:
+        drop = float(self.profile.drop(np.array([0.5 * self.length]), self.length)[0])
+        made = "rigid" if self.material is None else f"E = {quantity(self.material.young, 'Pa')}"
+        if self.material is not None and self.ends == "none":
+            made += ", as a half-space"
+        sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
+        return f"Roller({sizes}, {self.profile!r}, end drop {quantity(drop, 'm')}, {made})"
 
     @property
     def body(self) -> Body | None:

@@ -8,6 +8,7 @@ falls until what is stated is settled. Two solutions may agree by chance, so the
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 
@@ -17,6 +18,8 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
 from contactstudy.contact.problem import between_columns
+
+LOGGER = logging.getLogger(__name__)
 
 POWERS = (2.0, 16.0)
 """Powers of the pressure whose jumps are marked. Accuracy."""
@@ -151,6 +154,7 @@ class _State:
             finer = split(self.edges, marks)
             guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
             self.edges, self.pressure = finer, self.solve(finer, guess, ROUGH)
+            LOGGER.info("refined to %d columns", finer.size - 1)
             self._sample()
         self.pressure = self.solve(self.edges, self.pressure, POLISHED)
         if self.first is None:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import Field, dataclass, fields, is_dataclass
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+
+UNITS = {"half_angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
+"""Units of the numbers of profiles that are no lengths."""
 
 
 @runtime_checkable
@@ -35,6 +39,17 @@ class Shape:
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius of curvature across the roller (m) at `x`, for a roller with `radius` at mid-length: the same."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
+
+    def __repr__(self) -> str:
+        said = []
+        entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
+        for entry in entries:
+            value = getattr(self, entry.name)
+            if value != entry.default:
+                number = isinstance(value, (int, float)) and not isinstance(value, bool)
+                text = quantity(value, UNITS.get(entry.name, "m")) if number else repr(value)
+                said.append(f"{entry.name}={text}")
+        return f"{type(self).__name__}({', '.join(said)})"
 
     def __add__(self, other: object) -> Sum:
         """Both profiles on one roller."""
@@ -107,7 +122,7 @@ def checked_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
     return np.asarray(found, dtype=np.float64)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sum(Shape):
     """Profiles on top of each other, usually written ``one + other``: the drops add up.
 
@@ -143,6 +158,9 @@ class Sum(Shape):
             raise InvalidInputError("terms", self.terms, "a tuple of at least one profile")
         for term in self.terms:
             checks.instance("terms", term, Profile, "profiles from contactstudy.profiles")
+
+    def __repr__(self) -> str:
+        return " + ".join(map(repr, self.terms))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Sum of the drops (m) at distances `x` (m) from mid-length."""

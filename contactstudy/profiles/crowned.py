@@ -17,7 +17,7 @@ def _arc(distance: FloatArray, radius: float) -> FloatArray:
     return np.asarray(distance**2 / (radius + np.sqrt(radius**2 - distance**2)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FullCrown(Shape):
     """Full crown: one circular arc from end to end, ``drop = R - sqrt(R**2 - (x - centre)**2)``.
 
@@ -66,7 +66,7 @@ class FullCrown(Shape):
         return _arc(np.minimum(np.abs(np.asarray(x) - self.centre), reach), self.crown_radius)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PartialCrown(Shape):
     """Partial crown: a straight middle, a crown of circular arcs, and if wanted a dub-off at each end.
 

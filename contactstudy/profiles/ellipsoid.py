@@ -12,7 +12,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Ellipsoid(Shape):
     """Parabola ``drop = x**2 / (2 R_x)``: the roller as an ellipsoid in Hertz' theory.
 
@@ -52,7 +52,7 @@ class Ellipsoid(Shape):
         return np.asarray(np.asarray(x) ** 2 / (2 * self.crown_radius))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Sphere(Shape):
     """Sphere in Hertz' theory: an :class:`Ellipsoid` whose crown radius is the roller's radius.
 

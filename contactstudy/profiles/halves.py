@@ -15,7 +15,7 @@ STEP = 1e-10
 """Largest step between the two halves at mid-length, metres: about one atom. Accuracy."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Halves(Shape):
     """One profile left and another right of mid-length.
 

@@ -15,7 +15,7 @@ SHORT = 2.5
 """Length over diameter up to which a cylindrical roller is crowned all along."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class IsoCylindrical(Shape):
     """Reference profile of a cylindrical roller.
 
@@ -66,7 +66,7 @@ class IsoCylindrical(Shape):
         return logarithmic_drop(0.0005 * self.diameter, inside / crowned)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class IsoTapered(Shape):
     """Reference profile of a tapered roller: ``drop = 0.00045 D ln(1 / (1 - (2 x / length)**2))``.
 

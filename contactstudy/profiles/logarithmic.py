@@ -45,7 +45,7 @@ def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) ->
     return checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Lundberg(Shape):
     """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
 
@@ -112,7 +112,7 @@ class Lundberg(Shape):
         return logarithmic_drop(self.delta * self.amplitude, 2 * np.asarray(x) / length)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class JohnsGohar(Shape):
     """Johns and Gohar's profile: Lundberg's with a finite drop at the ends.
 
@@ -179,7 +179,7 @@ class JohnsGohar(Shape):
         return logarithmic_drop(self.amplitude, 2 * np.asarray(x) / length, share)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class FujiwaraKawase(Shape):
     """Fujiwara and Kawase's profile: a straight middle and a logarithmic crown with a chosen end drop.
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -32,7 +33,7 @@ around it (median of half the second differences of eleven points, or of all if 
 share of the profile's height (without the outer tenth of its values)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Measured(Shape):
     """A measured profile, interpolated without overshoot between its points.
 
@@ -96,6 +97,10 @@ class Measured(Shape):
         refuse_outliers(x, drops, self.largest_spike)
         object.__setattr__(self, "positions", tuple(x.tolist()))
         object.__setattr__(self, "drops", tuple(drops.tolist()))
+
+    def __repr__(self) -> str:
+        length = quantity(self.positions[-1] - self.positions[0], "m")
+        return f"Measured({len(self.positions)} points over {length}, drop up to {quantity(max(self.drops), 'm')})"
 
     @classmethod
     def from_file(

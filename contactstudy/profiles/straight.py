@@ -15,7 +15,7 @@ STEEPEST = np.pi / 4
 """Largest half cone angle, radians."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Cylinder(Shape):
     """Cylinder with rounded ends: straight, then a circular fillet of radius `fillet_radius` at each end.
 
@@ -59,7 +59,7 @@ class Cylinder(Shape):
         return np.asarray(np.maximum(radius - np.sqrt(radius**2 - inside**2), 0.0))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Tapered(Shape):
     """Tapered roller with rounded ends: a cone that lies on the body with its generatrix.
 

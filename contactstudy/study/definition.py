@@ -6,8 +6,9 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from html import escape
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, checked
-from contactstudy.study.plan import LEVELS, Plan, label, make_plan
+from contactstudy.study.plan import LEVELS, Plan, in_engineers_words, label, make_plan
 from contactstudy.study.profile_kinds import with_files_in
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
@@ -26,6 +27,9 @@ KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclud
 
 # Each case is a file and about two kilobytes of memory.
 MOST_CASES = 1_000_000
+
+LISTED = 12
+"""Values of a swept parameter that are all shown."""
 
 
 def _listed(name: str, values: object) -> list[Any]:
@@ -45,6 +49,11 @@ def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
         raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
     return entries
+
+
+def _shortened(texts: list[str]) -> str:
+    """Values of a swept parameter; of many the first and the last."""
+    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 @dataclass(frozen=True)
@@ -97,6 +106,36 @@ class Study:
     exclude: Sequence[Mapping[str, Any]] = ()
     level: str = "fields"
     description: str = ""
+
+    def __repr__(self) -> str:
+        lines = [f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"]
+        if self.description:
+            lines.append(f"  {self.description}")
+        lines += [f"  {meaning}: {text}" for meaning, text in self._rows()]
+        return "\n".join(lines)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td style='text-align:left'>{escape(meaning)}</td>"
+            f"<td style='text-align:left'>{escape(text)}</td></tr>"
+            for meaning, text in self._rows()
+        )
+        head = escape(f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}")
+        return f"<b>{head}</b><br>{escape(self.description)}<table>{rows}</table>"
+
+    def _rows(self) -> Iterator[tuple[str, str]]:
+        """Parameters, the swept ones first, in the units of engineers."""
+        for name, values in self.sweep.items():
+            yield f"{name} (swept)", _shortened([in_engineers_words(name, value) for value in values])
+        for group in self.zip:
+            for name, values in group.items():
+                yield f"{name} (together)", _shortened([in_engineers_words(name, value) for value in values])
+        if self.cases:
+            yield "cases", f"{len(self.cases)} explicit ones"
+        for name, value in self.base.items():
+            yield name, in_engineers_words(name, value)
+        if self.exclude:
+            yield "exclude", f"{len(self.exclude)} rules"
 
     def __post_init__(self) -> None:
         """Check names and types, and bring every value into one form."""

@@ -8,10 +8,11 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from contactstudy.arrays.engineering import quantity
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
-from contactstudy.study.parameters import completed, counted
+from contactstudy.study.parameters import PARAMETERS, completed, counted
 from contactstudy.study.profile_kinds import profile_label
 from contactstudy.study.setup import Described, setup_of
 
@@ -122,6 +123,25 @@ def in_words(name: str, value: Any) -> str:
     """Return a parameter as ``name=value``."""
     shown = label(name, value)
     return f"{name}={shown:g}" if isinstance(shown, float) else f"{name}={shown}"
+
+
+def in_engineers_words(name: str, value: Any) -> str:
+    """Value of a study's parameter in the units of engineers.
+
+    Examples
+    --------
+    >>> in_engineers_words("radius", 5e-3), in_engineers_words("field_y_over_a", [0.0])
+    ('5 mm', '1 value, 0')
+    """
+    shown = label(name, value) if isinstance(value, dict) else value
+    if isinstance(shown, (list, tuple)):
+        ends = f"{shown[0]:g}" if len(shown) == 1 else f"{shown[0]:g} to {shown[-1]:g}"
+        return f"{len(shown)} value{'s' if len(shown) > 1 else ''}, {ends}"
+    if isinstance(shown, bool):
+        return "yes" if shown else "no"
+    if not isinstance(shown, (int, float)):
+        return str(shown)
+    return quantity(float(shown), PARAMETERS[name].units if name in PARAMETERS else "1")
 
 
 def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]]) -> bool:

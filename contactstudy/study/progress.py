@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import logging
 import os
 import sys
 import time
@@ -13,6 +14,8 @@ from typing import IO, Any
 
 from contactstudy.study.errors import StoreError
 from contactstudy.study.work import Job, Record
+
+LOGGER = logging.getLogger(__name__)
 
 
 def duration(seconds: float) -> str:
@@ -72,7 +75,8 @@ class Progress:
                 self._file.close()
 
     def say(self, message: str) -> None:
-        """Write a line to the log."""
+        """Write a line to the log file, and hand it to the logger of the package."""
+        LOGGER.info(message)
         if self._file is not None:
             now = datetime.now(UTC).isoformat(timespec="seconds")
             # A log that cannot grow must not stop the run; a full disk shows when a case is written.

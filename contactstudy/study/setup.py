@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from typing import Any
 
 from contactstudy import checks
@@ -124,7 +124,8 @@ class Setup:
         """What the solver's expensive preparation depends on: equal for cases that can share it."""
         case = self.case
         cells = case.hertz_half_width if self.grid is None else self.grid
-        return repr((case.body, case.roller.body, cells, case.coupled, type(case.motion).__name__))
+        bodies = [body and (type(body).__name__, astuple(body)) for body in (case.body, case.roller.body)]
+        return repr((*bodies, cells, case.coupled, type(case.motion).__name__))
 
     @property
     def shape(self) -> tuple[int, int]:

@@ -12,7 +12,7 @@ import os
 import re
 import shutil
 import socket
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
@@ -23,6 +23,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.old_names import with_present_names
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError
@@ -36,7 +37,6 @@ ALMOST_FULL = 2**20
 PART = re.compile(r"(?P<name>.+)\.part-(?P<host>.+)-(?P<pid>\d+)")
 CASE_ATTRIBUTE = "contactstudy_case"
 ID_ATTRIBUTE = "contactstudy_case_id"
-RUN_ATTRIBUTE = "contactstudy_run"
 
 
 class Header(NamedTuple):
@@ -221,6 +221,19 @@ def load_case(path: Path) -> xr.Dataset:
     """
     with _opened(path) as dataset:
         return dataset.load()
+
+
+def load_variables(path: Path, wanted: Collection[str]) -> xr.Dataset:
+    """Scalars of a case's file, and those of the wanted variables that it has, in memory.
+
+    Raises
+    ------
+    StoreError
+        If the file is damaged.
+    """
+    with _opened(path) as dataset:
+        names = [name for name, entry in dataset.data_vars.items() if entry.ndim == 0 or name in wanted]
+        return dataset[names].load()
 
 
 def load_variable(path: Path, name: str) -> npt.NDArray[Any]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import contextlib
-import platform
 import subprocess
 import time
 import warnings
@@ -11,16 +10,16 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from functools import cache, partial
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
 from contactstudy.analysis.summary import summarize
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import named, package_version
+from contactstudy.arrays.variables import named
 from contactstudy.case.gridding import first_that_holds
 from contactstudy.errors import ContactStudyError
 from contactstudy.solution import solve
@@ -28,6 +27,7 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import Setup, build_setup
 from contactstudy.study.store import Header, write_case
+from contactstudy.versions import versions
 
 Solver = Callable[..., xr.Dataset]
 """What solves a case: called as :func:`contactstudy.solve`."""
@@ -82,12 +82,7 @@ class Record:
 @cache
 def circumstances() -> dict[str, Any]:
     """Versions and commit with which this process solves cases, for the files."""
-    found: dict[str, Any] = {"contactstudy": package_version(), "python": platform.python_version()}
-    for package in ("numpy", "scipy", "xarray", "netCDF4", "pyfftw"):
-        try:
-            found[package] = version(package)
-        except PackageNotFoundError:
-            found[package] = "unknown"
+    found: dict[str, Any] = {**versions()}
     here = Path(__file__)
     try:
         # Only a checkout that tracks this very file is the package's own repository.
@@ -187,6 +182,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
         "settings": {"tolerance": setup.options["tolerance"], "cells": tuple(dataset.sizes[axis] for axis in "xy")},
         "warnings": sorted({str(warning.message) for warning in caught}),
         "seconds": seconds,
+        "stages": attribute(dataset, RUN_ATTRIBUTE).get("stages", {}),
         "level": job.level,
     }
     path = folder.case_path(job.id)

@@ -1,0 +1,105 @@
+"""Sources of the methods that made a result, to cite beside it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import xarray as xr
+
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES
+
+HERTZ = ("line contact", "K. L. Johnson, Contact Mechanics, Cambridge University Press (1985)")
+ENDS = (
+    ("free ends", "M. Hetenyi, J. Appl. Mech. 37 (1970), the alternating scheme of the quarter space"),
+    ("free ends", "Z. M. Zhang, W. Wang, P. L. Wong, Int. J. Solids Struct. 50 (2013) 976, solved at once"),
+)
+CONTACT = (
+    ("contact iteration", "I. A. Polonsky, L. M. Keer, Wear 231 (1999) 206"),
+    (
+        "preconditioner",
+        "J. Zhao, E. A. H. Vollebregt, C. W. Oosterlee, Math. Comput. Sci. 9 (2015) 375",
+    ),
+    ("convolution", "S. Liu, Q. Wang, G. Liu, Wear 243 (2000) 101"),
+)
+ROLLING = ("stick and slip", "J. J. Kalker, Three-Dimensional Elastic Bodies in Rolling Contact, Kluwer (1990)")
+GUILBAULT = ("mirror factor", "R. Guilbault, J. Tribology 133 (2011) 031402")
+PROFILES = {
+    "Lundberg": "G. Lundberg, Forschung auf dem Gebiet des Ingenieurwesens 10 (1939)",
+    "JohnsGohar": "P. M. Johns, R. Gohar, Tribology International 14 (1981) 131",
+    "FujiwaraKawase": "H. Fujiwara, T. Kawase, NTN Technical Review 75 (2007) 140",
+    "IsoCylindrical": "ISO/TS 16281:2008",
+    "IsoTapered": "ISO/TS 16281:2008",
+    "Measured": "F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, its interpolation",
+}
+"""Sources of profiles by their class."""
+
+
+@dataclass(frozen=True)
+class Citations:
+    """What was used, and its source; prints as a list.
+
+    Examples
+    --------
+    >>> Citations((("profile", "ISO/TS 16281:2008"),))
+    profile: ISO/TS 16281:2008
+    """
+
+    entries: tuple[tuple[str, str], ...]
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{used}: {source}" for used, source in self.entries)
+
+    def _repr_html_(self) -> str:
+        return "<ul>" + "".join(f"<li>{used}: {source}</li>" for used, source in self.entries) + "</ul>"
+
+
+def citations(dataset: xr.Dataset) -> Citations:
+    """Return the sources of the methods that were used for this result.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of :func:`contactstudy.solve`, or a file of it.
+
+    Returns
+    -------
+    Citations
+        This package first. Of a Dataset that does not say what was solved, only what its variables show.
+
+    Examples
+    --------
+    >>> citations(xr.Dataset({"pressure": 1.0})).entries[1]
+    ('line contact', 'K. L. Johnson, Contact Mechanics, Cambridge University Press (1985)')
+    """
+    require(dataset)
+    case: dict[str, Any] = attribute(dataset, INPUTS_ATTRIBUTE).get("case", {})
+    body = case.get("body", {})
+    program = str(dataset.attrs.get("source", "contactstudy"))
+    found: list[tuple[str, str]] = [("program", program), HERTZ]
+    model = body.get("model")
+    roller_has_ends = "material" in case.get("roller", {}) and case.get("roller", {}).get("ends") == "free"
+    if (model in ("exact", "single-mirror") and body.get("kind") != "HalfSpace") or roller_has_ends:
+        found += ENDS
+    if model == "mirror-factor":
+        found.append(GUILBAULT)
+    if "pressure" in dataset:
+        found += CONTACT
+    if "stick" in dataset:
+        found.append(ROLLING)
+    if any(name in dataset for name in STRESSES):
+        found.append(("stresses", "A. E. H. Love, Phil. Trans. R. Soc. Lond. A 228 (1929) 377, and K. L. Johnson"))
+    for kind in sorted(_kinds(case.get("roller", {}).get("profile", {}))):
+        if kind in PROFILES:
+            found.append((f"profile {kind}", PROFILES[kind]))
+    return Citations(tuple(dict.fromkeys(found)))
+
+
+def _kinds(entry: Any) -> set[str]:
+    """Return the kinds of all profiles within a profile."""
+    if isinstance(entry, dict):
+        own = {str(entry["kind"])} if "kind" in entry else set()
+        return own.union(*(_kinds(value) for value in entry.values()))
+    return set().union(*(_kinds(value) for value in entry)) if isinstance(entry, list) else set()

@@ -1,0 +1,149 @@
+"""Figures of the page: made once, and given new data when another case is chosen."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from bokeh.models import BasicTicker, ColorBar, ColumnDataSource, Legend, LegendItem, LinearColorMapper, Range1d
+from bokeh.plotting import figure
+
+from contactstudy.checks import FloatArray
+from contactstudy.explorer.drawn import Image, Line
+
+FIRST, SECOND, NEUTRAL = "#1f4e79", "#c05a00", "#8894a0"
+"""Colours of the case, of the one that it is compared with, and of the others."""
+
+PALETTE = "Viridis256"
+HEIGHT = 290
+TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
+
+
+def _new(**more: Any) -> Any:
+    """Return a figure that takes the width that there is."""
+    made = figure(
+        height=HEIGHT,
+        sizing_mode="stretch_width",
+        tools=TOOLS,
+        toolbar_location="above",
+        output_backend="canvas",
+        min_border_left=56,
+        **more,
+    )
+    made.toolbar.logo = None
+    made.toolbar.autohide = True
+    made.grid.grid_line_color = "#e6eaed"
+    return made
+
+
+class AxialFigure:
+    """Pressure along the axis, of one case or two."""
+
+    def __init__(self) -> None:
+        self.figure = _new(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self._lines = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
+        self._marks = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
+        drawn = []
+        for number, (color, dash) in enumerate(((FIRST, "solid"), (SECOND, "dashed"))):
+            style = {"color": color, "line_width": 2, "line_dash": dash}
+            drawn.append(self.figure.line("x", "p", source=self._lines[number], **style))
+            mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_color": color, "line_width": 1.5}
+            self.figure.scatter("x", "p", source=self._marks[number], **mark)
+        items = [LegendItem(label=name, renderers=[line]) for name, line in zip(("case", "other"), drawn, strict=True)]
+        self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
+        self.figure.add_layout(self._legend, "above")
+
+    def show(self, lines: list[Line | None], span: tuple[float, float], names: tuple[str, str]) -> None:
+        """Draw the pressure of the cases within a span."""
+        highest = 0.0
+        for line in lines:
+            if line is not None:
+                inside = line.pressure[(line.x >= span[0]) & (line.x <= span[1])]
+                highest = max(highest, float(np.nanmax(inside, initial=0.0)))
+        highest = 1.06 * highest if highest > 0 else 1.0
+        for line, own, marks in zip(lines, self._lines, self._marks, strict=True):
+            own.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
+            ends = [] if line is None else [end for end in line.singular if span[0] <= end <= span[1]]
+            marks.data = {"x": ends, "p": [0.96 * highest] * len(ends)}
+        self._legend.visible = lines[1] is not None
+        self.figure.x_range.update(start=span[0], end=span[1])
+        self.figure.y_range.update(start=0.0, end=highest)
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names
+
+
+class ImageFigure:
+    """A field as a picture with its colour bar."""
+
+    def __init__(self, *, downwards: bool = False) -> None:
+        self.figure = _new(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self._downwards = downwards
+        self._source = ColumnDataSource({"image": [], "x": [], "y": [], "w": [], "h": []})
+        self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
+        self.figure.image(image="image", x="x", y="y", dw="w", dh="h", source=self._source, color_mapper=self._mapper)
+        bar = ColorBar(color_mapper=self._mapper, ticker=BasicTicker(desired_num_ticks=6), width=12, padding=4)
+        self.figure.add_layout(bar, "right")
+        self.figure.grid.visible = False
+
+    def show(self, image: Image | None, most: float, title: str) -> None:
+        """Draw a picture, its colours up to a largest value; nothing if there is none."""
+        self.figure.title.text = title
+        if image is None:
+            self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
+            return
+        (left, right), (low, high) = image.across, image.up
+        self._source.data = {"image": [image.values], "x": [left], "y": [low], "w": [right - left], "h": [high - low]}
+        self._mapper.update(high=max(most, 1e-12))
+        self.figure.x_range.update(start=left, end=right)
+        deep = self._downwards and image.names[1].startswith("depth")
+        self.figure.y_range.update(start=high if deep else low, end=low if deep else high)
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
+
+
+class StudyFigure:
+    """A number of all cases over one swept parameter, the cases that are looked at marked."""
+
+    def __init__(self) -> None:
+        self.figure = _new()
+        self._line = ColumnDataSource({"x": [], "v": []})
+        self._endless = ColumnDataSource({"x": [], "v": []})
+        self._chosen = ColumnDataSource({"x": [], "v": [], "color": []})
+        self.figure.line("x", "v", source=self._line, color=NEUTRAL, line_width=1.5)
+        self.figure.scatter("x", "v", source=self._line, color=NEUTRAL, size=6)
+        mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
+        self.figure.scatter("x", "v", source=self._endless, line_color=NEUTRAL, **mark)
+        self.figure.scatter("x", "v", source=self._chosen, color="color", size=11)
+        self.figure.y_range = Range1d(0, 1)
+
+    def show(
+        self,
+        values: FloatArray,
+        places: FloatArray,
+        ticks: dict[float, str] | None,
+        chosen: list[tuple[int, float, str]],
+        names: tuple[str, str],
+    ) -> None:
+        """Draw values over places; words take the place of numbers where there are `ticks`.
+
+        A value without a limit is a triangle at the top. `chosen` are the cases looked at: where along the parameter,
+        their value, and their colour.
+        """
+        finite = np.isfinite(values)
+        known = [*values[finite], *(value for _, value, _ in chosen if np.isfinite(value))]
+        low, high = min([0.0, *known]), max([*known, 1e-12])
+        high += 0.06 * (high - low)
+        self._line.data = {"x": places, "v": np.where(finite, values, np.nan)}
+        at_top = 0.96 * high
+        self._endless.data = {"x": places[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), at_top)}
+        self._chosen.data = {
+            "x": [places[at] for at, _, _ in chosen],
+            "v": [value if np.isfinite(value) else at_top if value > 0 else np.nan for _, value, _ in chosen],
+            "color": [color for _, _, color in chosen],
+        }
+        self.figure.y_range.update(start=low, end=high)
+        axis = self.figure.xaxis[0]
+        if ticks is not None:
+            axis.ticker, axis.major_label_overrides = list(ticks), ticks
+            axis.major_label_orientation = 0.5
+        else:
+            axis.ticker, axis.major_label_overrides, axis.major_label_orientation = BasicTicker(), {}, "horizontal"
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names

@@ -1,0 +1,300 @@
+"""The page: choices on the left, numbers and figures on the right, everything of one case and of another beside it."""
+
+from __future__ import annotations
+
+import html
+from typing import Any
+
+import numpy as np
+import panel as pn
+import xarray as xr
+
+from contactstudy.analysis import edge_factors, short
+from contactstudy.analysis.certainty import certainty_of
+from contactstudy.analysis.short import ShortView
+from contactstudy.arrays.engineering import unit_for
+from contactstudy.arrays.variables import variable_of
+from contactstudy.errors import ContactStudyError
+from contactstudy.explorer.cases import Cases
+from contactstudy.explorer.drawn import PLANES, REGIONS, Image, axial, plane, region, scale_of, top
+from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
+
+PREFERRED = ("peak_pressure", "peak_von_mises", "end_pressure_over_p0", "end_load_first", "approach")
+"""Numbers that are offered first for the figure of the whole study."""
+
+MOST_STEPS = 60
+"""Values of a swept parameter up to which it has a slider; names have a list to choose from."""
+
+LONGEST = 40
+"""Characters of a meaning that fit beside a widget and an axis."""
+
+STYLE = """
+table { border-collapse: collapse; font-size: 14px; width: 100%; }
+td, th { padding: 2px 10px 2px 0; border-bottom: 1px solid #dde2e6; text-align: left; vertical-align: top; }
+td.n { font-variant-numeric: tabular-nums; font-weight: 600; }
+.soft { color: #5b6975; } .yes { color: #1c7c4a; } .care { color: #a65f00; } .no { color: #b3261e; }
+"""
+
+
+class Page:
+    """Widgets and figures of one visitor.
+
+    Parameters
+    ----------
+    cases : Cases
+        The study.
+    """
+
+    def __init__(self, cases: Cases) -> None:
+        self.cases = cases
+        self._columns: dict[tuple[int, ...], dict[str, str]] = {}
+        start = cases.first_solved()
+        self.choices = [self._widgets(start, side) for side in ("case", "other")]
+        self.compare = pn.widgets.Checkbox(label="compare with another case", value=False, visible=bool(cases.dims))
+        self.region = pn.widgets.Select(label="along the axis", options=list(REGIONS))
+        self.units = pn.widgets.RadioButtonGroup(options={"mm, MPa": False, "over a, p0": True}, value=False)
+        self.plane = pn.widgets.Select(label="von Mises in the plane", options=list(PLANES))
+        self.where = pn.widgets.FloatSlider(
+            label="where the plane is", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
+        )
+        names = self._numbers()
+        self.number = pn.widgets.Select(label="number of all cases", options=names, visible=bool(cases.dims))
+        dims = {_called(cases.scalars[dim]): dim for dim in cases.dims}
+        self.over = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
+        self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
+        self.axial, self.study = AxialFigure(), StudyFigure()
+        self.tops = [ImageFigure(), ImageFigure()]
+        self.planes = [ImageFigure(downwards=True), ImageFigure(downwards=True)]
+        figures: list[AxialFigure | ImageFigure | StudyFigure] = [self.axial, *self.tops, *self.planes, self.study]
+        self.panes = [pn.pane.Bokeh(each.figure, sizing_mode="stretch_width") for each in figures]
+        watched = [*self.choices[0].values(), *self.choices[1].values(), self.compare, self.region, self.units]
+        for widget in (*watched, self.plane, self.where, self.number, self.over):
+            widget.param.watch(self._changed, "value")
+        self.update()
+
+    def _widgets(self, start: dict[str, int], side: str) -> dict[str, Any]:
+        """Return a slider or a list for every swept parameter."""
+        prefix = "other: " if side == "other" else ""
+        found: dict[str, Any] = {}
+        for dim in self.cases.dims:
+            scalars = self.cases.scalars
+            entry = scalars[dim]
+            options = {text: at for at, text in enumerate(self.cases.choices(dim))}
+            words = entry.dtype.kind in "UOb" or len(options) > MOST_STEPS
+            kind = pn.widgets.Select if words else pn.widgets.DiscreteSlider
+            found[dim] = kind(label=f"{prefix}{_called(entry)}", options=options, value=start[dim])
+        return found
+
+    def _numbers(self) -> dict[str, str]:
+        """Scalars of the cases that can be drawn over a swept parameter, by their meaning."""
+        scalars = self.cases.scalars
+        known = [
+            str(name)
+            for name, entry in scalars.data_vars.items()
+            if entry.dtype.kind == "f" and not str(name).endswith("_error") and bool(entry.notnull().any())
+        ]
+        order = [*(name for name in PREFERRED if name in known), *sorted(set(known) - set(PREFERRED))]
+        found: dict[str, str] = {}
+        for name in order:
+            meaning = variable_of(name, scalars[name].attrs).long_name
+            found[meaning if meaning not in found else name] = name
+        return found
+
+    def _changed(self, event: Any) -> None:
+        """Follow a widget; figures in a notebook have to be told."""
+        with pn.io.hold():
+            self.update()
+        if not (pn.state.curdoc and pn.state.curdoc.session_context):
+            pn.io.push_notebook(*self.panes)
+
+    def place(self, side: int) -> tuple[int, ...]:
+        """Place of a chosen case in the study."""
+        return self.cases.place({dim: widget.value for dim, widget in self.choices[side].items()})
+
+    def update(self) -> None:
+        """Draw what is chosen."""
+        sides = [0, 1] if self.compare.value else [0]
+        loaded = [self._loaded(side) if side in sides else None for side in (0, 1)]
+        for widget in self.choices[1].values():
+            widget.visible = bool(self.compare.value)
+        self.where.visible = self.plane.value != PLANES[0]
+        self._show_table(loaded, sides)
+        self._show_axial(loaded)
+        self._show_fields(loaded)
+        self._show_study(sides)
+
+    def _loaded(self, side: int) -> xr.Dataset | None:
+        """Surfaces of a chosen case; None if it is not solved or keeps none."""
+        try:
+            return self.cases.load(self.place(side))
+        except ContactStudyError:
+            return None
+
+    def _show_table(self, loaded: list[xr.Dataset | None], sides: list[int]) -> None:
+        """Show the main numbers of the cases side by side, and whether they are real."""
+        columns = [self._column(loaded[side], side) for side in sides]
+        rows = list(dict.fromkeys(name for column in columns for name in column))
+        head = "".join(
+            f"<th style='color:{color}'>{'case' if side == 0 else 'other'}</th>"
+            for side, color in zip(sides, (FIRST, SECOND), strict=False)
+        )
+        body = ""
+        for name in rows:
+            cells = "".join(f"<td class=n>{column.get(name, '')}</td>" for column in columns)
+            body += f"<tr><td>{html.escape(name)}</td>{cells}</tr>"
+        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>"
+
+    def _column(self, one: xr.Dataset | None, side: int) -> dict[str, str]:
+        """Numbers of one case, by their meaning."""
+        place = self.place(side)
+        if one is None:
+            return {"state": html.escape(self.cases.state(place))}
+        if place not in self._columns:
+            self._columns[place] = self._numbers_of(one)
+        return self._columns[place]
+
+    def _numbers_of(self, one: xr.Dataset) -> dict[str, str]:
+        """Numbers of a case that is solved."""
+        numbers = short(one)
+        found = certainty_of(one, numbers)
+        word = {"yes": "yes", "no": "no"}.get(found.overall, "care")
+        said = f"<span class={word}>{found.overall}</span>"
+        if found.overall != "yes":
+            said += f"<div class=soft style='white-space:normal;font-weight:400'>{html.escape(found.summary)}</div>"
+        column = {"is this number real?": said}
+        column |= {row.meaning: html.escape(_marked(row.text, row.remark)) for row in numbers.numbers}
+        return column | self._factors(one, numbers)
+
+    def _factors(self, one: xr.Dataset, numbers: ShortView) -> dict[str, str]:
+        """Edge factors of the pressure: ends over the middle."""
+        if "hertz_half_width" not in one or "pressure" not in one:
+            return {}
+        factors = edge_factors(one[["pressure", "hertz_half_width"]])
+        found = {}
+        for end, place in (("first", "end I"), ("last", "end II")):
+            name = f"end_pressure_{end}"
+            endless = name in numbers and np.isinf(numbers[name].value)
+            value = float(factors[f"end_over_middle_{end}"])
+            found[f"edge factor, {place} over the middle"] = "singular" if endless else f"{value:.3f}"
+        return found
+
+    def _show_axial(self, loaded: list[xr.Dataset | None]) -> None:
+        """Pressure along the axis."""
+        present = [one for one in loaded if one is not None and "pressure" in one]
+        if not present:
+            self.axial.show([None, None], (0.0, 1.0), ("", "no pressure is kept"))
+            return
+        scales = [scale_of(one, relative=self.units.value) for one in present]
+        spans = [region(one, self.region.value) for one in present]
+        span = (
+            min(low / scale.length for (low, _), scale in zip(spans, scales, strict=True)),
+            max(high / scale.length for (_, high), scale in zip(spans, scales, strict=True)),
+        )
+        lines = [
+            None if one is None or "pressure" not in one else axial(one, scale_of(one, relative=self.units.value))
+            for one in loaded
+        ]
+        scale = scales[0]
+        names = (f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}")
+        self.axial.show(lines, span, names)
+
+    def _show_fields(self, loaded: list[xr.Dataset | None]) -> None:
+        """Pressure on the top and von Mises stress, with one scale of colours for both cases."""
+        tops: list[Image | None] = []
+        planes: list[Image | None] = []
+        units = ""
+        for one in loaded:
+            if one is None or "pressure" not in one:
+                tops.append(None)
+                planes.append(None)
+                continue
+            scale, shown = scale_of(one, relative=self.units.value), region(one, self.region.value)
+            units = scale.stress_name
+            tops.append(top(one, scale, shown))
+            planes.append(plane(one, scale, shown, self.plane.value, self.where.value))
+        for images, figures, what in ((tops, self.tops, "pressure"), (planes, self.planes, "von Mises stress")):
+            most = max((image.most for image in images if image is not None), default=1.0)
+            for side, (image, each) in enumerate(zip(images, figures, strict=True)):
+                name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
+                text = what if image is not None else f"{what}: not known, or at too few points"
+                each.show(image, most, f"{name}{text}{units if image is not None else ''}")
+        for pane in (self.panes[2], self.panes[4]):
+            pane.visible = bool(self.compare.value)
+
+    def _show_study(self, sides: list[int]) -> None:
+        """One number of all cases over one swept parameter; the others as in the case that is looked at."""
+        self.panes[5].visible = bool(self.cases.dims)
+        if not self.cases.dims or not self.number.value:
+            return
+        over, name = self.over.value or self.cases.dims[0], self.number.value
+        scalars = self.cases.scalars
+        base = variable_of(name, scalars[name].attrs)
+        all_values = scalars[name].transpose(*scalars["status"].dims).values
+        finite = all_values[np.isfinite(all_values)]
+        factor, unit = unit_for(float(np.abs(finite).max(initial=0.0)), base.units)
+        dims = [str(dim) for dim in scalars["status"].dims]
+        place = list(self.place(0))
+        line = tuple(slice(None) if dim == over else at for dim, at in zip(dims, place, strict=True))
+        values = np.asarray(all_values[line], dtype=np.float64) / factor
+        entry = scalars[over]
+        ticks, meaning = None, _called(entry)
+        if entry.dtype.kind in "fi":
+            step, own = unit_for(float(np.nanmax(np.abs(entry.values))), str(entry.attrs.get("units", "1")))
+            places = np.asarray(entry.values, dtype=np.float64) / step
+            meaning += f" ({own})" if own else ""
+        else:
+            places = np.arange(entry.size, dtype=np.float64)
+            ticks = {float(at): text for at, text in enumerate(self.cases.choices(over))}
+        chosen = []
+        for side, color in zip(sides, (FIRST, SECOND), strict=False):
+            at = self.place(side)
+            chosen.append((at[dims.index(over)], float(all_values[at]) / factor, color))
+        named = f"{base.long_name} ({unit})" if unit else base.long_name
+        self.study.show(values, places, ticks, chosen, (meaning, named))
+
+    def view(self) -> Any:
+        """Everything, side by side on a wide screen and below each other on a narrow one."""
+        head = pn.pane.HTML(
+            f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"
+            f"<div class=soft>{self.cases.scalars['status'].size} cases</div>",
+            stylesheets=[STYLE],
+            sizing_mode="stretch_width",
+        )
+        controls = pn.Column(
+            *self.choices[0].values(),
+            self.compare,
+            *self.choices[1].values(),
+            self.units,
+            self.region,
+            self.plane,
+            self.where,
+            self.number,
+            self.over,
+            styles={"flex": "1 1 15rem", "max-width": "24rem", "min-width": "14rem"},
+            sizing_mode="stretch_width",
+        )
+        wide = {"flex": "1 1 25rem", "min-width": "min(100%, 19rem)"}
+        boxes = [pn.Column(self.table, styles=wide, sizing_mode="stretch_width")]
+        for pane in self.panes:
+            pane.styles = wide
+            boxes.append(pane)
+        body = pn.FlexBox(*boxes, styles={"flex": "4 1 30rem", "gap": "0.6rem"}, sizing_mode="stretch_width")
+        return pn.Column(
+            head,
+            pn.FlexBox(controls, body, flex_wrap="wrap", styles={"gap": "1rem"}, sizing_mode="stretch_width"),
+            sizing_mode="stretch_width",
+        )
+
+
+def _called(entry: xr.DataArray) -> str:
+    """Meaning of a swept parameter, or its name where that is shorter."""
+    name = str(entry.name).replace("_over_a", "/a").replace("_", " ")
+    meaning = str(entry.attrs.get("long_name", name))
+    return meaning if len(meaning) <= LONGEST else name
+
+
+def _marked(text: str, remark: str) -> str:
+    """Return a number with the mark that it needs."""
+    if remark.startswith("singular"):
+        return "singular: no largest value"
+    return f"{text} (no error known)" if "no error known" in remark else text

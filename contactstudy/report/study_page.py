@@ -1,0 +1,177 @@
+"""What the page of a study shows: its cases in a table, figures over the swept parameters, failures with reasons."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactstudy.arrays.engineering import with_error
+from contactstudy.errors import ContactStudyError
+from contactstudy.plots import study_figures
+from contactstudy.report.figures import Picture, as_address
+from contactstudy.study.definition import Study
+from contactstudy.study.folder import Entry, Folder
+from contactstudy.study.opened import collect, open_study
+from contactstudy.study.parameters import PARAMETERS, with_defaults
+from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
+
+SHOWN = {
+    "peak_pressure": "largest pressure",
+    "end_pressure_first": "at end I",
+    "end_pressure_last": "at end II",
+    "peak_von_mises": "largest von Mises",
+}
+"""Numbers of a case in the table, with their headings."""
+
+CAPTIONS = {
+    "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
+    "from the end.",
+    "study": "Largest values of the cases over the swept parameters. An open triangle at the top: singular, there is "
+    "no largest value.",
+}
+"""What figures show, by name."""
+
+MOST_FIELDS = 300
+"""Cases up to which figures of fields are drawn. Speed."""
+
+
+class Row(NamedTuple):
+    """One case in the table."""
+
+    anchor: str
+    values: list[str]
+    numbers: list[str]
+    status: str
+    note: str
+
+
+def study_context(path: Path) -> dict[str, Any]:
+    """Everything that the template of a study needs.
+
+    Parameters
+    ----------
+    path : Path
+        The study's folder.
+    """
+    folder = Folder(path)
+    study = folder.read_study()
+    plan = study.plan()
+    entries = folder.entries(plan)
+    numbers = [name for name in SHOWN if any(name in entry.scalars for entry in entries)]
+    swept = list(dict.fromkeys([*study.sweep, *(name for group in study.zip for name in group), *_explicit(study)]))
+    rows = [
+        _row(case, entry, _swept_values(plan, case, swept), numbers, number)
+        for number, (case, entry) in enumerate(zip(plan.cases, entries, strict=True), 1)
+    ]
+    runs = [entry.run for entry in entries if entry.run]
+    return {
+        "title": f"Study {study.name}",
+        "description": study.description,
+        "shape": _shape(plan),
+        "counts": Counter(entry.status for entry in entries),
+        "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
+        "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
+        "headings": [_meaning(name) for name in swept],
+        "number_headings": [SHOWN[name] for name in numbers],
+        "rows": rows,
+        "reasons": _reasons(rows),
+        "doubtful": [row for row in rows if row.status == "ok" and row.note],
+        "pictures": _pictures(path, len(plan.cases)),
+        "provenance": _provenance(runs),
+    }
+
+
+def _explicit(study: Study) -> list[str]:
+    """Parameters in which explicit cases differ from the base."""
+    return [name for case in study.cases for name in case]
+
+
+def _meaning(name: str) -> str:
+    """Meaning of a parameter, for a heading."""
+    return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
+
+
+def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
+    """Values of the swept parameters of a case, as the study names them."""
+    given = with_defaults(case.parameters)
+    found = []
+    for name in swept:
+        dim, labels = plan.cube.labels.get(name, ("", ()))
+        value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else given.get(name)
+        found.append("" if value is None else in_engineers_words(name, value))
+    return found
+
+
+def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str], number: int) -> Row:
+    """One case with its numbers and errors."""
+    scalars = entry.scalars
+    found = []
+    for name in numbers:
+        if name not in scalars:
+            found.append("")
+        elif np.isinf(scalars[name]) or (name == "peak_von_mises" and np.isinf(scalars.get("peak_pressure", 0.0))):
+            found.append("singular")
+        else:
+            error = scalars.get(f"{name}_error")
+            known = error is not None and np.isfinite(error)
+            text = with_error(scalars[name], error if known else None, "Pa")
+            found.append(text if known else f"{text} (error not known)")
+    note = entry.reason
+    if scalars.get("converged", 1.0) == 0.0:
+        note = "not converged, do not rely on it"
+    return Row(f"case-{number}", values, found, entry.status, note)
+
+
+def _values(name: str, rows: list[Row], at: int) -> str:
+    """Different values of a swept parameter, in order."""
+    found = list(dict.fromkeys(row.values[at] for row in rows if row.values[at]))
+    return ", ".join(found) if len(found) <= 12 else f"{len(found)} values, {found[0]} to {found[-1]}"
+
+
+def _shape(plan: Plan) -> str:
+    """Dimensions of the study in words."""
+    pairs = zip(plan.cube.dims, plan.cube.shape, strict=True)
+    said = " x ".join(f"{dim.replace('_', ' ')} {size}" for dim, size in pairs)
+    return f"{len(plan.cases)} cases ({said})"
+
+
+def _reasons(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Status, reason and cases of everything that is not solved, equal reasons together."""
+    grouped: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        if row.status != "ok":
+            grouped.setdefault((row.status, row.note), []).append(row)
+    return [(status, reason, cases) for (status, reason), cases in grouped.items()]
+
+
+def _pictures(path: Path, cases: int) -> list[Picture]:
+    """Figures that suit the study; none if nothing of it can be drawn."""
+    from matplotlib import pyplot
+
+    opened = open_study(path, cells="own") if cases <= MOST_FIELDS else collect(path)
+    try:
+        figures = study_figures(opened)
+    except ContactStudyError:
+        return []
+    found = []
+    for name, figure in figures.items():
+        found.append(Picture(as_address(figure), CAPTIONS.get(name, name.replace("_", " "))))
+        pyplot.close(figure)
+    return found
+
+
+def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
+    """Versions and dates of the files."""
+    if not runs:
+        return []
+    times = sorted(str(run["time"])[:10] for run in runs if "time" in run)
+    rows = [("solved", times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}")] if times else []
+    for name in ("contactstudy", "commit", "python", "numpy", "scipy"):
+        known = sorted({str(run[name]) for run in runs if name in run})
+        if known:
+            rows.append((name, ", ".join(known)))
+    seconds = sum(float(run.get("seconds", 0.0)) for run in runs)
+    return [*rows, ("time of solving", f"{seconds:.0f} s of one core")]

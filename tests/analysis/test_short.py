@@ -1,0 +1,85 @@
+"""Main numbers, what makes them trustworthy, and their sources, as a reader sees them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, profiles, solve
+from contactstudy.analysis import certainty, citations, short, solved_case
+
+STEEL = Material(210e9, 0.3)
+
+
+@pytest.fixture(scope="module")
+def singular() -> xr.Dataset:
+    body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
+    return solve(Case(body=body, roller=Roller(radius=5e-3, length=0.25e-3), max_pressure=1.5e9), z=[0.0, 2e-5])
+
+
+def test_a_settled_peak_has_its_error_and_a_cell_says_that_it_has_none(solved: xr.Dataset) -> None:
+    assert "no error known" in short(solved)["peak_pressure"].remark
+    settled = solved.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
+    row = short(settled)["peak_pressure"]
+    assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")
+    assert short(settled.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith("no error known")
+    table = short(settled).to_dataframe()
+    assert table.loc["peak_pressure", "error"] == 0.0121e9
+
+
+def test_no_singular_value_is_shown_as_a_number(singular: xr.Dataset) -> None:
+    view = short(singular)
+    for name in ("peak_pressure", "end_pressure_first", "peak_von_mises"):
+        assert view[name].text == "∞", name
+        assert view[name].remark.startswith("singular")
+    assert "GPa mm^0.5" in view["end_intensity_first"].text
+    found = certainty(singular)
+    assert found.overall == "with care"
+    assert "intensity is the result" in found.summary
+
+
+def test_what_is_wrong_is_said(solved: xr.Dataset) -> None:
+    """Every answer can be another one."""
+
+    def answer(question: str, **changes: object) -> str:
+        answers = certainty(solved.assign(changes)).answers
+        return next(each.answer for each in answers if each.question.startswith(question))
+
+    sound = {"peak_pressure": 1e9, "peak_pressure_error": 1e6}
+    cases: dict[str, tuple[dict[str, object], dict[str, object]]] = {
+        "Did the iteration": ({}, {"converged": False}),
+        "Does the pressure": ({}, {"load_error": 1e-2}),
+        "Do gap": ({}, {"penetration_error": 0.1}),
+        "Are the free ends": ({}, {"end_traction_residual": 0.1}),
+        "Are the cells": (sound, sound | {"peak_pressure_error": 1e9}),
+    }
+    for question, (good, bad) in cases.items():
+        assert answer(question, **good) == "yes", question
+        assert answer(question, **bad) in ("with care", "no"), question
+    assert certainty(solved.assign(converged=False)).overall == "no"
+    assert certainty(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
+
+
+def test_the_case_is_kept_with_the_result(singular: xr.Dataset, tmp_path) -> None:
+    singular.to_netcdf(tmp_path / "case.nc")
+    with xr.open_dataset(tmp_path / "case.nc") as again:
+        case = solved_case(again)
+        assert again.contact.short()["peak_pressure"].text == "∞"
+    assert case.roller == Roller(radius=5e-3, length=0.25e-3)
+    assert case.body.material == STEEL
+    with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
+        solved_case(xr.Dataset())
+
+
+def test_only_methods_that_were_used_are_cited(singular: xr.Dataset) -> None:
+    used = {what for what, _ in citations(singular).entries}
+    assert {"free ends", "contact iteration", "stresses"} <= used
+    assert "stick and slip" not in used
+    profile = profiles.Lundberg(2e-7) + profiles.Cylinder(1e-5)
+    case = Case(
+        body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.3e-3, profile=profile), max_pressure=1e9
+    )
+    used = {what for what, _ in citations(solve(case, stresses=False)).entries}
+    assert "profile Lundberg" in used
+    assert not {"free ends", "stresses"} & used

@@ -1,0 +1,62 @@
+"""Chromium without a screen and without a network, for pages that people look at."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from typing import Any
+
+QUIET = (
+    *("--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking"),
+    *("--disable-component-update", "--disable-sync"),
+)
+
+
+def chromium() -> str | None:
+    """Path of Chromium; None if it is not installed."""
+    return shutil.which("chromium") or shutil.which("chromium-browser")
+
+
+def open_served(page: Any, address: str) -> None:
+    """Open the page of a server that listens a moment after it has said where, and wait for its figures."""
+    for _ in range(100):
+        with suppress(Exception):
+            page.goto(address)
+            break
+        time.sleep(0.1)
+    page.wait_for_selector("canvas")
+
+
+@contextmanager
+def browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any]:
+    """Page of a new browser; requests to other hosts are refused, and listed in `page.refused`."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as player, tempfile.TemporaryDirectory() as profile:
+        context = player.chromium.launch_persistent_context(
+            profile,
+            executable_path=chromium(),
+            headless=True,
+            args=list(QUIET),
+            viewport={"width": width, "height": height},
+        )
+        page = context.new_page()
+        page.refused = []
+
+        def judge(route: Any) -> None:
+            address = route.request.url
+            if address.startswith(("http://localhost", "http://127.0.0.1", "file:", "data:", "blob:")):
+                route.continue_()
+            else:
+                page.refused.append(address)
+                route.abort()
+
+        if local_only:
+            page.route("**/*", judge)
+        try:
+            yield page
+        finally:
+            context.close()

@@ -1,0 +1,64 @@
+"""A case survives being written as a table, whatever it consists of."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    Roller,
+    Rolling,
+    profiles,
+)
+from contactstudy.case.friction import AxialFriction
+from contactstudy.case.stored import case_from, case_table
+
+STEEL = Material(210e9, 0.3)
+X = np.linspace(0, 1e-3, 101)
+PROFILES = [
+    profiles.Lundberg(2e-7) + profiles.Cylinder(1e-5),
+    profiles.Halves(profiles.Cylinder(), profiles.FullCrown(1.0)),
+    profiles.Measured(X.tolist(), ((X - 5e-4) ** 2).tolist()),
+    profiles.PartialCrown(1e-4, 1.0),
+]
+
+
+@pytest.mark.parametrize("profile", PROFILES, ids=lambda profile: type(profile).__name__)
+@pytest.mark.parametrize("body", [HalfSpace(material=STEEL), QuarterSpace(material=STEEL, model="mirror")])
+def test_a_case_is_the_same_again(profile: profiles.Profile, body: HalfSpace) -> None:
+    roller = Roller(radius=5e-3, length=1e-3, profile=profile, material=Material(3e11, 0.25))
+    motion = Rolling(longitudinal_creepage=1e-3, force_x=0.0)
+    friction = AxialFriction((0.0, 1e-3), (0.1, 0.2))
+    case = Case(
+        body=body, roller=roller, load=np.float64(100.0), friction=friction, motion=motion, tilt=1e-4, end_distance=1e-4
+    )
+    assert case_from(json.loads(json.dumps(case_table(case)))) == case
+
+
+class Own:
+    """A profile of a user's own, infinite at the ends."""
+
+    def drop(self, x, length):
+        return np.where(np.abs(x) < 0.499 * length, 1e-3 * x**2, np.inf)
+
+
+def test_a_profile_of_the_users_own_is_kept_at_points() -> None:
+    body = FiniteLengthSpace(length=2e-3, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3, profile=Own()), max_pressure=1e9)
+    again = case_from(json.loads(json.dumps(case_table(case)))).roller.profile
+    x = np.array([-4.2e-4, 0.0, 3e-4, 5e-4])
+    assert np.allclose(again.drop(x, 1e-3), Own().drop(x, 1e-3), rtol=1e-3, atol=1e-14)
+
+
+@pytest.mark.parametrize("table", [{}, {"kind": "Nothing"}, {"kind": "Material", "young": 1.0, "poisson": 0.3}])
+def test_other_tables_are_refused(table: dict[str, object]) -> None:
+    with pytest.raises(InvalidInputError, match="a table of a case"):
+        case_from(table)

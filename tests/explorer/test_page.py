@@ -1,0 +1,166 @@
+"""What the page shows follows what is chosen, from files and from an opened study alike."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+pytest.importorskip("panel")
+
+from contactstudy import ContactStudyError, InvalidInputError, explore, open_study
+from contactstudy.analysis import in_plane
+from contactstudy.explorer import show
+from contactstudy.explorer.cases import Cases, of_dataset, of_folder
+from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, scale_of, top
+from contactstudy.explorer.page import Page
+from contactstudy.explorer.pixels import pixels
+
+SOURCES: dict[str, Callable[[Path], Cases]] = {
+    "files": of_folder,
+    "opened": lambda folder: of_dataset(open_study(folder)),
+    "own cells": lambda folder: of_dataset(open_study(folder, cells="own")),
+}
+
+
+@pytest.fixture(params=SOURCES)
+def page(request: pytest.FixtureRequest, folder: Path) -> Page:
+    return Page(SOURCES[request.param](folder))
+
+
+def shown(page: Page) -> tuple[float, float]:
+    """Largest pressure drawn along the axis, and on the top."""
+    along = page.axial._lines[0].data["p"]
+    (picture,) = page.tops[0]._source.data["image"]
+    return float(np.nanmax(along)), float(picture.max())
+
+
+def test_every_swept_parameter_has_a_choice(page: Page) -> None:
+    assert list(page.choices[0]) == ["max_pressure", "friction", "profile"]
+    assert list(page.choices[0]["max_pressure"].options) == ["1 GPa", "1.25 GPa", "1.5 GPa"]
+    assert list(page.choices[0]["profile"].options) == ["cylinder", "rounded"]
+    assert "friction" in page.over.options.values()
+
+
+def test_figures_and_numbers_follow(page: Page) -> None:
+    before = shown(page)
+    assert ">1 GPa<" in page.table.object
+    page.choices[0]["max_pressure"].value = 2
+    assert ">1.5 GPa<" in page.table.object
+    assert shown(page)[0] == pytest.approx(1.5 * before[0], rel=0.05)
+    assert page.study._chosen.data["x"] == [1.5]
+    page.units.value = True
+    assert shown(page)[0] == pytest.approx(before[0] / 1000, rel=0.05)
+
+
+def test_two_cases_side_by_side_share_their_colours(page: Page) -> None:
+    assert not page.panes[2].visible
+    assert not page.axial._legend.visible
+    page.compare.value = True
+    page.choices[1]["max_pressure"].value = 2
+    assert page.panes[2].visible
+    assert page.axial._legend.visible
+    assert page.tops[0]._mapper.high == page.tops[1]._mapper.high > 1500
+    assert page.table.object.count("edge factor, end I over the middle") == 1
+    assert ">1 GPa<" in page.table.object
+    assert ">1.5 GPa<" in page.table.object
+
+
+def test_a_case_that_failed_says_why(page: Page) -> None:
+    page.choices[0]["friction"].value = 1
+    assert "this friction fails in tests" in page.table.object
+    assert page.tops[0]._source.data["image"] == []
+    assert np.isnan(page.study._chosen.data["v"]).all()
+    page.choices[0]["friction"].value = 0
+    assert len(page.tops[0]._source.data["image"]) == 1
+
+
+def test_planes_are_those_of_the_analysis(folder: Path) -> None:
+    one = of_folder(folder).load((0, 0, 0))
+    scale = scale_of(one, relative=False)
+    whole = region(one, REGIONS[0])
+    image = plane(one, scale, whole, PLANES[0], 0.5)
+    assert image is not None
+    expected = in_plane(one[["von_mises"]], y=0.0, variables="von_mises")["von_mises"]
+    assert float(image.values.max()) == pytest.approx(float(expected.max()) / 1e6, rel=0.02)
+    for kind in PLANES[1:]:
+        found = plane(one, scale, whole, kind, 0.0)
+        assert found is not None
+        assert found.names[1].startswith("depth" if kind[0] == "x" else "position along rolling")
+    assert plane(one.drop_vars("von_mises"), scale, whole, PLANES[0], 0.5) is None
+
+
+def test_no_singular_height_is_drawn(solved: xr.Dataset) -> None:
+    singular = solved[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(end_pressure_first=np.inf)
+    half_width = float(solved["hertz_half_width"])
+    fine = singular.interp(x=np.linspace(float(solved.x[0]), float(solved.x[-1]), 400)).drop_vars(
+        "x_bounds", errors="ignore"
+    )
+    scale = scale_of(fine, relative=True)
+    line = axial(fine, scale)
+    assert len(line.singular) == 1
+    assert np.isnan(line.pressure[np.abs(line.x - line.singular[0]) < 0.05]).all()
+    limit = top(fine, scale, region(fine, REGIONS[1])).most
+    assert limit <= float(np.nanmax(line.pressure)) * (1 + 1e-9)
+    assert region(fine, REGIONS[2])[1] - region(fine, REGIONS[2])[0] <= 8 * half_width
+
+
+def test_pixels_keep_lines_and_hold_the_ends() -> None:
+    x, y = np.array([0.0, 1.0, 4.0]), np.array([0.0, 2.0])
+    found = pixels(x[:, None] + y, (x, y), ((-1.0, 5.0), (0.0, 2.0)), (6, 2))
+    assert found.shape == (2, 6)
+    assert found[0].tolist() == [0.5, 1.0, 2.0, 3.0, 4.0, 4.5]
+
+
+def test_a_notebook_is_told_of_changes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import panel as pn
+    from bokeh.document import Document
+    from panel.io.model import add_to_doc
+    from pyviz_comms import Comm
+
+    sent = []
+
+    class Spy(Comm):
+        _comm = property(lambda self: True, lambda self, value: None)  # it is open
+
+        def send(self, data=None, metadata=None, buffers=()):
+            sent.append(data)
+
+    page = Page(of_folder(folder))
+    view, document, comm = page.view(), Document(), Spy()
+    root = view.get_root(document, comm)
+    add_to_doc(root, document, hold=True)
+    monkeypatch.setitem(pn.state._views, root.ref["id"], (view, root, document, comm))
+    page.choices[0]["max_pressure"].value = 1
+    assert any("ModelChanged" in str(message) for message in sent)
+
+
+def test_the_public_ways_in(folder: Path, solved: xr.Dataset) -> None:
+    assert type(explore(folder)).__name__ == "Column"
+    assert type(open_study(folder).contact.explore()).__name__ == "Column"
+    assert type(solved.contact.explore()).__name__ == "Column"
+    with pytest.raises(InvalidInputError, match="study"):
+        explore(3)  # type: ignore[arg-type]
+
+
+def test_a_missing_extra_says_how_to_install_it(monkeypatch: pytest.MonkeyPatch, folder: Path) -> None:
+    monkeypatch.setattr(show, "find_spec", lambda name: None)
+    with pytest.raises(ContactStudyError, match=r'pip install "contactstudy\[explore\]"'):
+        explore(folder)
+    assert "panel" in sys.modules  # it is the check that speaks, not a failed import
+
+
+def test_a_port_that_is_taken_is_named() -> None:
+    import socket
+
+    with socket.socket() as other:
+        other.bind(("localhost", 0))
+        other.listen()
+        port = other.getsockname()[1]
+        with pytest.raises(InvalidInputError, match=f"port = {port}"):
+            show._checked_port(port)
+        assert show._free_port() != port

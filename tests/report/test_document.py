@@ -1,0 +1,136 @@
+"""The page of a case and of a study: what it holds, and that it needs nothing else."""
+
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import InvalidInputError, report
+from contactstudy.cli import main
+from contactstudy.study import run_study
+from tests.small_study import small_study
+from tests.stand_in_solver import FAILS, solve_fake
+
+VOID = {"meta", "img", "br", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Reads a page: its text, what it fetches, its anchors; and fails on tags that do not match."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.fetched: list[str] = []
+        self.anchors: set[str] = set()
+        self.links: set[str] = set()
+        self.words: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        assert tag not in ("script", "link", "iframe")
+        if "id" in values:
+            assert values["id"] not in self.anchors, values["id"]
+            self.anchors.add(values["id"])
+        if tag == "a":
+            self.links.add(values["href"])
+        if "src" in values:
+            self.fetched.append(values["src"])
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+
+def read(path: Path) -> Page:
+    text = path.read_text(encoding="utf-8")
+    page = Page(text)
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in page.fetched)
+    assert all(link[1:] in page.anchors for link in page.links), page.links - page.anchors
+    assert not re.findall(r"(?:src|href)=[\"'](?:https?:)?//|@import|url\(", text)
+    return page
+
+
+def test_a_case_says_what_was_solved_and_how_far_to_trust_it(solved: xr.Dataset, tmp_path: Path) -> None:
+    solved.to_netcdf(tmp_path / "roller.nc")
+    page = read(report.write(tmp_path / "roller.nc"))
+    for words in (
+        *("roller", "0.52 mm apart", "E = 210 GPa", "fillet radius 0.1 mm", "1.5 GPa", "friction coefficient 0.1"),
+        *("Is this number real?", "With care", "no error was asked for", "to scale in both directions", "numpy"),
+        "Hetenyi",
+    ):
+        assert words in page.text, words
+    assert len(page.fetched) >= 5
+
+
+def test_a_singular_peak_is_marked_everywhere(solved: xr.Dataset) -> None:
+    singular = solved.assign(
+        peak_pressure=np.inf, peak_pressure_error=np.inf, end_pressure_first=np.inf, end_intensity_first=1e6
+    ).assign(end_exponent_first=0.5)
+    page = Page(report.html(singular, title="A <sharp> end"))
+    assert "A <sharp> end" in page.text
+    assert page.text.count("singular: it grows without a limit") == 4
+    assert "its intensity is the result" in page.text
+
+
+def test_a_dataset_without_inputs_says_so(solved: xr.Dataset) -> None:
+    page = Page(report.html(solved.drop_attrs()))
+    assert "does not say what was solved" in page.text
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("small")
+    profiles = ["cylinder", {"kind": "cylinder", "fillet_radius": 1e-4, "name": "<b>rounded</b>"}]
+    sweep = {"e_over_a": [0.0, 1.0, -9.0], "friction": [0.0, FAILS], "profile": profiles}
+    run_study(small_study(sweep=sweep, description="Made up."), folder, workers=0, solver=solve_fake, progress=False)
+    return folder
+
+
+def test_a_study_has_its_cases_its_figures_and_its_failures(folder: Path) -> None:
+    page = read(report.write(folder))
+    for words in (
+        *("Study small", "Made up.", "4 ok", "4 failed", "4 skipped", "WindowError: this friction fails in tests"),
+        *("<b>rounded</b>", "5 mm", "error not known", "4 cases"),
+    ):
+        assert words in page.text, words
+    assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
+    assert len(page.fetched) == 2
+
+
+def test_the_file_of_a_studys_case_has_its_inputs(folder: Path, tmp_path: Path, capsys) -> None:
+    path = next((folder / "cases").glob("*.nc"))
+    assert main(["report", str(path), "--out", str(tmp_path / "case.html"), "--title", "Case"]) == 0
+    assert "case.html" in capsys.readouterr().out
+    page = read(tmp_path / "case.html")
+    for words in ("E = 210 GPa", "two free ends", "study small", "length L 0.5 mm"):
+        assert words in page.text, words
+
+
+def test_wrong_paths_are_named(tmp_path: Path, capsys) -> None:
+    with pytest.raises(InvalidInputError, match="no such file"):
+        report.write(tmp_path / "nothing.nc")
+    (tmp_path / "text.nc").write_text("no netCDF")
+    assert main(["report", str(tmp_path / "text.nc")]) == 2
+    assert main(["report", str(tmp_path)]) == 2
+    assert "not the folder of a study" in capsys.readouterr().err
+    with pytest.raises(InvalidInputError, match="given: a result in memory"):
+        report.write(xr.Dataset())
