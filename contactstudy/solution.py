@@ -113,8 +113,8 @@ def solve(
         `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
         or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end. With stick and
-        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well. Its attributes
-        hold the case, the settings, the versions, and the seconds of each stage, see
+        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well.
+        Its attributes hold the case, the settings, the versions, and the seconds of each stage, see
         `contactstudy.analysis.solved_case`.
 
     Raises
