@@ -14,6 +14,7 @@ Mises stress of the history is the radius of the smallest ball around it whose c
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from functools import partial
 
 import numpy as np
@@ -22,7 +23,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.analysis.largest import Peak, labelled_peak, peak_between
-from contactstudy.arrays.variables import STRESSES, VARIABLES, named
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.enclosing_ball import enclosing_balls
@@ -129,7 +131,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     Parameters
     ----------
     stress : Dataset
-        A single case, as for :func:`shakedown`.
+        As for :func:`shakedown`: a single case, or an opened study, of which every case is looked at.
     axial : bool
         See :func:`shakedown`.
 
@@ -142,12 +144,13 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         `hertz_max_pressure` in the Dataset also `shakedown_limit` and `first_yield_limit`, the pressure p0 over k that
         this field allows, with their errors. As in :func:`contactstudy.analysis.largest` an error is infinite where
         the largest sample lies at the edge of the positions; it has a part from polynomials of two degrees in x
-        and z, and one from every second instant along y, of which the larger number counts.
+        and z, and one from every second instant along y, of which the larger number counts. Of a study each has the
+        swept parameters as dimensions, and there are no comments.
 
     Raises
     ------
     InvalidInputError
-        As for :func:`shakedown`, or if there is more than one case.
+        As for :func:`shakedown`.
 
     Examples
     --------
@@ -157,6 +160,10 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     >>> round(float(found.peak_shakedown_stress_z), 2)
     0.5
     """
+    require(stress, *STRESSES)
+    swept = dict(stress["hertz_half_width"].sizes) if "hertz_half_width" in stress else {}
+    if any(size > 1 for size in swept.values()):
+        return _of_study(stress, swept, axial=axial)
     one = single_case(stress)
     fields = shakedown(one, axial=axial)
     rolling = dimension_along(one["tau_yz"], "y")
@@ -184,6 +191,20 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             result[name] = named(name, xr.DataArray(limit))
             result[f"{name}_error"] = named(f"{name}_error", xr.DataArray(limit * found.error / found.value))
     return result
+
+
+def _of_study(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> xr.Dataset:
+    """Limits of every case of a study; NaN where there are no stresses."""
+    numbers: dict[str, Array] = {}
+    for index in np.ndindex(*swept.values()):
+        case = study.isel(dict(zip(swept, index, strict=True))).compute()
+        if np.isnan(case["tau_yz"].values).all():
+            continue
+        for name, number in shakedown_limit(case, axial=axial).items():
+            numbers.setdefault(str(name), np.full(tuple(swept.values()), np.nan))[index] = float(number)
+    coordinates = {name: study[name] for name in swept if name in study.coords}
+    found = xr.Dataset({name: (tuple(swept), values) for name, values in numbers.items()}, coordinates)
+    return describe(found)
 
 
 def _where(one: xr.Dataset, found: Peak) -> str:

@@ -16,7 +16,7 @@ by Nesterov's extrapolation, which begins anew where it leads up (B. O'Donoghue,
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
@@ -48,6 +48,27 @@ def length(tensor: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt((DOUBLED * tensor**2).sum(axis=0)))
 
 
+class State(NamedTuple):
+    """What passes have left in some cells so far.
+
+    Attributes
+    ----------
+    strain : array (6, cell)
+        Plastic strain.
+    accumulated : array (cell)
+        Equivalent plastic strain, accumulated.
+    residual : array (6, cell)
+        Residual stress of the strain, Pa.
+    contained : bool
+        Whether the flow of every instant was contained.
+    """
+
+    strain: FloatArray
+    accumulated: FloatArray
+    residual: FloatArray
+    contained: bool
+
+
 @dataclass(frozen=True, eq=False)
 class Flow:
     """What decides plastic flow in some cells.
@@ -71,37 +92,33 @@ class Flow:
     kinematic: float
     tolerance: float
 
-    def step(self, elastic: FloatArray, strain: FloatArray, accumulated: FloatArray) -> tuple[FloatArray, bool]:
-        """Plastic strain after the elastic stress (6, cell) has become this, and whether the flow was contained.
-
-        Parameters
-        ----------
-        elastic : array (6, cell)
-            Stress of the contact at this instant, Pa.
-        strain : array (6, cell)
-            Plastic strain before.
-        accumulated : array (cell)
-            Equivalent plastic strain accumulated before.
-        """
-        radius = np.sqrt(2 / 3) * (self.yield_stress + self.isotropic * accumulated)
+    def step(self, elastic: FloatArray, before: State) -> State:
+        """State after the elastic stress (6, cell) of the contact has become this, Pa."""
+        strain = before.strain
+        radius = np.sqrt(2 / 3) * (self.yield_stress + self.isotropic * before.accumulated)
         stiffness = 2 * self.shear_modulus + 2 / 3 * (self.isotropic + self.kinematic)
         outset = deviator(elastic) - 2 / 3 * self.kinematic * strain
-        latest, guess, momentum = strain, strain, 1.0
+        left = before.residual
+        if (length(outset + deviator(left)) <= radius).all():
+            return before
+        latest, guess, momentum, contained = strain, strain, 1.0, False
         for _ in range(MOST_RETURNS):
-            trial = outset + deviator(self.residual.stresses(guess)) + 2 * self.shear_modulus * (guess - strain)
+            trial = outset + deviator(left) + 2 * self.shear_modulus * (guess - strain)
             size = length(trial)
             multiplier = np.maximum(size - radius, 0.0) / stiffness
             found = strain + multiplier / np.maximum(size, 1e-300) * trial
+            contained = bool(
+                (2 * self.shear_modulus * length(found - guess) <= self.tolerance * self.yield_stress).all()
+            )
             change = found - latest
-            if (2 * self.shear_modulus * length(found - guess) <= self.tolerance * self.yield_stress).all():
-                return found, True
+            if contained:
+                latest = found
+                break
             if (DOUBLED * (guess - found) * change).sum() > 0:
                 momentum = 1.0
             following = 0.5 * (1 + np.sqrt(1 + 4 * momentum**2))
             guess, latest = found + (momentum - 1) / following * change, found
             momentum = following
-        return latest, False
-
-    def equivalent(self, change: FloatArray) -> FloatArray:
-        """Equivalent plastic strain of a change of the plastic strain."""
-        return np.asarray(np.sqrt(2 / 3) * length(change))
+            left = self.residual.stresses(guess)
+        accumulated = before.accumulated + np.sqrt(2 / 3) * length(latest - strain)
+        return State(latest, accumulated, self.residual.stresses(latest), before.contained and contained)

@@ -27,7 +27,7 @@ from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.eigenstrain.influence import Influence, LayerInfluence
 from contactstudy.errors import InvalidInputError
 from contactstudy.passes.cells import cross_section
-from contactstudy.passes.flow import DOUBLED, Flow, Residual, deviator, length
+from contactstudy.passes.flow import DOUBLED, Flow, Residual, State, deviator, length
 from contactstudy.passes.plastic import ElasticPlastic
 
 STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
@@ -94,7 +94,7 @@ class _Section:
 
 
 @dataclass(frozen=True, eq=False)
-class _State:
+class _Left:
     """Plastic strains (6, cell), equivalent plastic strain accumulated (cell), and whether flow was contained."""
 
     strain: FloatArray
@@ -166,7 +166,7 @@ def rolled_in(
     section, dims = _section(stress, body, material)
     cells = section.may_flow(np.zeros((6, 1)), NEAR_YIELD)
     count = section.yield_stress.size
-    state = _State(np.zeros((6, count)), np.zeros(count))
+    state = _Left(np.zeros((6, count)), np.zeros(count))
     kept: list[xr.Dataset] = []
     flow = _flow(section, cells, tolerance)
     for number in range(1, passes + 1):
@@ -221,19 +221,17 @@ def _flow(section: _Section, cells: IntArray, tolerance: float) -> Flow:
     )
 
 
-def _passed(section: _Section, flow: Flow, cells: IntArray, state: _State, substeps: int) -> _State:
+def _passed(section: _Section, flow: Flow, cells: IntArray, state: _Left, substeps: int) -> _Left:
     """State after one more pass."""
-    strain, accumulated, contained = state.strain[:, cells], state.accumulated[cells], True
+    total, sums, contained = state.strain.copy(), state.accumulated.copy(), True
     if cells.size:
-        elastic = section.elastic[:, :, cells]
+        elastic, strain = section.elastic[:, :, cells], state.strain[:, cells]
+        now = State(strain, state.accumulated[cells], flow.residual.stresses(strain), True)
         for before, there in pairwise(np.concatenate([elastic[-1:], elastic])):
             for part in np.arange(1, substeps + 1) / substeps:
-                after, held = flow.step(before + part * (there - before), strain, accumulated)
-                accumulated = accumulated + flow.equivalent(after - strain)
-                strain, contained = after, contained and held
-    total, sums = state.strain.copy(), state.accumulated.copy()
-    total[:, cells], sums[cells] = strain, accumulated
-    return _State(total, sums, contained)
+                now = flow.step(before + part * (there - before), now)
+        total[:, cells], sums[cells], contained = now.strain, now.accumulated, now.contained
+    return _Left(total, sums, contained)
 
 
 def _check_small(section: _Section, strain: FloatArray) -> None:
@@ -253,7 +251,7 @@ def _check_small(section: _Section, strain: FloatArray) -> None:
 def _labelled(
     section: _Section,
     dims: tuple[str, str],
-    state: _State,
+    state: _Left,
     residual: FloatArray,
     displaced: list[FloatArray],
     grown: float,

@@ -148,6 +148,21 @@ def test_solved_case_and_study_have_their_dimensions(solved: xr.Dataset) -> None
     assert np.allclose(study.isel(case=1), found["shakedown_stress"])
 
 
+def test_limits_of_a_study(line_contact) -> None:
+    """Each case as if alone; one without stresses has none."""
+    cases = [line_contact(friction).assign(hertz_half_width=1.0) for friction in (0.0, 0.2)]
+    cases.append(cases[0] * np.nan)
+    study = xr.concat(cases, xr.Variable("friction", [0.0, 0.2, 0.4])).chunk(friction=1)
+    found = fatigue.shakedown_limit(study)
+    assert found["shakedown_limit"].dims == ("friction",)
+    for number, friction in enumerate((0.0, 0.2)):
+        alone = fatigue.shakedown_limit(line_contact(friction))
+        for name in ("shakedown_limit", "peak_shakedown_stress", "peak_shakedown_stress_z", "shakedown_limit_error"):
+            assert float(found[name][number]) == pytest.approx(float(alone[name]))
+    assert np.isnan(found["shakedown_limit"][2])
+    assert found["shakedown_limit"].attrs["units"] == "1"
+
+
 def test_axial_stress_is_not_free_at_many_positions(solved: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="line contact"):
         fatigue.shakedown(solved, axial=True)

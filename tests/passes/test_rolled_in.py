@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import InvalidInputError, fatigue
+from contactstudy import HalfSpace, InvalidInputError, QuarterSpace, fatigue
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.passes import ElasticPlastic, residual_stress, rolled_in
 from contactstudy.passes.rolled_in import STRAINS
@@ -204,3 +204,16 @@ def test_positions_have_to_reach_to_the_ends(passing, steel_between_ends) -> Non
     for part in (contact.isel(x=slice(0, 6)), contact.isel(z=slice(4, None)), contact.isel(x=slice(3, None))):
         with pytest.raises(InvalidInputError, match="reach to"):
             rolled_in(part, steel_between_ends, perfectly_plastic(0.2))
+
+
+@pytest.mark.parametrize("kind", [HalfSpace, QuarterSpace])
+def test_bodies_without_a_second_end(passing, steel_between_ends, kind) -> None:
+    """Far from where the body ends the residual stress is nearly the same; a free end is free."""
+    contact = passing(0.0, length=8.0)
+    least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
+    plastic = perfectly_plastic(0.95 * least)
+    bodies = kind(material=steel_between_ends.material), steel_between_ends
+    here, between = (rolled_in(contact, body, plastic, passes=2).isel(pass_number=-1) for body in bodies)
+    middle = [one["sigma_yy"].isel(x=4).values for one in (here, between)]
+    assert np.abs(np.subtract(*middle)).max() < 0.15 * np.abs(middle[1]).max()
+    assert float(np.abs(here["sigma_yy"]).max()) > 0.02
