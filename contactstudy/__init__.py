@@ -20,7 +20,15 @@ _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 def __getattr__(name: str) -> object:
     """Import a public name on first use, and register ``Dataset.contact`` as soon as xarray is there."""
-    value: object = _public_name(name)
+    try:
+        value: object = _public_name(name)
+    except AttributeError as error:
+        from difflib import get_close_matches
+
+        near = get_close_matches(name, __all__, n=1)
+        if name.startswith("_") or not near:
+            raise
+        raise AttributeError(f"{error}; did you mean {near[0]}?", name=name) from None
     if "xarray" in sys.modules:
         import_module("contactstudy.analysis.accessor")
     return value

@@ -34,3 +34,10 @@ def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
     assert {"analysis", "plots", "profiles"} <= shared
     for name in shared:
         assert getattr(contactstudy, name) is importlib.import_module(f"contactstudy.{name}"), name
+
+
+def test_a_name_that_is_nearly_right_is_suggested() -> None:
+    with pytest.raises(AttributeError, match=r"solv; did you mean solve\?"):
+        _ = contactstudy.solv
+    with pytest.raises(AttributeError, match="xyzzy$"):
+        _ = contactstudy.xyzzy

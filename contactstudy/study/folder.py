@@ -116,8 +116,11 @@ class Folder:
         path = self.path / "study.json"
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
-        except (OSError, ValueError) as error:
-            raise StudyFileError(f"{self.path} is not the folder of a study: {path}: {error}") from error
+        except OSError as error:
+            reason = "there is no such folder" if not self.path.exists() else f"study.json: {error.strerror}"
+            raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error
+        except ValueError as error:
+            raise StudyFileError(f"{self.path} is not the folder of a study: study.json: {error}") from error
         except RecursionError:
             raise StudyFileError(f"{path}: nested too deeply to be a study") from None
         try:
