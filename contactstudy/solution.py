@@ -137,12 +137,7 @@ def solve(
     began = time.perf_counter()
     known = xr.Dataset()
     slides = isinstance(case.motion, Sliding)
-    settings = {
-        "cells": "refined" if grid is None and roughness is None and slides else "chosen" if grid is None else "given",
-        "accuracy": float(accuracy),
-        "tolerance": float(tolerance),
-        "rough": roughness is not None,
-    }
+    cells = "refined" if grid is None and roughness is None and slides else "chosen" if grid is None else "given"
     if grid is None and roughness is None and slides:
         settled = settled_contact(case, check_accuracy(accuracy), checks.positive("tolerance", tolerance))
         contact, known = _checked(case, settled.contact), settled_values(settled)
@@ -185,6 +180,9 @@ def solve(
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - began - contact_seconds}
     LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
+    settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
+    if cells == "refined":
+        settings["accuracy"] = float(accuracy)
     return with_provenance(described, case, settings, stages)
 
 
