@@ -2,9 +2,11 @@ from . import analysis as analysis
 from . import cache as cache
 from . import export as export
 from . import fatigue as fatigue
+from . import passes as passes
 from . import plots as plots
 from . import profiles as profiles
 from . import report as report
+from . import wear as wear
 from .analysis.summary import summarize as summarize
 from .arrays.grid import Grid as Grid
 from .arrays.invariants import hydrostatic as hydrostatic
@@ -31,12 +33,15 @@ from .contact.end_law import edge_peak as edge_peak
 from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError
+from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
 from .explorer.show import explore as explore
 from .fields.displacement import displacement_field as displacement_field
 from .fields.equivalent import equivalent_loads as equivalent_loads
 from .fields.stress import stress_field as stress_field
 from .fields.surface import surface_displacement as surface_displacement
+from .heat import ThermalProperties as ThermalProperties
+from .heat import flash_temperature as flash_temperature
 from .solution import roller_stress as roller_stress
 from .solution import solve as solve
 from .study.definition import Study as Study

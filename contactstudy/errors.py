@@ -61,3 +61,7 @@ class Terminated(KeyboardInterrupt):
 
 class ConvergenceWarning(UserWarning):
     """The contact iteration stopped before its tolerance; the result says ``converged = False``."""
+
+
+class TemperatureWarning(UserWarning):
+    """The temperature of a contact passes the limit that was given."""

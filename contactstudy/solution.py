@@ -23,6 +23,7 @@ from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact, settled_values
+from contactstudy.contact.settled_tractions import middle_of, settled_tractions
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import TopLoad, sliding
@@ -82,7 +83,7 @@ def solve(
         Body, roller, load and friction.
     grid : Grid, optional
         Cells of pressure and gap. Default: columns of different widths, refined along the axis until `accuracy` is
-        reached; for rough surfaces, and with stick and slip, the uniform cells of `choose_grid`.
+        reached; for rough surfaces the uniform cells of `choose_grid`.
     accuracy : float
         Error, over the peak pressure, to which the peak and the pressures at the roller's ends are settled: from 0.001
         to 0.1. Where a sharp end makes the pressure singular, its law is stated instead.
@@ -111,8 +112,9 @@ def solve(
         half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
         `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
         `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
-        or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end. Its attributes
-        hold the case, the settings, the versions, and the seconds of each stage, see
+        or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end. With stick and
+        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well.
+        Its attributes hold the case, the settings, the versions, and the seconds of each stage, see
         `contactstudy.analysis.solved_case`.
 
     Raises
@@ -137,21 +139,31 @@ def solve(
     began = time.perf_counter()
     known = xr.Dataset()
     slides = isinstance(case.motion, Sliding)
-    cells = "refined" if grid is None and roughness is None and slides else "chosen" if grid is None else "given"
-    if grid is None and roughness is None and slides:
-        settled = settled_contact(case, check_accuracy(accuracy), checks.positive("tolerance", tolerance))
+    found: FrictionalContact | None = None
+    cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
+    if grid is None and roughness is None:
+        accuracy = check_accuracy(accuracy)
+        settled = settled_contact(case, accuracy, checks.positive("tolerance", tolerance))
         contact, known = _checked(case, settled.contact), settled_values(settled)
+        if not slides:
+            rubbed = settled_tractions(case, settled, accuracy)
+            found, known = rubbed.found, settled_values(rubbed.settled).assign(rubbed.errors().data_vars)
+            found.warn_unless_converged(stacklevel=2)
+            contact = found.contact
     elif grid is None:
         contact = _contact(case, choose_grid(case), roughness, tolerance)
     else:
         checks.instance("grid", grid, Grid, "a Grid")
         contact = _contact(case, grid, roughness, tolerance)
-    grid = contact.shape.grid
-    result = _labelled(case, contact).assign(known.data_vars)
-    loads = sliding(contact.pressure, case.friction_on(grid.x))
-    if not slides:
+    if not slides and found is None:
         found = _with_tractions(case, contact)
-        result, loads = labelled(_labelled(case, found.contact), found), found.loads
+        contact = found.contact
+    grid = contact.shape.grid
+    result = _labelled(case, contact)
+    loads = sliding(contact.pressure, case.friction_on(grid.x)) if found is None else found.loads
+    if found is not None:
+        result = labelled(result, found)
+    result = result.assign(known.data_vars)
     if error_estimate and not known:
         if min(grid.shape) < LEAST_CELLS:
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
@@ -232,9 +244,10 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
 def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
     """Tractions of a case that does not slide fully."""
     assert not isinstance(case.motion, Sliding)
-    middle = case.roller_start + 0.5 * case.roller.length
     friction = case.friction_on(contact.shape.grid.x)
-    found = frictional_contact(contact.shape, contact.settings, case.motion, friction, middle, coupled=case.coupled)
+    found = frictional_contact(
+        contact.shape, contact.settings, case.motion, friction, middle_of(case), coupled=case.coupled
+    )
     found.warn_unless_converged(stacklevel=3)
     return found
 

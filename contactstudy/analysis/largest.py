@@ -6,7 +6,9 @@ between; the measure follows from them. What polynomials of a lower degree say t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -15,7 +17,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, single_case
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import named, variable_of
+from contactstudy.arrays.variables import Variable, named, variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -67,14 +69,65 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     names = list(MEASURES[variable][0])
     require(dataset, *names)
     one = single_case(dataset)
-    sampled = measure(one, variable)
+    found = peak_between(one, names, measure(one, variable), lambda stresses: measure(stresses, variable))
+    base = variable_of(variable, measure(one, variable).attrs)
+    return labelled_peak(variable, found, base)
+
+
+class Peak(NamedTuple):
+    """Largest value of a measure between the samples.
+
+    Attributes
+    ----------
+    value, error : float
+        The value and its estimated error, Pa.
+    place : dict of str to float
+        Where it is, by axis, metres.
+    comment : str
+        Why the error is infinite; empty if it is not.
+    """
+
+    value: float
+    error: float
+    place: dict[str, float]
+    comment: str
+
+
+def peak_between(
+    one: xr.Dataset, names: list[str], sampled: xr.DataArray, evaluate: Callable[[xr.Dataset], xr.DataArray]
+) -> Peak:
+    """Largest value of a measure between the points where it is known.
+
+    Parameters
+    ----------
+    one : Dataset
+        A single case.
+    names : list of str
+        Stresses that the measure follows from; polynomials run through these.
+    sampled : DataArray
+        The measure on the samples. Dimensions of the stresses that it lacks are not interpolated.
+    evaluate : callable
+        From the stresses at other points to the measure there.
+
+    Raises
+    ------
+    InvalidInputError
+        If no sample is a number.
+
+    Examples
+    --------
+    >>> x = np.linspace(-1.0, 1.2, 12)
+    >>> bump = xr.Dataset({"height": ("x", 1 - x**2)}, {"x": x})
+    >>> round(peak_between(bump, ["height"], bump.height, lambda data: data.height).value, 3)
+    1.0
+    """
     over = axis_dimensions(sampled)
     if np.isnan(sampled.values).all():
-        raise InvalidInputError(variable, "nan everywhere", "a field with at least one number")
+        raise InvalidInputError(str(sampled.name), "nan everywhere", "a field with at least one number")
     field = sampled.transpose(*over.values())
     at = np.unravel_index(int(np.nanargmax(field.values)), field.shape)
     places = {axis: np.asarray(positions(field, axis).values, dtype=np.float64) for axis in over}
-    wide, narrow = (_between(one[names], variable, over, places, at, around) for around in (AROUND, 1))
+    wide, narrow = (_between(one[names], evaluate, over, places, at, around) for around in (AROUND, 1))
     value, place = wide
     error = abs(value - narrow[0])
     comment = _without_limit(one, places, at)
@@ -82,9 +135,13 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
         error = np.inf
     elif "peak_pressure_error" in one:
         error += value * float(one["peak_pressure_error"] / one["peak_pressure"])
-    base = variable_of(variable, sampled.attrs)
-    values = {f"peak_{variable}": value, f"peak_{variable}_error": error}
-    values |= {f"peak_{variable}_{axis}": position for axis, position in zip(over, place, strict=True)}
+    return Peak(value, error, dict(zip(over, place, strict=True)), comment)
+
+
+def labelled_peak(variable: str, found: Peak, base: Variable) -> xr.Dataset:
+    """Peak of a measure as a Dataset, see :func:`largest`."""
+    values = {f"peak_{variable}": found.value, f"peak_{variable}_error": found.error}
+    values |= {f"peak_{variable}_{axis}": position for axis, position in found.place.items()}
     # The error's rule is that of any variable: it is told what the peak is.
     peak = variable_of(f"peak_{variable}", {"units": base.units, "long_name": f"largest {base.long_name}"})
     result = xr.Dataset(
@@ -93,8 +150,8 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
             for name, number in values.items()
         }
     )
-    if comment:
-        result[f"peak_{variable}_error"].attrs["comment"] = comment
+    if found.comment:
+        result[f"peak_{variable}_error"].attrs["comment"] = found.comment
     return result
 
 
@@ -122,7 +179,7 @@ def _extent(one: xr.Dataset) -> tuple[float, ...]:
 
 def _between(
     stresses: xr.Dataset,
-    variable: str,
+    evaluate: Callable[[xr.Dataset], xr.DataArray],
     over: dict[str, str],
     places: dict[str, FloatArray],
     at: tuple[np.intp, ...],
@@ -144,11 +201,14 @@ def _between(
     near = stresses.isel(window)
     refined = xr.Dataset()
     for name, component in near.items():
-        values = component.transpose(*over.values()).values
+        ordered = component.transpose(*over.values(), ...)
+        values = ordered.values
         for number, matrix in enumerate(matrices):
             values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
-        refined[name] = (tuple(over.values()), values)
-    found = measure(refined, variable).values
+        refined[name] = (ordered.dims, values)
+        kept = {dim: ordered[dim] for dim in ordered.dims if dim not in over.values() and dim in ordered.coords}
+        refined = refined.assign_coords(kept)
+    found = evaluate(refined).transpose(*over.values()).values
     best = np.unravel_index(int(np.nanargmax(found)), found.shape)
     return float(found[best]), [float(points[index]) for points, index in zip(fine, best, strict=True)]
 

@@ -59,11 +59,12 @@ COORDINATES = {
     "y_field": Variable(("y_field",), "m", "y", "position of the stresses along rolling and sliding"),
     "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells along the roller's axis"),
     "x_width": Variable(X, "m", "w", "width of the cells along the roller's axis"),
-    "distance": Variable(("distance",), "m", "s", "distance along the line"),
+    "distance": Variable(("distance",), "m", "s", "distance along the line, or slid or rolled"),
     "slice": Variable(SLICE, "1", "k", "number of the slice, from end I"),
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
+    "pass_number": Variable(("pass_number",), "1", "N", "number of the pass of the contact"),
 }
 """Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
 
@@ -96,6 +97,7 @@ CONTACT = {
     "spin": Variable(SCALAR, "rad/m", r"\varphi", "angular velocity of the roller about z, over rolling"),
     "shift_x": Variable(SCALAR, "m", "", "shift of the roller against the body along x"),
     "shift_y": Variable(SCALAR, "m", "", "shift of the roller against the body along y"),
+    "sticking_part": Variable(SCALAR, "1", "", "area that sticks over that of the contact"),
     "friction_work": Variable(SCALAR, "", "A", "frictional work per distance rolled, or of a shift"),
     "friction_steps": Variable(SCALAR, "1", "", "steps of Newton's method for stick and slip"),
     "bound_error": Variable(SCALAR, "1", "", "largest traction above the friction's bound, over the largest bound"),
@@ -225,8 +227,67 @@ FATIGUE = {
     "risk_density": Variable(X, "Pa**c m**(1 - h)", "", "risk of fatigue per length of the roller and of the raceway"),
     "risk": Variable(SCALAR, "Pa**c m**(2 - h)", "", "risk of fatigue per length of the raceway"),
     "relative_life": Variable(SCALAR, "1", "", "life over that of the reference"),
+    "first_yield_stress": Variable(XZ, "Pa", "k_e", "yield stress in shear below which the first passage yields"),
+    "shakedown_stress": Variable(XZ, "Pa", "k_s", "yield stress in shear below which every passage yields"),
+    "residual_sigma_yy": Variable(
+        XZ, "Pa", r"\rho_{yy}", "residual stress along rolling that lets the point shake down"
+    ),
+    "residual_sigma_xx": Variable(
+        XZ, "Pa", r"\rho_{xx}", "residual stress along the axis that lets the point shake down"
+    ),
+    "residual_sigma_zz": Variable(XZ, "Pa", r"\rho_{zz}", "residual stress along depth that lets the point shake down"),
+    "residual_tau_xz": Variable(XZ, "Pa", r"\rho_{xz}", "residual shear stress xz that lets the point shake down"),
+    "program_gap": Variable(SCALAR, "1", "", "part of the yield stress that the convex program could still gain"),
+    "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
+    "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
 }
 """What :mod:`contactstudy.fatigue` returns. The unit of a risk has the exponents of its life theory in it."""
+
+HEAT = {
+    "temperature_rise": Variable(XY, "K", "T", "temperature rise of the body's surface"),
+    "roller_temperature_rise": Variable(XY, "K", "T_2", "temperature rise of the roller's surface"),
+    "body_temperature_rise": Variable(XYZ, "K", "T", "temperature rise in the body"),
+    "frictional_heat": Variable(XY, "W m-2", r"\dot{q}", "heat that friction makes, per area"),
+    "heat_into_body": Variable(XY, "W m-2", r"\dot{q}_1", "heat that goes into the body, per area"),
+    "heat_partition": Variable(XY, "1", r"\dot{q}_1/\dot{q}", "part of the frictional heat that goes into the body"),
+    "body_heat_share": Variable(SCALAR, "1", "", "part of the whole frictional heat that goes into the body"),
+    "max_temperature_rise": Variable(SCALAR, "K", r"\max T", "largest temperature rise of the surfaces"),
+    "max_temperature_rise_x": Variable(SCALAR, "m", "", "x of the largest temperature rise"),
+    "max_temperature_rise_y": Variable(SCALAR, "m", "", "y of the largest temperature rise"),
+    "friction_power": Variable(SCALAR, "W", "", "power that friction turns into heat"),
+    "heat_error": Variable(SCALAR, "1", "", "heat into both bodies minus the frictional power, over the latter"),
+    "temperature_mismatch": Variable(
+        SCALAR, "1", "", "largest difference of the surfaces' temperatures where they touch, over the largest rise"
+    ),
+}
+"""What :func:`contactstudy.flash_temperature` returns."""
+
+DISTANCE_X = ("distance", "x")
+
+WEAR = {
+    "wear_depth": Variable(DISTANCE_X, "m", "h", "depth worn off the roller's profile"),
+    "profile_drop": Variable(DISTANCE_X, "m", "d", "drop of the worn profile"),
+    "worn_volume": Variable(("distance",), "m3", "V", "volume worn off the roller"),
+    "wear_error": Variable(("distance",), "1", "", "estimated error of the worn depth, over the largest depth"),
+    "next_step": Variable(("distance",), "m", "", "distance of the step that would follow"),
+    "volume_error": Variable(SCALAR, "1", "", "worn volume minus what the law gives for it, over the latter"),
+}
+"""What :func:`contactstudy.wear.wear_in` returns."""
+
+PASSES = {
+    "plastic_strain_xx": Variable(XZ, "1", r"\varepsilon^p_{xx}", "plastic strain along the roller's axis"),
+    "plastic_strain_yy": Variable(XZ, "1", r"\varepsilon^p_{yy}", "plastic strain along rolling"),
+    "plastic_strain_zz": Variable(XZ, "1", r"\varepsilon^p_{zz}", "plastic strain along depth"),
+    "plastic_strain_xy": Variable(XZ, "1", r"\varepsilon^p_{xy}", "plastic shear strain xy, of the tensor"),
+    "plastic_strain_xz": Variable(XZ, "1", r"\varepsilon^p_{xz}", "plastic shear strain xz, of the tensor"),
+    "plastic_strain_yz": Variable(XZ, "1", r"\varepsilon^p_{yz}", "plastic shear strain yz, of the tensor"),
+    "equivalent_plastic_strain": Variable(XZ, "1", r"\alpha", "equivalent plastic strain, accumulated"),
+    "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
+    "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
+    "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
+    "flow_contained": Variable(SCALAR, "1", "", "whether the elastic body contains the flow of every instant"),
+}
+"""What :mod:`contactstudy.passes` returns."""
 
 STUDIES = {
     "status": Variable(SCALAR, "", "", "state of the case"),
@@ -255,7 +316,9 @@ VERIFICATION = {
 }
 """What :func:`contactstudy.verification.verify` returns."""
 
-VARIABLES = CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | STUDIES | VERIFICATION
+VARIABLES = (
+    CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | WEAR | PASSES | STUDIES | VERIFICATION
+)
 """Every variable of the package but those that are named by a rule."""
 
 RULES = {

@@ -1,12 +1,17 @@
-"""Roughly the tractions that make a slip: the half-space's tangential compliance, inverted wavenumber by wavenumber."""
+"""Roughly the tractions that make a slip: the half-space's tangential compliance, inverted wavenumber by wavenumber.
+
+On uniform cells along both axes, on cells of different widths along y alone, with a matrix along x for each wavenumber.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 from scipy import fft
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.columns import ColumnsRequest
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.surface import surface_kernel
 
@@ -39,10 +44,12 @@ class TangentialInverse:
         self._shape = tuple(fft.next_fast_len(int(2 * each), real=True) for each in size)
         xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
         if rolling:
-            change = self._change(cell[1])
+            change = _change(self._shape[1], cell[1])
             xx, xy, yy = change * xx, change * xy, change * yy
         determinant = xx * yy - xy * xy
-        self._inverse = (yy / determinant, -xy / determinant, xx / determinant)
+        # In single precision, which is enough for what is roughly right. Speed.
+        parts = (yy / determinant, -xy / determinant, xx / determinant)
+        self._inverse = tuple(part.astype(np.complex64) for part in parts)
 
     def _offsets(self, number: int, step: float) -> FloatArray:
         return np.asarray(step * np.arange(number // 2 + 1.0))
@@ -60,23 +67,83 @@ class TangentialInverse:
         whole = _unfolded(_unfolded(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1)
         return np.asarray(fft.rfft2(whole))
 
-    def _change(self, dy: float) -> ComplexArray:
-        """Spectrum of the change along y, reversed, as `RollingCells.change` takes it."""
-        phase = 2 * np.pi * np.arange(self._shape[1] // 2 + 1) / self._shape[1]
-        b, turn = TYPICAL_PLACE, np.exp(1j * phase)
-        change = -((b - 1.5) + (2 - 2 * b) * turn + (b - 0.5) * turn**2) / dy
-        return np.asarray(change + LEAST_CHANGE * phase[1] / dy)
-
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Tractions (2, cell) that roughly take a slip (2, cell) away."""
+        scale = float(np.abs(slip).max()) or 1.0
         spectra = []
         for component in slip:
-            layer = np.zeros(self._shape)
-            layer[self._at] = component
+            layer = np.zeros(self._shape, np.float32)
+            layer[self._at] = component / scale
             spectra.append(fft.rfft2(layer))
         xx, xy, yy = self._inverse
         along = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
-        return np.stack([fft.irfft2(each, self._shape)[self._at] for each in along])
+        return scale * np.stack([fft.irfft2(each, self._shape)[self._at] for each in along]).astype(np.float64)
+
+
+class ColumnsInverse:
+    """Inverse of the tangential compliance of one half-space or two, on cells of any width around a contact.
+
+    In the transform along y the compliance between tractions along one axis is even and real, that across odd and
+    imaginary, so with the components along y times i it is a real matrix for each wavenumber.
+
+    Parameters
+    ----------
+    materials : sequence of Material
+        Of the bodies.
+    cells : array of int (2, cell)
+        Row and column of the contact's cells.
+    grid : Grid
+        Cells.
+    rolling : bool
+        Whether it is the change of the displacement along y that is inverted, reversed, or the displacement.
+    """
+
+    def __init__(self, materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool) -> None:
+        (first, start), (last, stop) = cells.min(axis=1), cells.max(axis=1)
+        self._at = tuple(cells - np.array([[first], [start]]))
+        edges, count = grid.x_edges[first : last + 2], int(stop - start + 1)
+        self._rows, self._padded = int(last - first + 1), 2 * count
+        self._widths = np.diff(edges)
+        columns = ColumnsRequest(edges, grid.dy, count, (-np.inf, np.inf))
+        xx, xy, yy = (
+            sum(
+                columns.kernel(Response(*pair), material.poisson) / (4 * np.pi * material.shear_modulus)
+                for material in materials
+            )
+            for pair in COMPONENTS
+        )
+        self._inverse = np.linalg.inv(np.block([[xx, -xy], [xy, yy]]))
+        self._change = _change(self._padded, grid.dy) if rolling else np.ones(count + 1, dtype=np.complex128)
+
+    def __call__(self, slip: FloatArray) -> FloatArray:
+        """Tractions (2, cell) that roughly take a slip (2, cell) away."""
+        layers = np.zeros((2, self._rows, self._padded))
+        layers[:, *self._at] = slip
+        spectra = fft.rfft(layers) / self._change
+        spectra[1] *= -1j
+        pairs = spectra.reshape(2 * self._rows, -1).T
+        found = np.matmul(self._inverse, np.stack([pairs.real, pairs.imag], axis=-1))
+        spectra = (found[..., 0] + 1j * found[..., 1]).T.reshape(spectra.shape)
+        spectra[1] *= 1j
+        tractions = fft.irfft(spectra, self._padded)[:, *self._at]
+        return np.asarray(tractions / self._widths[self._at[0]])
+
+
+def tangential_inverse(
+    materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool
+) -> TangentialInverse | ColumnsInverse:
+    """Return the inverse that suits the grid."""
+    if grid.uniform:
+        return TangentialInverse(materials, cells, (grid.dx, grid.dy), rolling=rolling)
+    return ColumnsInverse(materials, cells, grid, rolling=rolling)
+
+
+def _change(cells: int, dy: float) -> ComplexArray:
+    """Spectrum on so many cells of the change along y, reversed, as `RollingCells.change` takes it."""
+    phase = 2 * np.pi * np.arange(cells // 2 + 1) / cells
+    b, turn = TYPICAL_PLACE, np.exp(1j * phase)
+    change = -((b - 1.5) + (2 - 2 * b) * turn + (b - 0.5) * turn**2) / dy
+    return np.asarray(change + LEAST_CHANGE * phase[1] / dy)
 
 
 COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))

@@ -58,6 +58,8 @@ class CoulombProblem:
         Weights with which the tractions sum up to the resultant of each mode.
     resultants : array (mode)
         Prescribed resultants.
+    shares : array (cell)
+        Areas of the cells over their mean, by which the linear systems are symmetric and their residual is a mean.
     tolerance : float
         Violation, over the largest bound and the largest rigid slip, at which the iteration stops.
     max_steps : int
@@ -71,6 +73,7 @@ class CoulombProblem:
     modes: FloatArray
     works: FloatArray
     resultants: FloatArray
+    shares: FloatArray
     tolerance: float = 1e-6
     max_steps: int = 40
 
@@ -174,10 +177,10 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         traction = start.traction * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
         slip = counted.slip(traction, amplitudes)
     steps, converged, accuracy = 0, False, LINEAR_TOLERANCE
-    seen, share = {sticks.tobytes()}, 1.0
+    seen, share, typical = {sticks.tobytes()}, 1.0, _typical(problem)
     while steps < problem.max_steps and not converged:
         steps += 1
-        step = _Step(counted, traction, slip, sticks)
+        step = _Step(counted, traction, slip, sticks, typical)
         guess, amplitudes = step.solve(traction, amplitudes, accuracy)
         traction, before = guess, sticks
         size = np.hypot(*traction)
@@ -241,8 +244,16 @@ def _scale(problem: CoulombProblem, amplitudes: FloatArray) -> float:
 class _Step:
     """One linear system of Newton's method."""
 
-    def __init__(self, problem: CoulombProblem, traction: FloatArray, slip: FloatArray, sticks: BoolArray) -> None:
-        self._problem, self._sticks = problem, sticks
+    def __init__(
+        self,
+        problem: CoulombProblem,
+        traction: FloatArray,
+        slip: FloatArray,
+        sticks: BoolArray,
+        typical: FloatArray,
+    ) -> None:
+        self._problem, self._sticks, self._typical = problem, sticks, typical
+        self._root = np.sqrt(problem.shares)
         size = np.hypot(*traction)
         self._direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
         self._base = problem.bound * self._direction
@@ -258,10 +269,11 @@ class _Step:
         cells = self._sticks.size
         traction = self._first * unknowns[:cells]
         traction[:, self._sticks] += self._second * unknowns[cells:]
-        return np.asarray(traction)
+        return np.asarray(traction / self._root)
 
     def _gathered(self, slip: FloatArray) -> FloatArray:
         """Parts of a slip (2, cell) that the unknowns work on."""
+        slip = self._root * slip
         first = (self._first * slip).sum(axis=0)
         second = (self._second * slip[:, self._sticks]).sum(axis=0)
         return np.concatenate([first, second])
@@ -271,8 +283,8 @@ class _Step:
         problem = self._problem
         turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
         modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(len(problem.modes), turning.size)
-        works = np.array([self._gathered(work) for work in problem.works]).reshape(modes.shape)
-        typical = _typical(problem)
+        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(modes.shape)
+        typical = np.concatenate([self._typical, self._typical[self._sticks]])
         damped = np.sqrt(typical / (typical + turning))
 
         def matrix(unknowns: FloatArray) -> FloatArray:
@@ -316,9 +328,13 @@ class _Step:
         return self._base + self._spread(found[:count]), np.asarray(found[count:])
 
 
-def _typical(problem: CoulombProblem) -> float:
-    """Slip that a traction on its own takes away, per traction."""
-    one = np.zeros_like(problem.rigid)
-    middle = int(problem.bound.argmax())
-    one[1, middle] = 1.0
-    return float(abs(1.0 / problem.inverse(one)[1, middle]))
+def _typical(problem: CoulombProblem) -> FloatArray:
+    """Slip that a traction on its own takes away, per traction, of cells of each width: array (cell)."""
+    found = np.empty_like(problem.bound)
+    for share in np.unique(problem.shares):
+        alike = problem.shares == share
+        one = np.zeros_like(problem.rigid)
+        most = int(np.where(alike, problem.bound, 0.0).argmax())
+        one[1, most] = 1.0
+        found[alike] = abs(1.0 / problem.inverse(one)[1, most])
+    return found

@@ -14,9 +14,12 @@ from contactstudy.cache import ArrayKey
 from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
-from contactstudy.contact.friction import TANGENTIAL, Surfaces, Tractions, tractions_of
+from contactstudy.contact.friction import TANGENTIAL, tractions_of
+from contactstudy.contact.nested import Coarser
 from contactstudy.contact.pair import PairOperator
-from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.contact.rubbed import Surfaces
+from contactstudy.contact.tractions import Tractions
+from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
 from contactstudy.fields.loads import Loads, TopLoad
 from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
@@ -29,6 +32,13 @@ ROUNDS = 30
 
 LEAST_ACCURACY = 1e-6
 """Part of the pressure to which coupled rounds settle at least, however coarse the tolerance. Accuracy."""
+
+
+AMPLITUDES = {
+    True: {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"},
+    False: {"x": "shift_x", "y": "shift_y"},
+}
+"""Names in results of the rigid motions, in rolling and in a shift."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,19 +102,19 @@ class FrictionalContact:
             "slip_y": found.slip[1],
             "stick": found.sticks,
         }
-        names = {"x": "shift_x", "y": "shift_y"}
-        unit = "m"
-        if "spin" in found.rigid:
-            names, unit = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}, "1"
+        rolls = "spin" in found.rigid
+        names, unit = AMPLITUDES[rolls], "1" if rolls else "m"
         scalars: dict[str, object] = {names[name]: amount for name, amount in found.rigid.items()}
         for name in ("force_x", "force_y", "moment_z", "bound_error", "slip_error", "force_error"):
             scalars[name] = getattr(found, name)
+        areas, pressed = shape.grid.weights, self.contact.pressure > 0
+        scalars["sticking_part"] = float((areas * found.sticks).sum() / (areas * pressed).sum())
         scalars["friction_work"] = found.work
         scalars["friction_steps"] = found.steps
         result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
         for name in ("slip_x", "slip_y"):
             result[name].attrs["units"] = unit
-        result["friction_work"].attrs["units"] = "J/m" if unit == "1" else "J"
+        result["friction_work"].attrs["units"] = "J/m" if rolls else "J"
         assert shape.grid.shape == found.sticks.shape
         return result
 
@@ -125,6 +135,7 @@ def frictional_contact(
     *,
     coupled: bool,
     before: Mapping[Load, FloatArray] | None = None,
+    coarser: Coarser | None = None,
 ) -> FrictionalContact:
     """Solve a contact whose parts are checked, with the tractions of a motion.
 
@@ -144,6 +155,8 @@ def frictional_contact(
         Whether the tractions also displace the surfaces normally and so change the pressure.
     before : mapping of Load to array (x, y), optional
         Pressure and tractions from which a shift begins; default: none.
+    coarser : Coarser, optional
+        Tractions on coarser cells, to begin from.
 
     Raises
     ------
@@ -165,6 +178,11 @@ def frictional_contact(
     surfaces = Surfaces(operator, shape.grid, materials, middle)
 
     def rubbed(pressure: FloatArray) -> Tractions:
+        if isinstance(motion, Rolling) and pressure[:, -2:].any():
+            raise WindowError(
+                "the contact reaches the last two cells along +y, and rolling takes the slip from the two cells ahead: "
+                "widen the window along y"
+            )
         with one_blas_thread():
             return tractions_of(
                 motion,
@@ -174,6 +192,7 @@ def frictional_contact(
                 tolerance=settings.tolerance,
                 max_steps=settings.max_iterations,
                 before=before,
+                coarser=coarser,
             )
 
     contact = contact_of(shape, settings)

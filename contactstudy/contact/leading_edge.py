@@ -5,13 +5,13 @@ On cells it is taken from the displacement of a cell and the two ahead of it, wh
 
     du/dy (y + b dy) = [(b - 3/2) u_0 + (2 - 2 b) u_1 + (b - 1/2) u_2] / dy,
 
-of second order wherever in the cell (b from -1/2 to 1/2) it is taken. The plain difference of neighbours is b = 1/2:
-half a cell late. What remains is an error from the leading edge, where the traction begins as a root, which is linear
-in the part c of the leading cell that lies in the contact. It vanishes if the foremost point lies 0.34 cells behind
-the edge, b = c - 0.84. A leading cell with little in the contact is no unknown of its own: it carries the same part of
-its bound as the cell behind, and b = 0.16 + c / 2. Both rules were found from Carter's solution, at 10, 20 and 40
-cells per half-width, any place of the edge in its cell and creepages from small to almost full sliding: the force is
-then right to 3e-4 of full sliding at 20 cells.
+of second order wherever it is taken, in the cell (b from -1/2 to 1/2) or beside it. The plain difference of neighbours
+is b = 1/2: half a cell late. What remains is an error from the leading edge, where the traction begins as a root, which
+is linear in the part c of the leading cell that lies in the contact (more than 1 if the edge lies in the next one). It
+vanishes if the foremost point lies 0.34 cells behind the edge, b = c - 0.84. A leading cell with little in the contact
+is no unknown of its own: it carries the same part of its bound as the cell behind, and b = 0.475. Both rules were found
+from Carter's solution. At any place of the edge in its cell, and creepages from small to almost full sliding, the force
+is then right to 1e-3 of full sliding at 14 cells per half-width, 5e-4 at 22.
 """
 
 from __future__ import annotations
@@ -22,14 +22,20 @@ import numpy as np
 
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 
-LEAST_PART = 0.6
+LEAST_PART = 0.72
 """Part of the leading cell in the contact below which it is tied to the cell behind. Accuracy."""
 
-EDGE_OFFSET, TIED_OFFSET, TIED_SLOPE = -0.84, 0.16, 0.5
-"""Place at which the slip is taken: ``EDGE_OFFSET + c``, or ``TIED_OFFSET + TIED_SLOPE c``. Accuracy."""
+EDGE_OFFSET, TIED_PLACE = -0.84, 0.475
+"""Place at which the slip is taken: ``EDGE_OFFSET + c``, or, where the leading cell is tied, a fixed one. Accuracy."""
 
-FEWEST = 4
+FEWEST = 6
 """Cells along y from which on the place of the edge is told from the pressure. Accuracy."""
+
+BEHIND = 1.5
+"""Cells between the third last centre and the inner border of the last cell."""
+
+PARTS = (0.25, 1.4)
+"""Range of the part c that occurs: less is not pressed, more is another pressed cell. Accuracy."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +77,7 @@ class RollingCells:
             if part >= LEAST_PART:
                 place[row, first : last + 1] = EDGE_OFFSET + part
             else:
-                place[row, first : last + 1] = TIED_OFFSET + TIED_SLOPE * part
+                place[row, first : last + 1] = TIED_PLACE
                 tied.append((row, last))
                 ratio.append(bound[row, last] / bound[row, last - 1])
         own = carries.copy()
@@ -99,16 +105,27 @@ class RollingCells:
         return np.asarray(own)
 
     def change(self, displacement: FloatArray, dy: float) -> FloatArray:
-        """Change along y of a displacement (x, y), at the places where the slip is taken: array (unknown)."""
+        """Change along y of a displacement (x, y), at the places where the slip is taken: array (unknown).
+
+        Beyond the last cell it goes on as it is there: good enough for a guess.
+        """
         row, column = self.unknown
-        b = self.place
-        here, next_, second = (displacement[row, column + step] for step in (0, 1, 2))
+        b, last = self.place, displacement.shape[1] - 1
+        here, next_, second = (displacement[row, np.minimum(column + step, last)] for step in (0, 1, 2))
         return np.asarray(((b - 1.5) * here + (2 - 2 * b) * next_ + (b - 0.5) * second) / dy)
 
 
 def _part_inside(pressure: FloatArray) -> float:
-    """Part of the last cell that lies in the contact: close to its edge the squared pressure is linear."""
-    before, behind = pressure[-2] ** 2, pressure[-3] ** 2
-    if behind <= before:
+    """Cells between the inner border of the last cell and the contact's edge.
+
+    The squared pressure is a parabola across the contact. That of the last two cells is off, as they meet the edge, so
+    it is taken through the three before. The contact may reach into the next cell, which then has no pressure.
+    """
+    third, second, first = pressure[-5:-2] ** 2  # at 2, 1 and 0 cells behind the third last
+    bend, slope = 0.5 * (third - 2 * second + first), 0.5 * (third - 4 * second + 3 * first)
+    # first + slope s + bend s**2 = 0, s ahead of the third last centre
+    root = slope**2 - 4 * bend * first
+    if root < 0 or slope >= 0:
         return 1.0
-    return float(np.clip(before / (behind - before) - 0.5, 0.0, 1.0))
+    ahead = 2 * first / (np.sqrt(root) - slope)
+    return float(np.clip(ahead - BEHIND, *PARTS))

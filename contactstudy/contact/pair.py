@@ -90,10 +90,26 @@ class PairOperator:
 
     def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
         """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
+        if self.counterbody is self.body and self._shares is None:
+            return self._twice(loads, directions)
         reaction = {load: _opposed(load, self._carried(cells)) for load, cells in loads.items()}
         relative = self.body.displaced(loads, directions)
         for direction, other in self.counterbody.displaced(reaction, directions).items():
             relative[direction] = relative[direction] + _opposed(direction, self._returned(other))
+        return relative
+
+    def _twice(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Relative displacements of like bodies that end in the same planes.
+
+        Pressure moves both along the surface alike, and so do tractions normally.
+        """
+        relative = {direction: np.zeros(self.body.grid.shape) for direction in directions}
+        for normal in (True, False):
+            own = {load: cells for load, cells in loads.items() if (load is Load.NORMAL) == normal}
+            asked = [direction for direction in directions if (direction is Load.NORMAL) == normal]
+            if own and asked:
+                for direction, each in self.body.displaced(own, asked).items():
+                    relative[direction] = 2 * each
         return relative
 
     def _carried(self, load: FloatArray) -> FloatArray:

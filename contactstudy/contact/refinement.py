@@ -76,6 +76,8 @@ class Refined:
         Law of a singular end.
     settled : bool
         Whether every error that is stated is within the accuracy.
+    first : array
+        Edges of the columns of the first threshold, metres.
     """
 
     edges: FloatArray
@@ -88,6 +90,7 @@ class Refined:
     load_errors: tuple[float, float]
     laws: tuple[EndLaw | None, EndLaw | None]
     settled: bool
+    first: FloatArray
 
     @property
     def peak(self) -> float:
@@ -100,15 +103,17 @@ class Refined:
         return self.peak_errors[int(np.argmax(self.peaks))]
 
 
-def refined_contact(solve: Solve, shape: AxialShape, accuracy: float) -> Refined:
+def refined_contact(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> Refined:
     """Refine the columns of a contact until its peak and end pressures are settled to `accuracy` of the peak.
+
+    They begin with those between the edges `begin`; without these with few.
 
     Raises
     ------
     WindowError
         If `solve` finds that the contact reaches the edge of its window.
     """
-    state = _State(solve, shape)
+    state = _State(solve, shape, first_edges(shape) if begin is None else begin)
     theta = FIRST_THETA
     while True:
         state.refine(theta)
@@ -126,8 +131,9 @@ class _State:
 
     solve: Solve
     shape: AxialShape
-    edges: FloatArray = field(init=False)
+    edges: FloatArray
     pressure: FloatArray = field(init=False)
+    first: FloatArray | None = None
     peaks: list[tuple[float, float]] = field(default_factory=list)
     ends: list[tuple[float, float]] = field(default_factory=list)
     loads: list[tuple[float, float]] = field(default_factory=list)
@@ -136,7 +142,6 @@ class _State:
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
 
     def __post_init__(self) -> None:
-        self.edges = first_edges(self.shape)
         self.pressure = self.solve(self.edges, None, ROUGH)
         self._sample()
 
@@ -152,6 +157,8 @@ class _State:
             LOGGER.info("refined to %d columns", finer.size - 1)
             self._sample()
         self.pressure = self.solve(self.edges, self.pressure, POLISHED)
+        if self.first is None:
+            self.first = self.edges
 
     def _sample(self) -> None:
         """Note the outermost columns wherever they have been split, and decide on their law."""
@@ -240,6 +247,7 @@ class _State:
             (load_errors[0], load_errors[1]),
             (laws[0], laws[1]),
             settled,
+            self.edges if self.first is None else self.first,
         )
 
 

@@ -15,6 +15,7 @@ from contactstudy.bodies.models import EndedBody, HalfSpace
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import columns_of
+from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
@@ -27,8 +28,9 @@ from contactstudy.threads import one_blas_thread
 WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn. Speed."""
 
-ROOM, COUPLED_ROOM = 1.1, 1.4
-"""Least window over the extent of the contact along y. Speed; what lies outside is not pressed."""
+ROOM, COUPLED_ROOM, MOVED_ROOM = 1.1, 1.4, 1.5
+"""Least window over the extent of the contact along y. Speed; what lies outside is not pressed, but with stick and slip
+the contact is solved on half of the cells too, and the slip of rolling is taken from two cells ahead."""
 
 WINDOW_STEP = 2 ** (1 / 6)
 """Ratio of the windows that are taken, from the Hertz half-width on: cases of a study share them, and with them the
@@ -68,6 +70,9 @@ def settled_contact(case: Case, accuracy: float, tolerance: float) -> SettledCon
     WindowError
         If the contact is wider than the widest window.
     """
+    if not isinstance(case.motion, Sliding):
+        # No creepage or shift changes the columns.
+        case = replace(case, friction=0.0, motion=Rolling())
     request = _Request(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
     return _kept(request) if _is_value(case) else _settled(request)
 
@@ -119,7 +124,9 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
         window = min(_shared_window(case, reach), half_window)
         at_peak = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
         solver = _Solver(case, window, _cells_across(float(at_peak.sum()) * cells.dy / (2 * window), accuracy))
-        refined = refined_contact(solver, shape, accuracy)
+        # The law of an end shows in how its outermost columns are split, one by one.
+        singular = any(rough.laws) or any(shape.sharp(side) and rough.pressure[-side].any() for side in (0, 1))
+        refined = refined_contact(solver, shape, accuracy, None if singular else rough.first)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
     if whole.coupled_friction:
@@ -129,7 +136,10 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
 
 def _shared_window(case: Case, reach: float) -> float:
     """Half-width of a window that holds a contact up to `reach`, metres, and that similar cases have as well."""
-    least = (COUPLED_ROOM if case.coupled else ROOM) * reach / case.hertz_half_width
+    room = COUPLED_ROOM if case.coupled else ROOM
+    if not isinstance(case.motion, Sliding):
+        room = MOVED_ROOM
+    least = room * reach / case.hertz_half_width
     return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
 
 
@@ -177,6 +187,20 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
     return describe(result)
 
 
+def shape_on(case: Case, grid: Grid) -> Shape:
+    """Return what is pressed on what, on given cells."""
+    gap = case.gap(grid)
+    prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, grid)
+    return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+
+
+def with_contact(settled: SettledContact, contact: Contact, case: Case) -> SettledContact:
+    """Return another contact on the same columns, which friction or finer cells along y have changed a little."""
+    refined = settled.refined
+    pressure = contact.pressure[_under(contact.shape.grid, refined.edges)]
+    return SettledContact(contact, read_again(refined, pressure, _axial_shape(case)))
+
+
 @dataclass(frozen=True)
 class _Solver:
     """Contact of a case on given columns."""
@@ -191,11 +215,7 @@ class _Solver:
 
     def shape(self, edges: FloatArray) -> Shape:
         """Return what is pressed on what."""
-        case, grid = self.case, self.grid(edges)
-        gap = case.gap(grid)
-        prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, grid)
-        coupled = case.coupled_friction
-        return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled)
+        return shape_on(self.case, self.grid(edges))
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
         """Pressure (column, y) without the displacement from friction, which changes it by a few percent."""

@@ -7,9 +7,11 @@ is :func:`contactstudy.orthogonal_shear_range`.
 
 from contactstudy.fatigue.critical_plane import findley
 from contactstudy.fatigue.history import window_remainder
+from contactstudy.fatigue.in_plane import shakedown_in_plane
 from contactstudy.fatigue.invariant_criteria import crossland, dang_van
 from contactstudy.fatigue.life import LifeExponents, ioannides_harris, lundberg_palmgren, relative_life
 from contactstudy.fatigue.limits import FatigueLimits
+from contactstudy.fatigue.shakedown import shakedown, shakedown_limit
 
 __all__ = [
     "FatigueLimits",
@@ -20,5 +22,8 @@ __all__ = [
     "ioannides_harris",
     "lundberg_palmgren",
     "relative_life",
+    "shakedown",
+    "shakedown_in_plane",
+    "shakedown_limit",
     "window_remainder",
 ]

@@ -25,13 +25,15 @@ MOST_STEPS = 500
 """Points that may join a ball before it counts as not found: a safeguard."""
 
 
-def enclosing_balls(points: Array) -> tuple[Array, Array]:
-    """Centre and radius of the smallest ball around each path.
+def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array, Array]:
+    """Centre and radius of the smallest ball around each path, whose centre may be bound to a plane of the space.
 
     Parameters
     ----------
     points : array (path, instant, axis)
-        Points in Euclidean space.
+        Points in Euclidean space; if the centre is bound, their projections on the plane (or line) of the centre.
+    heights : array (path, instant), optional
+        Distances of the points from that plane; none if the centre may be anywhere.
 
     Returns
     -------
@@ -44,43 +46,51 @@ def enclosing_balls(points: Array) -> tuple[Array, Array]:
     >>> centre, radius = enclosing_balls(triangle)
     >>> centre.round(9).tolist(), radius.round(9).tolist()
     ([[1.0, 0.0]], [1.0])
+    >>> centre, radius = enclosing_balls(triangle[..., :1], triangle[..., 1])
+    >>> centre.round(9).tolist(), radius.round(9).tolist()
+    ([[1.0]], [1.0])
     """
     origin = points.mean(axis=1)
     local = points - origin[:, None]
-    size = np.sqrt((local**2).sum(axis=-1)).max(axis=1)
+    above = np.zeros(points.shape[:2]) if heights is None else heights**2
+    size = np.sqrt((local**2).sum(axis=-1) + above).max(axis=1)
     centre, radius = origin.copy(), np.zeros(len(points))
     left = np.flatnonzero(size > 0)
-    path = local[left] / size[left, None, None]
+    path, above = local[left] / size[left, None, None], above[left] / size[left, None] ** 2
     middle = path[:, 0].copy()
-    reach = np.zeros(left.size)
+    reach = np.sqrt(above[:, 0])
     slots = points.shape[-1] + 1
     held = np.zeros((left.size, slots), dtype=np.int64)
     used = np.zeros((left.size, slots), dtype=bool)
     used[:, 0] = True
     for _ in range(MOST_STEPS):
-        distance = np.sqrt(((path - middle[:, None]) ** 2).sum(axis=-1))
+        distance = np.sqrt(((path - middle[:, None]) ** 2).sum(axis=-1) + above)
         far = distance.argmax(axis=1)
         done = distance[np.arange(left.size), far] <= reach * (1 + ROUNDING) + ROUNDING
         finished = left[done]
         centre[finished] += middle[done] * size[finished, None]
         radius[finished] = reach[done] * size[finished]
         keep = ~done
-        left, path, held, used, far = left[keep], path[keep], held[keep], used[keep], far[keep]
+        left, path, above, held, used, far = (each[keep] for each in (left, path, above, held, used, far))
         if not left.size:
             return centre, radius
-        middle, reach, held, used = _join(path, held, used, far)
+        middle, reach, held, used = _join(path, above, held, used, far)
     raise ArithmeticError(f"no smallest ball after {MOST_STEPS} steps for {left.size} paths")
 
 
-def _join(path: Array, held: Array, used: Array, far: Array) -> tuple[Array, Array, Array, Array]:
-    """Smallest balls around the points that held them and one more, which the new ball must touch."""
+def _join(path: Array, above: Array, held: Array, used: Array, far: Array) -> tuple[Array, Array, Array, Array]:
+    """Smallest balls around the points that held them and one more, which the new ball must touch.
+
+    `above` are the squares of the points' heights above the plane of the centres.
+    """
     rows = np.arange(len(path))
     slots = held.shape[1]
     occupied = int(used.sum(axis=1).max())
-    new = path[rows, far]
+    new, own = path[rows, far], above[rows, far]
     others = path[rows[:, None], held[:, :occupied]] - new[:, None]
     gram = np.einsum("pia,pja->pij", others, others)
-    square = np.einsum("pii->pi", gram)
+    higher = above[rows[:, None], held[:, :occupied]] - own[:, None]
+    square = np.einsum("pii->pi", gram) + higher
     present = used[:, :occupied]
     best = np.full(len(path), np.inf)
     middle, chosen = np.zeros_like(new), np.zeros_like(present)
@@ -94,8 +104,9 @@ def _join(path: Array, held: Array, used: Array, far: Array) -> tuple[Array, Arr
         regular = part + REGULAR * np.eye(count) * (1 + np.trace(part, axis1=1, axis2=2))[:, None, None]
         share = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if count else square[:, mask]
         offset = np.einsum("pi,pia->pa", share, others[:, mask])
-        squared = (offset**2).sum(axis=1)
-        outside = np.where(present, ((others - offset[:, None]) ** 2).sum(axis=-1), 0.0).max(axis=1)
+        squared = (offset**2).sum(axis=1) + own
+        beyond = ((others - offset[:, None]) ** 2).sum(axis=-1) + higher + own[:, None]
+        outside = np.where(present, beyond, 0.0).max(axis=1)
         valid = (outside <= squared * (1 + ROUNDING)) & ~(mask & ~present).any(axis=1) & (squared < best)
         best = np.where(valid, squared, best)
         middle[valid] = (new + offset)[valid]

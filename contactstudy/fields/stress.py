@@ -163,15 +163,35 @@ def _unit_stress(request: _StressRequest) -> dict[Load, list[FloatArray]]:
     return fields
 
 
+class _MirroredRequest(NamedTuple):
+    """What decides the stresses at one place in the half-space under a load and its mirror images."""
+
+    load: Load
+    poisson: float
+    extent: tuple[float, float]
+    grid: Grid
+    cells: ArrayKey
+    place: tuple[ArrayKey, ...]
+    smooth: bool
+
+
+@kept("half-space stresses", lambda field: field.nbytes)
+def _mirrored_stress(request: _MirroredRequest) -> FloatArray:
+    """Stresses (6, x, y, z) at a place: those under a pressure are also part of those with friction."""
+    load, poisson, extent, grid, cells, place, smooth = request
+    points = Place(*(axis.values for axis in place))
+    return half_space_stress(load, cells.values, poisson, grid, *points, extent=extent, smooth=smooth)
+
+
 def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatArray]]:
     """Stresses of one part of a body, times its weight."""
     body, grid, loads, cells, keys, smooth = request
     places = [Place(*(axis.values for axis in key)) for key in keys]
-    poisson, extent = body.material.poisson, part.extent
+    poisson = body.material.poisson
     fields = {
         load: [
-            half_space_stress(load, cells.values, poisson, grid, *place, extent=extent, smooth=smooth)
-            for place in places
+            _mirrored_stress(_MirroredRequest(load, poisson, part.extent, grid, cells, key, smooth)).copy("K")
+            for key in keys
         ]
         for load in loads
     }

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from scipy import fft
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.aligned import aligned_points
-from contactstudy.kernels.images import image_kernel
+from contactstudy.kernels.images import ROUNDING, few_points, image_kernel
 from contactstudy.kernels.influence import Influence
 
 IMAGE_POINTS = 10
@@ -18,10 +16,6 @@ each point adds a factor of 6."""
 
 IMAGE_CELL = 1e-3
 """Width of the cells that stand for these points, over the length. Accuracy."""
-
-IMAGE_DEPTHS, DEEPEST = 6, 0.2
-"""Chebyshev depths at which the farther images are summed for more depths than these, and the largest depth over the
-length for which these suffice: they are a length away. Accuracy: 1e-7 of the pressure."""
 
 
 def far_images(
@@ -49,32 +43,37 @@ def far_images(
         (np.add.outer(points, points) - length, 3 * length, influence.load.sign_x),
     )
     level = width * grid.dy * np.array(influence.image_level)[:, None, None]
-    depths, to_z = _few_depths(z, length)
-    field = np.zeros((influence.components, x.size, y.size, depths.size))
-    for column in aligned_points(y, float(grid.y[first]), grid.dy):
-        lowest = int(column.cells.min()) - load.shape[1] + 1
-        offsets = column.offset + grid.dy * np.arange(lowest, int(column.cells.max()) + 1)
-        size = fft.next_fast_len(offsets.size, real=True)
-        at = column.cells - int(column.cells.min())
-        spectrum = fft.rfft(gathered[:, ::-1], size, axis=1).conj()
-        for number, depth in enumerate(depths.tolist()):
-            total = np.zeros((influence.components, points.size, at.size))
-            for distances, nearest, sign in patterns:
-                kernel = image_kernel(
-                    influence.corner_at(depth), distances.ravel(), offsets, width, grid.dy, length, nearest=nearest
-                )
-                kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
-                summed = np.einsum("cpgk,gk->cpk", fft.rfft(kernel, size, axis=3), spectrum)
-                total += sign * fft.irfft(summed, size, axis=2)[:, :, at]
-            field[:, :, column.points, number] = to_x @ total
-    return field if to_z is None else field @ to_z.T
+    # The images vary slowly along y and z as well.
+    centres = grid.y[first : first + load.shape[1]]
+    (at_load, from_load), (at_y, to_y), (depths, to_z) = (few_points(each, length) for each in (centres, y, z))
+    if from_load is not None:
+        gathered = gathered @ from_load
+    offsets, number = np.unique(np.subtract.outer(at_y, at_load).round(_digits(grid.dy)), return_inverse=True)
+    number = number.reshape(at_y.size, at_load.size)
+    field = np.zeros((influence.components, points.size, at_y.size, depths.size))
+    for depth in range(depths.size):
+        for distances, nearest, sign in patterns:
+            kernel = image_kernel(
+                influence.corner_at(float(depths[depth])),
+                distances.ravel(),
+                offsets,
+                width,
+                grid.dy,
+                length,
+                nearest=nearest,
+            )
+            kernel = (kernel + level).reshape(-1, *distances.shape, offsets.size)
+            for row in range(at_y.size):
+                field[:, :, row, depth] += sign * np.tensordot(kernel[..., number[row]], gathered, axes=2)
+    field = np.tensordot(field, to_x, axes=(1, 1))
+    if to_z is not None:
+        field = np.tensordot(field, to_z, axes=(2, 1))
+        field = field.swapaxes(2, 3)
+    if to_y is not None:
+        field = np.moveaxis(np.tensordot(field, to_y, axes=(1, 1)), 3, 1)
+    return np.asarray(field.transpose(0, 3, 1, 2))
 
 
-def _few_depths(z: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
-    """Depths at which images far away are summed, and the matrix (z, depth) that interpolates; none if it is `z`."""
-    deepest = float(z.max())
-    if z.size <= IMAGE_DEPTHS or deepest > DEEPEST * length:
-        return z, None
-    nodes = chebyshev.chebpts1(IMAGE_DEPTHS)
-    coefficients = np.linalg.inv(chebyshev.chebvander(nodes, IMAGE_DEPTHS - 1))
-    return 0.5 * deepest * (nodes + 1), chebyshev.chebvander(2 * z / deepest - 1, IMAGE_DEPTHS - 1) @ coefficients
+def _digits(size: float) -> int:
+    """Decimals to which positions are the same if they agree to a small part of `size`."""
+    return int(np.ceil(-np.log10(ROUNDING * size)))

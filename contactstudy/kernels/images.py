@@ -26,11 +26,11 @@ FAR_LIMIT = 1e6
 ROUNDING = 1e-9
 """Part of a cell that is nothing. Accuracy."""
 
-CHEBYSHEV_X, CHEBYSHEV_Y = 16, 28
-"""Least numbers of points from which the images' influence is interpolated. Accuracy."""
+CHEBYSHEV_X = 16
+"""Points along x from which the images' influence is interpolated. Accuracy."""
 
-POINTS_PER_LENGTH = 14
-"""Of these points along y, per length of the body: the images vary over distances of its order. Accuracy."""
+LEFT = 1.5e-8
+"""Part of the images' influence that interpolation between few points may leave. Accuracy."""
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
@@ -97,16 +97,29 @@ def image_kernel(
         add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
     at_x, from_points_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
-    span_y = float(np.abs(y).max()) + dy
-    count_y = max(CHEBYSHEV_Y, int(np.ceil(POINTS_PER_LENGTH * span_y / length)))
-    if y.size > count_y:
-        at_y, from_points_y = _chebyshev_points(y, span_y, count_y)
-    else:
-        at_y, from_points_y = y, np.eye(y.size)
+    at_y, from_points_y = few_points(y, length)
     positions = np.add.outer(shifts, at_x)[..., None]
     values = corner(positions, at_y + 0.5 * dy) - corner(positions, at_y - 0.5 * dy)
     images = np.tensordot(weights, values, axes=(0, -3))
-    return np.asarray(from_points_x @ images @ from_points_y.T)
+    images = from_points_x @ images
+    return np.asarray(images if from_points_y is None else images @ from_points_y.T)
+
+
+def few_points(values: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
+    """Few points from which what images do is interpolated to many, and the matrix (value, point) that does so.
+
+    The images are a length away from all points, so on a span ``2 s`` each point divides what is left by
+    ``exp(asinh(length / s))``. Where no fewer points would do: `values` and None.
+    """
+    low, high = float(values.min()), float(values.max())
+    half = 0.5 * (high - low)
+    if not half:
+        return values[:1], np.ones((values.size, 1)) if values.size > 1 else None
+    count = int(np.ceil(-np.log(LEFT) / np.arcsinh(length / half))) + 1
+    if count >= values.size:
+        return values, None
+    points, matrix = _chebyshev_points(values - 0.5 * (low + high), half, count)
+    return points + 0.5 * (low + high), matrix
 
 
 def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:

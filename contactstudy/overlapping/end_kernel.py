@@ -30,7 +30,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.cache import kept
-from contactstudy.checks import FloatArray
+from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.equations import EquationSet
@@ -148,32 +148,62 @@ class EndKernel:
         return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
 
 
-def sampled_kernel(
-    modes: AxialModes, wavenumber: float, positions: FloatArray, request: EndRequest, shortest: float
-) -> list[FloatArray]:
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """Positions as axial modes see them: shared by all wavenumbers along y that these modes serve.
+
+    Attributes
+    ----------
+    modes : AxialModes
+        The modes.
+    positions : array
+        Positions within their reach, metres.
+    beyond : int
+        Number of those farther away, which see nothing.
+    by_load : dict of Load to array (mode, position)
+        Weighted spectra of unit loads at the positions.
+    """
+
+    modes: AxialModes
+    positions: FloatArray
+    beyond: int
+    by_load: Mapping[Load, ComplexArray]
+
+    @classmethod
+    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> Waves:
+        """Waves for all directions of some responses."""
+        within = positions[positions <= modes.reach]
+        directions = dict.fromkeys(
+            chain.from_iterable((response.load, response.displacement) for response in responses)
+        )
+        weights = modes.load_weights[:, None]
+        by_load = {load: weights * modes.wave(load, within) for load in directions}
+        return cls(modes, within, positions.size - within.size, by_load)
+
+    def padded(self, kernel: FloatArray) -> FloatArray:
+        """Kernel between all positions from that between those within reach."""
+        return np.pad(kernel, (0, self.beyond))
+
+
+def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
     """Correction between the graded positions at one wavenumber, for each of the responses."""
-    material, responses = request.material, request.responses
+    modes, material, responses = waves.modes, request.material, request.responses
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
     system = EquationSet.build(modes, wavenumber, material.poisson, shortest, request.resolution)
     loads = dict.fromkeys(response.load for response in responses)
-    weights = modes.load_weights[:, None]
     if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)
-        sunk = modes.cosine(positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
-        top = {
-            load: system.on_top(system.solve(system.source(load, weights * modes.wave(load, positions))))
-            for load in loads
-        }
-        return [np.real(sunk.T @ top[response.load]) for response in responses]
-    directions = dict.fromkeys(chain(loads, (response.displacement for response in responses)))
-    left = {load: system.source(load, weights * modes.wave(load, positions)) for load in directions}
+        sunk = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
+        top = {load: system.on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
+        return [waves.padded(np.real(sunk.T @ top[response.load])) for response in responses]
+    left = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
     freed = {load: system.solve(left[load]) for load in loads}
     kernels = []
     for displacement, load in responses:
         kernel = left[displacement].T @ freed[load]
         if displacement in freed:  # rounding is all that reciprocity lacks, but between two ends it is amplified
             kernel = 0.5 * (kernel + (left[load].T @ freed[displacement]).T)
-        kernels.append(factor * _phase(Response(displacement, load)) * kernel)
+        kernels.append(waves.padded(factor * _phase(Response(displacement, load)) * kernel))
     return kernels
 
 
@@ -226,9 +256,10 @@ def _samples(
     for panel in panels:
         smallest = float(panel.nodes[0])
         modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
+        waves = [Waves.of(mode, positions, request.responses) for mode in modes]
         for wavenumber in panel.nodes.tolist():
             if wavenumber not in known:
-                sampled = np.array([sampled_kernel(mode, wavenumber, positions, request, shortest) for mode in modes])
+                sampled = np.array([sampled_kernel(each, wavenumber, request, shortest) for each in waves])
                 # Ends that know nothing of each other: both parities see half of either quarter space.
                 alone = len(request.parities) > len(modes)
                 known[wavenumber] = 0.5 * np.repeat(sampled, 2, axis=0) if alone else sampled

@@ -122,25 +122,29 @@ class _Folded:
             for field in fields.values():
                 field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
-        if 0 in fields:
-            field = fields[0]
-        else:
-            # The other half is the image of this one.
-            shape = next(iter(fields.values())).shape
-            signs = np.ones((shape[1], 1, 1, 1))
-            signs[odd_along_x] = -1.0
-            first, second = np.zeros(shape), np.zeros(shape)
-            for parity, part in fields.items():
-                first += part
-                second += part * (parity * signs)
-            field = np.empty((*shape[:2], self.where.size, *shape[3:]))
-            field[:, :, ~self.beyond] = first[:, :, self.where[~self.beyond]]
-            field[:, :, self.beyond] = second[:, :, self.where[self.beyond]]
-        if self.interpolation is not None:
-            shape = field.shape
-            flat = self.interpolation @ field.reshape(*shape[:3], -1)
-            field = flat.reshape(*shape[:2], -1, *shape[3:])
-        return np.asarray(field.swapaxes(3, 4))
+        loads, count, _, *rest = next(iter(fields.values())).shape
+        result = np.zeros((loads, count, self._size, *rest))
+        for parity, field in fields.items():
+            for component in range(count):
+                spread = self._spread(-parity if component in odd_along_x else parity)
+                for load in range(loads):
+                    own = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
+                    result[load, component] += (spread @ own).reshape(-1, *rest)
+        return np.asarray(result.swapaxes(3, 4))
+
+    @property
+    def _size(self) -> int:
+        """Number of the place's own positions along x."""
+        return self.where.size if self.interpolation is None else self.interpolation.shape[0]
+
+    def _spread(self, sign: int) -> FloatArray:
+        """Matrix from the positions of the sum to the place's own, for a field that is `sign` times its image.
+
+        0 stands for one end only, which has no image.
+        """
+        spread = np.zeros((self.where.size, self.x.size))
+        spread[np.arange(self.where.size), self.where] = np.where(self.beyond, sign or 1, 1)
+        return spread if self.interpolation is None else np.asarray(self.interpolation @ spread)
 
 
 @dataclass(frozen=True, eq=False)
@@ -224,11 +228,19 @@ def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> list[
                             continue
                         alike = own[i][..., columns.parities == parity]
                         here = slice(stop - at[parity].shape[-1], stop)
+                        shape, block = (rows.size, depths.size, -1), _block(rows, depths)
                         for component in range(harmonics.count):
                             wave = even if component in harmonics.even_in_y else odd
-                            flat = alike[component].reshape(*alike.shape[1:3], -1)
-                            at[parity][i, component, rows[:, None], depths] += flat @ wave[:, here]
+                            flat = alike[component].reshape(rows.size * depths.size, -1)
+                            at[parity][i, component][block] += (flat @ wave[:, here]).reshape(shape)
     return result
+
+
+def _block(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
+    """Index of rows and columns in ascending order, as slices if none between them is missing: these are faster."""
+    if all(numbers[-1] - numbers[0] + 1 == numbers.size for numbers in (rows, columns)):
+        return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
+    return rows[:, None], columns
 
 
 def _amplitudes(
@@ -262,7 +274,11 @@ def _amplitudes(
 
 def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
     """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
-    flat_left = left.reshape(-1, left.shape[-1])
+    # Real and imaginary parts lie side by side in memory; beside the right ones they are paired by rows.
+    flat_left = np.ascontiguousarray(left).reshape(-1, left.shape[-1]).view(np.float64)
     flat_right = right.reshape(right.shape[0], -1)
-    product = np.hstack([flat_left.real, -flat_left.imag]) @ np.vstack([flat_right.real, flat_right.imag])
+    paired = np.empty((right.shape[0], 2, flat_right.shape[1]))
+    paired[:, 0] = flat_right.real
+    np.negative(flat_right.imag, out=paired[:, 1])
+    product = flat_left @ paired.reshape(-1, flat_right.shape[1])
     return np.asarray(product.reshape(*left.shape[:-1], *right.shape[1:]))

@@ -78,7 +78,7 @@ class Resolution:
     order : int
         Gauss nodes per panel.
     ratio : float
-        Growth of the panels.
+        Growth of the panels of axial and depth wavenumbers.
     angle : float
         Angle of the rays to the real axis, radians. Axial and depth wavenumbers are turned by the same angle; twice
         the angle must stay well below pi/2, where ``k_x**2 + k_y**2 + k_z**2`` would vanish.
@@ -90,6 +90,8 @@ class Resolution:
         Axial modes that are summed one by one.
     lateral_nodes : int
         Wavenumbers along y per panel at which the body is asked.
+    lateral_ratio : float
+        Growth of these panels.
     lateral_order : int
         Gauss nodes per panel of the finer wavenumbers along y, which follow the load's phase.
     lateral_reach : float
@@ -108,6 +110,7 @@ class Resolution:
     ray_reach: float = 50.0
     modes: int = 8
     lateral_nodes: int = 7
+    lateral_ratio: float = 3.5
     lateral_order: int = 16
     lateral_reach: float = 10.0
 
@@ -117,8 +120,9 @@ class Resolution:
             checks.count(name, getattr(self, name), least=2)
         for name in ("reach", "ray_reach", "lateral_reach"):
             checks.positive(name, getattr(self, name))
-        if not self.ratio > 1:
-            raise InvalidInputError("ratio", self.ratio, "more than 1: the panels grow")
+        for name in ("ratio", "lateral_ratio"):
+            if not getattr(self, name) > 1:
+                raise InvalidInputError(name, getattr(self, name), "more than 1: the panels grow")
         if not 0 < self.angle < np.pi / 4:
             raise InvalidInputError("angle", self.angle, "between 0 and pi/4, where k_x^2 + k_y^2 + k_z^2 vanishes")
 

@@ -60,8 +60,8 @@ def _below_equivalent_load(
     result = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
     for functions, terms, components in ((cosine, even, [0, 1, 2, 5]), (sine, odd, [3, 4])):
         along_z = np.stack([a[:, None] * decay + b[:, None] * ramp for a, b in terms], axis=1)
-        right = along_z[..., None] * equivalent[:, None, None, :]
-        result[components] = real_product(functions.T, right).transpose(1, 0, 2, 3)
+        along_x = equivalent.T[:, None, :] * functions.T
+        result[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
     return result
 
 
@@ -79,26 +79,38 @@ def _beside_face_load(
     amplitude, tau = modes.beside_face(kappa)
     waves = np.exp(1j * np.outer(depth, z))
     right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
-    cosine_z: ComplexArray = np.zeros((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
-    sine_z: ComplexArray = np.zeros((2, x.size, depth.size), np.complex128)  # yz, xz
-    ends = [(x, 1, 1)]
+    # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for components that both see alike or reversed.
+    decay, alike, reversed_ = _from_end(x, kappa, tau)
     if modes.parity:
-        ends.append((modes.length - x, modes.parity, -modes.parity))
-    for distance, even, odd in ends:
-        scaled = np.outer(distance, kappa)
-        decay = np.exp(-scaled)
-        potential = (1 - 2 * nu - tau - scaled) * decay
-        shear = (tau + scaled) * decay / kappa
-        cosine_z[0] += even * (1 + tau + scaled) * decay
-        cosine_z[1] += even * ((lateral / kappa) ** 2 * potential + 2 * nu * decay)
-        cosine_z[2] += even * ((depth / kappa) ** 2 * potential + 2 * nu * decay)
-        cosine_z[3] -= odd * lateral * shear
-        sine_z[0] += even * lateral * depth / kappa**2 * potential
-        sine_z[1] += odd * depth * shear
+        own, ramp, _ = _from_end(modes.length - x, kappa, tau)
+        decay += modes.parity * own
+        alike += modes.parity * ramp
+        reversed_ = reversed_ - modes.parity * ramp
+    potential = (1 - 2 * nu) * decay - alike
+    lateral_part = 2 * nu * decay
+    cosine_z: ComplexArray = np.empty((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
+    sine_z: ComplexArray = np.empty((2, x.size, depth.size), np.complex128)  # yz, xz
+    np.add(decay, alike, out=cosine_z[0])
+    np.add((lateral / kappa) ** 2 * potential, lateral_part, out=cosine_z[1])
+    np.add((depth / kappa) ** 2 * potential, lateral_part, out=cosine_z[2])
+    np.multiply(-lateral / kappa, reversed_, out=cosine_z[3])
+    np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
+    np.multiply(depth / kappa, reversed_, out=sine_z[1])
     result = np.empty((6, x.size, z.size, face_load.shape[1]))
     result[[0, 1, 2, 3]] = real_product(cosine_z, right)
     result[[5, 4]] = real_product(-1j * sine_z, right)
     return result
+
+
+def _from_end(
+    distance: FloatArray, kappa: ComplexArray, tau: ComplexArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return ``exp(-X)`` and twice ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
+    scaled = np.outer(distance, kappa)
+    decay = np.exp(-scaled)
+    scaled += tau
+    scaled *= decay
+    return decay, scaled, scaled.copy()
 
 
 STRESS = Harmonics(

@@ -12,6 +12,9 @@ from contactstudy.plots.stress import plot_end_face, plot_stress_plane
 from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
+from contactstudy.plots.temperature import plot_temperature_map
+from contactstudy.plots.tractions import plot_stick_and_slip, plot_traction_curve
+from contactstudy.plots.wear import plot_wear
 
 __all__ = [
     "COLORS",
@@ -23,9 +26,13 @@ __all__ = [
     "plot_pressure_map",
     "plot_profile",
     "plot_profiles",
+    "plot_stick_and_slip",
     "plot_stress_plane",
     "plot_study_lines",
     "plot_study_map",
+    "plot_temperature_map",
+    "plot_traction_curve",
+    "plot_wear",
     "save",
     "study_figures",
 ]

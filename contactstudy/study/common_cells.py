@@ -1,8 +1,8 @@
 """One axis for the cells of all cases: positions over the half-width, on which the surfaces of a study lie together.
 
 Cases of a study have cells of their own. The common edges are edges of the cases, thinned to half the width of the
-narrowest cell that any case has there. Pressure and traction are averaged over a common cell, so loads are kept; other
-quantities are interpolated linearly between the case's own centres.
+narrowest cell that any case has there. Pressure and traction are averaged over a common cell, so loads are kept; flags
+are those of the case's own cell there; other quantities are interpolated linearly between the case's own centres.
 """
 
 from __future__ import annotations
@@ -24,8 +24,25 @@ LEAST_WIDTH = 0.5
 AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})
 """Variables that are averaged over a common cell."""
 
+FLAGS = frozenset({"stick"})
+"""Variables that are true or false."""
+
 AVERAGE = "averaged over cells that all cases share: loads are kept, peaks may be a little lower"
 LINEAR = "interpolated linearly from the case's own cells"
+HOLDING = "that of the case's own cell which holds the common cell's centre; false beyond the case's cells"
+
+
+def comment_of(name: str) -> str:
+    """Say how a variable comes onto the common cells.
+
+    Examples
+    --------
+    >>> comment_of("gap")
+    "interpolated linearly from the case's own cells"
+    """
+    if name in AVERAGED:
+        return AVERAGE
+    return HOLDING if name in FLAGS else LINEAR
 
 
 def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
@@ -107,6 +124,13 @@ class OntoCommon:
         found[~shared.any(axis=1)] = self.outside
         return np.asarray(found)
 
+    def holding(self, values: FloatArray) -> FloatArray:
+        """Values along the first axis of the own cells that hold the common centres; 0 beyond the own cells."""
+        at = np.clip(np.searchsorted(self.own, _centres(self.common)) - 1, 0, self.own.size - 2)
+        found = values[at]
+        found[self.beyond] = 0.0
+        return np.asarray(found)
+
     def between(self, values: FloatArray) -> FloatArray:
         """Interpolate values along the first axis linearly at the common centres; NaN beyond the own cells."""
         centres, own = _centres(self.common), _centres(self.own)
@@ -136,6 +160,8 @@ def resampled(name: str, values: npt.NDArray[Any], along: Iterable[OntoCommon | 
         if name in AVERAGED:
             flat = way.averages(moved.reshape(moved.shape[0], -1))
             moved = flat.reshape(-1, *moved.shape[1:])
+        elif name in FLAGS:
+            moved = way.holding(moved)
         else:
             moved = way.between(moved)
         result = np.moveaxis(moved, 0, axis)

@@ -13,15 +13,7 @@ import xarray as xr
 
 from contactstudy.arrays.variables import labels
 from contactstudy.checks import FloatArray
-from contactstudy.study.common_cells import (
-    AVERAGE,
-    AVERAGED,
-    LINEAR,
-    OntoCommon,
-    common_columns,
-    common_rows,
-    resampled,
-)
+from contactstudy.study.common_cells import OntoCommon, comment_of, common_columns, common_rows, resampled
 from contactstudy.study.cube import Cube
 from contactstudy.study.store import load_variable
 
@@ -94,7 +86,7 @@ class Fields:
                     files[place] = _Source(str(self._paths[place]), along if any(along) else ())
             array = _lazy(files, name, tuple(sizes[dim] for dim in dims), dtype)
             if any(ways[dim] for dim in dims):
-                attributes = attributes | {"comment": AVERAGE if name in AVERAGED else LINEAR}
+                attributes = attributes | {"comment": comment_of(name)}
             fields[name] = ((*self._cube.dims, *(renamed[dim] for dim in dims)), array, attributes)
         return self._dataset.assign_coords(coordinates).assign(fields)
 

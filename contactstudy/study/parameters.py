@@ -19,8 +19,10 @@ from contactstudy import checks
 from contactstudy.bodies.models import MODELS
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
+from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
 from contactstudy.solution import solve
+from contactstudy.study.motion_kinds import KINDS
 from contactstudy.study.numbers import number, rounded
 from contactstudy.study.profile_kinds import profile_table
 
@@ -196,6 +198,48 @@ _WITH_CASE = (
         note="the roller tilts until it balances",
     ),
     Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
+    Parameter(
+        "motion",
+        one_of(KINDS),
+        "",
+        "how the roller moves against the body",
+        fallback=KINDS[0],
+        note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
+    ),
+    Parameter(
+        "longitudinal_creepage",
+        number,
+        "1",
+        "velocity of the roller's surface against the body along y over the rolling speed",
+        absent="0",
+        note="rolling only; or `force_y`",
+    ),
+    Parameter("lateral_creepage", number, "1", "likewise along x", absent="0", note="rolling only; or `force_x`"),
+    Parameter(
+        "spin",
+        number,
+        "rad/m",
+        "angular velocity about z over the rolling speed",
+        absent="0",
+        note="rolling only; or `moment_z`",
+    ),
+    Parameter("shift_x", number, "m", "rigid shift along x", absent="0", note="shift only; or `force_x`"),
+    Parameter("shift_y", number, "m", "rigid shift along y", absent="0", note="shift only; or `force_y`"),
+    Parameter(
+        "force_x", number, "N", "force on the body along x", absent="follows", note="shift or rolling; less than slides"
+    ),
+    Parameter("force_y", number, "N", "force on the body along y", absent="follows", note="likewise"),
+    Parameter(
+        "moment_z", number, "N m", "moment on the body about the roller's middle", absent="follows", note="rolling only"
+    ),
+    Parameter(
+        "rolling_model",
+        one_of(ROLLING_MODELS),
+        "",
+        "how the tractions of rolling are found",
+        fallback=ROLLING_MODELS[0],
+        note="`exact`; for comparison `fastsim`, strips without an influence of neighbours and free ends",
+    ),
 )
 _WITH_SOLVER = (
     Parameter(

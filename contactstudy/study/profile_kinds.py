@@ -185,6 +185,23 @@ class Terms:
         return self.made(tuple(build_profile(term, around) for term in table["terms"]))
 
 
+class WithoutCorners:
+    """Kind of profile that counts over the effective length."""
+
+    made = profiles.EffectiveLength
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check the profile and the length."""
+        _only(table, ["profile", "effective_length"])
+        _require(table, "profile", "effective_length")
+        length = number("profile.effective_length", table["effective_length"])
+        return {"profile": _nameless(table["profile"], depth + 1), "effective_length": length}
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Make the profile."""
+        return self.made(build_profile(table["profile"], around), table["effective_length"])
+
+
 def _nameless(value: object, depth: int) -> Table:
     """Table of a profile within another one, without its name."""
     return {key: entry for key, entry in profile_table(value, depth).items() if key != "name"}
@@ -204,6 +221,7 @@ PROFILES: dict[str, ProfileKind] = {
     "sphere": Numbers(profiles.Sphere, of_radius={"radius": 1.0}),
     "measured": MeasuredPoints(),
     "halves": TwoHalves(),
+    "effective-length": WithoutCorners(),
     "sum": Terms(),
 }
 """Kinds of profile by their name in a study."""
@@ -277,6 +295,8 @@ def profile_label(table: Mapping[str, Any]) -> str:
         return f"{profile_label(table['left'])} | {profile_label(table['right'])}"
     if kind == "measured":
         return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
+    if kind == "effective-length":
+        return f"{profile_label(table['profile'])} over {table['effective_length']:g} m"
     values = [f"{key}={table[key]:g}" for key in sorted(table) if key != "kind"]
     return " ".join([kind, *values])
 

@@ -17,6 +17,7 @@ from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.solution import check_accuracy, solve
+from contactstudy.study.motion_kinds import motion_of
 from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
 
@@ -124,7 +125,7 @@ class Setup:
         case = self.case
         cells = case.hertz_half_width if self.grid is None else self.grid
         bodies = [body and (type(body).__name__, astuple(body)) for body in (case.body, case.roller.body)]
-        return repr((*bodies, cells, case.coupled))
+        return repr((*bodies, cells, case.coupled, type(case.motion).__name__))
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -252,6 +253,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         ),
         end_distance=sizes.end_distance,
         load_position=middle + values["load_offset"] if "load_offset" in values else None,
+        motion=motion_of(values),
         **taken_by(Case, values),
     )
     tolerance = checks.positive("tolerance", values["tolerance"])

@@ -173,6 +173,7 @@ FINEST = Resolution(
     ray_reach=200.0,
     modes=12,
     lateral_nodes=20,
+    lateral_ratio=2.0,
     lateral_order=32,
     lateral_reach=20.0,
 )
@@ -186,6 +187,7 @@ SETTINGS: dict[str, tuple[Any, ...]] = {
     "ray_reach": (6.25, 12.5, 50.0, 200.0),
     "modes": (2, 4, 8, 16),
     "lateral_nodes": (3, 5, 7, 14),
+    "lateral_ratio": (8.0, 5.0, 3.5, 2.0),
     "lateral_order": (4, 8, 16, 32),
     "lateral_reach": (2.5, 5.0, 10.0, 20.0),
 }

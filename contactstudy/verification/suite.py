@@ -17,9 +17,12 @@ from contactstudy.verification import (
     finite_elements,
     friction,
     half_space,
+    heat,
     limits,
+    passes,
     published,
     quarter_space,
+    wear,
 )
 from contactstudy.verification.check import Check
 from contactstudy.verification.convergence import Table
@@ -34,6 +37,9 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "finite elements": lambda full: finite_elements.checks(full=full),
     "published": lambda full: published.checks(),
     "friction": lambda full: friction.checks(),
+    "heat": lambda full: heat.checks(),
+    "wear": lambda full: wear.checks(),
+    "passes": lambda full: passes.checks(),
     "consistency": lambda full: consistency.checks(),
 }
 """Checks by what they compare with; those of convergence are added at the full level."""

@@ -33,7 +33,7 @@ from contactstudy.study.profile_kinds import PROFILES, MeasuredPoints, Numbers
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
-WHOLE = ("analysis", "export", "fatigue", "plots", "profiles", "report", "study", "verification")
+WHOLE = ("analysis", "export", "fatigue", "passes", "plots", "profiles", "report", "study", "verification", "wear")
 """Packages of which everything in ``__all__`` is shown, also what ``contactstudy`` itself does not hand on."""
 
 FIRST = (
@@ -45,6 +45,9 @@ FIRST = (
     "fields",
     "analysis",
     "fatigue",
+    "heat",
+    "passes",
+    "wear",
     "plots",
     "export",
     "report",

@@ -153,7 +153,10 @@ PAGES = {
     "how-to/settled_number.md": ("settled",),
     "how-to/elastic_roller.md": ("elastic_roller",),
     "how-to/tilt.md": ("tilt",),
+    "how-to/rolling.md": ("rolling",),
     "how-to/fatigue_life.md": ("fatigue",),
+    "how-to/heat_and_wear.md": ("flash_temperature", "wear"),
+    "how-to/passes.md": ("passes",),
 }
 """Figures that pages save, by page."""
 

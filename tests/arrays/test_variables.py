@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import contactstudy as cs
-from contactstudy import analysis, fatigue, study, verification
+from contactstudy import analysis, fatigue, passes, study, verification, wear
 from contactstudy.arrays.variables import (
     COORDINATES,
     RULES,
@@ -35,7 +35,7 @@ KEEPS_WHAT_IT_GETS = {"normalized", "single_case", "measure", "positions", "alon
 
 def functions() -> dict[str, Callable[..., object]]:
     """Public functions that return labelled data, by name."""
-    packages: list[ModuleType] = [cs, analysis, fatigue, study, verification]
+    packages: list[ModuleType] = [cs, analysis, fatigue, passes, study, verification, wear]
     values = {name: getattr(package, name) for package in packages for name in package.__all__}
     for module in (cs.roughness, cs.slices):
         own = vars(module).items()
@@ -69,6 +69,7 @@ def _rubbed(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -
 def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
     """What every public function returns, by its name."""
     steel = cs.Material(210e9, 0.3)
+    metal = cs.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
@@ -105,6 +106,10 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "surface_displacement, all": cs.surface_displacement(body, pressure, components="xyz"),
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
+        "wear_in": wear.wear_in(case, 1e-17, [0.0, 10.0], grid=grid.coarsened()),
+        "flash_temperature": cs.flash_temperature(
+            case, solved, body=metal, roller=metal, body_speed=-1.0, roller_speed=1.0, z=depths
+        ),
         "summarize": cs.summarize(solved),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
@@ -127,6 +132,12 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
+        "residual_stress": passes.residual_stress(
+            body, xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 2)))}, {"x": [1e-4, 2e-4], "z": depths[:2]})
+        ),
+        "rolled_in": cs.passes.rolled_in(strip.isel(x_field=[4]), body, cs.passes.ElasticPlastic(yield_stress=8e8), 2),
+        "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
+        "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
     for name in FUNCTIONS.keys() - values.keys():
         values[name] = FUNCTIONS[name](strip if name == "window_remainder" else solved)  # type: ignore[assignment]
@@ -178,7 +189,8 @@ def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
             if name not in VARIABLES:
                 continue
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
-            further = {*PARAMETERS, "case", "slice", *({"distance"} if function == "along_line" else ())}
+            own = {"distance"} if function in ("along_line", "wear_in") else set()
+            further = {*PARAMETERS, "case", "slice", "pass_number", *own}
             if not dims - further <= {*VARIABLES[str(name)].dims}:
                 unlike.append((function, name, array.dims))
     assert unlike == []

@@ -31,6 +31,7 @@ def problem(
         modes=modes,
         works=modes,
         resultants=np.zeros(0) if forces is None else forces,
+        shares=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
         tolerance=1e-8,
     )
 

@@ -256,14 +256,38 @@ def test_bad_input_is_named() -> None:
         rolled("rolls")  # type: ignore[arg-type]
     with pytest.raises(WindowError, match=r"last two cells along \+y"):
         rolled(Rolling(), gap=ball(26, 1.04))
-    grid = Grid.from_edges(np.append(np.linspace(-1.3, 1.0, 24), 1.3), (-1.3, 1.3), 26)
+
+
+GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+def test_cells_of_different_widths(motion: Rolling | Shift) -> None:
+    """Coulomb's law and the resultants on them, close to those on uniform cells."""
     gap = xr.DataArray(
-        0.05 * (grid.x[:, None] ** 2 + grid.y**2),
-        coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)},
+        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
+        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
         dims=("x", "y"),
     )
-    with pytest.raises(InvalidInputError, match="uniform cells"):
-        rolled(Rolling(), gap=gap)
+    graded, uniform = rolled(motion, gap=gap), rolled(motion)
+    holds(graded)
+    areas = GRADED.widths[:, None] * GRADED.dy
+    for axis in "xy":
+        assert float((graded[f"traction_{axis}"] * areas).sum()) == pytest.approx(float(graded[f"force_{axis}"]))
+    scale = FRICTION * LOAD
+    for name, size in {"force_x": scale, "force_y": scale, "moment_z": scale, "friction_work": 0.02 * scale}.items():
+        assert float(graded[name]) == pytest.approx(float(uniform[name]), abs=0.01 * size)
+
+
+def test_fastsim_on_cells_of_different_widths() -> None:
+    gap = xr.DataArray(
+        0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
+        coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
+        dims=("x", "y"),
+    )
+    motion = Rolling(longitudinal_creepage=0.01, spin=0.01, model="fastsim")
+    graded, uniform = rolled(motion, gap=gap), rolled(motion)
+    assert float(graded.force_y) == pytest.approx(float(uniform.force_y), abs=0.01 * FRICTION * LOAD)
 
 
 def test_what_does_not_converge_says_so(monkeypatch: pytest.MonkeyPatch) -> None:

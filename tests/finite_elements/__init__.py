@@ -3,6 +3,8 @@
 * `harmonics`: the body for one wavenumber along y, with scikit-fem;
 * `superpose`: stresses under a load, the integral over the wavenumber;
 * `contact`: contact of a rigid roller as a complementarity problem;
+* `eigenstrain`: residual stress of eigenstrains, with the same body at wavenumber 0;
+* `shakedown`: Melan's bound as a cone program on equilibrium elements;
 * `stress_file`, `contact_file`, `generate`: the files in `data`, with the estimates of their errors.
 
 The load cases are in `contactstudy.verification.load_cases`, the loading of the files in

@@ -115,13 +115,17 @@ class HarmonicBody:
         for load, (g, direction) in zip(loads, shapes, strict=True):
             along = np.outer(self.x.load(g), self.top)
             load["xyz".index(direction)] = -along if direction == "y" else along
+        return self.displaced(loads, k)
+
+    def displaced(self, loads: Array, k: float = 0.0) -> Array:
+        """Amplitudes `[load, component, x, z]` for generalised forces on all shape functions, of the same shape."""
         constant, linear, square = self._parts
         matrix = (constant + k * linear + k**2 * square).tocsc()
         factor = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-        right = loads.reshape(len(shapes), -1)[:, self._free].T
+        right = loads.reshape(len(loads), -1)[:, self._free].T
         answer = factor.solve(right)
         answer += factor.solve(right - matrix @ answer)
-        amplitudes = np.zeros((len(shapes), loads[0].size))
+        amplitudes = np.zeros((len(loads), loads[0].size))
         amplitudes[:, self._free] = answer.T
         return amplitudes.reshape(loads.shape)
 

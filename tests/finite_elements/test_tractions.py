@@ -10,7 +10,7 @@ from contactstudy.bodies.models import FreedEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import axial_modes
-from contactstudy.overlapping.end_kernel import EndRequest, sampled_kernel
+from contactstudy.overlapping.end_kernel import EndRequest, Waves, sampled_kernel
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 from contactstudy.verification.load_cases import Bump
 from tests.finite_elements.harmonics import HarmonicBody, Line
@@ -57,7 +57,8 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
     spectrum = weight * (wave(response.load, nodes) @ forces)
     total = wave(response.displacement, AT).T @ (mirrored_half_space(lateral, response) * spectrum)
     for modes in axial_modes(LENGTH, lateral, FINEST, resolution):
-        kernel = sampled_kernel(modes, lateral, np.concatenate([nodes, AT]), request, 0.5 * FINEST)[0]
+        waves = Waves.of(modes, np.concatenate([nodes, AT]), (response,))
+        kernel = sampled_kernel(waves, lateral, request, 0.5 * FINEST)[0]
         total += 2 * kernel[nodes.size :, : nodes.size] @ forces
     return np.asarray(total)
 

@@ -34,6 +34,7 @@ EXAMPLES = {
     "sphere": profiles.Sphere(BASE["radius"]),
     "measured": profiles.Measured([0.0, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4], [1e-6, 5e-7, 0.0, 0.0, 5e-7, 1e-6], 1e-6),
     "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
+    "effective-length": profiles.EffectiveLength(profiles.FullCrown(0.5), 4.5e-4),
     "sum": profiles.Tapered(0.05) + profiles.IsoTapered(8e-3),
 }
 

@@ -33,6 +33,8 @@ DEFAULTS = {
     "roller_body": "rigid",
     "tilt": 0.0,
     "coupled": False,
+    "motion": "sliding",
+    "rolling_model": "exact",
     "cells_x": 8.0,
     "cells_y": 16.0,
     "window": 2.0,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,9 +14,13 @@ import xarray as xr
 from contactstudy import cache
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, Part
+from contactstudy.bodies.models import WHOLE_LINE, EndedBody, FiniteLengthSpace, HalfSpace, Part
 from contactstudy.contact import solve as contact
+from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.fields import stress, surface
+from contactstudy.heat import flash
+from contactstudy.heat.moving_source import MovingBody
+from contactstudy.heat.partition import Shared
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
@@ -25,12 +30,15 @@ from contactstudy.verification import (
     finite_elements,
     friction,
     half_space,
+    heat,
     limits,
+    passes,
     published,
     quarter_space,
     suite,
 )
 from contactstudy.verification.check import Check
+from contactstudy.wear.worn_contact import WornContact
 
 MODULES = (half_space, limits, quarter_space, finite_elements, published, consistency, convergence)
 Patch = pytest.MonkeyPatch
@@ -140,6 +148,54 @@ def twice_the_friction(patch: Patch) -> None:
     patch.setattr(friction, "solve_contact", wrong)
 
 
+def conducting_ends(patch: Patch) -> None:
+    real = heat.MovingBody
+    patch.setattr(heat, "MovingBody", lambda properties, speed, ends: real(properties, speed, heat.EVERYWHERE))
+
+
+def slower_surfaces(patch: Patch) -> None:
+    """Heat stays behind a surface that moves away."""
+    patch.setattr(MovingBody, "drift", property(lambda body: 1e-3 * body.speed / (2 * body.properties.diffusivity)))
+
+
+def better_conductors(patch: Patch) -> None:
+    patch.setattr(heat, "UNIT", replace(heat.UNIT, conductivity=1.1, density=1.1))
+
+
+def heat_in_halves(patch: Patch) -> None:
+    """The heat is shared whatever temperatures come of it, and not quite in halves."""
+    patch.setattr(flash, "shared_heat", lambda first, second, density, touching: Shared(0.49 * density, 0.0))
+
+
+def wear_that_changes_nothing(patch: Patch) -> None:
+    real = WornContact.pressed
+    patch.setattr(WornContact, "pressed", lambda contact, depth, *further: real(contact, 0 * depth, *further))
+
+
+def milder_wear(patch: Patch) -> None:
+    real = WornContact.slip
+    patch.setattr(WornContact, "slip", lambda contact, depth, law: 0.9 * real(contact, depth, law))
+
+
+def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
+    """Line contacts that pass with another pressure than the checks believe."""
+
+    def patched(patch: Patch) -> None:
+        real = passes.line_contact
+        patch.setattr(passes, "line_contact", lambda friction: (factor * real(friction)).assign(hertz_max_pressure=1.0))
+
+    return patched
+
+
+def passed_over_a_body_without_ends(patch: Patch) -> None:
+    patch.setattr(passes, "FiniteLengthSpace", lambda length, material: HalfSpace(material=material))
+
+
+def strained_more(patch: Patch) -> None:
+    real = EigenstrainBody.solve
+    patch.setattr(EigenstrainBody, "solve", lambda body, strain: real(body, 1.01 * strain))
+
+
 def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
     """Whether each check failed."""
     with warnings.catch_warnings():
@@ -148,7 +204,9 @@ def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
 
 
 def coarse_quadratures(patch: Patch) -> None:
-    coarse = Resolution(order=3, ratio=6.0, reach=12.5, lateral_nodes=4, lateral_order=4, lateral_reach=2.5)
+    coarse = Resolution(
+        order=3, ratio=6.0, reach=12.5, lateral_nodes=4, lateral_ratio=6.0, lateral_order=4, lateral_reach=2.5
+    )
     patch.setattr(convergence, "Resolution", lambda: coarse)
 
 
@@ -175,6 +233,14 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "finite elements": (ends_only_mirrored, no_ends),
     "published": (ends_only_mirrored, wrong_poisson, distorted),
     "friction": (softer_bodies, twice_the_friction),
+    "heat": (conducting_ends, slower_surfaces, better_conductors, heat_in_halves),
+    "wear": (wear_that_changes_nothing, milder_wear),
+    "passes": (
+        pressed_harder_by(1.05),
+        pressed_harder_by(0.9),
+        passed_over_a_body_without_ends,
+        strained_more,
+    ),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 

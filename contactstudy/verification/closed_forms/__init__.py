@@ -10,6 +10,10 @@ Sources, by the names used in the docstrings:
 * McEwen, *Phil. Mag.* 40 (1949) 454 and Smith and Liu, *J. Appl. Mech.* 20 (1953) 157: sliding line contact;
 * Carter, *Proc. R. Soc. Lond.* A 112 (1926) 151 and Mindlin, *J. Appl. Mech.* 16 (1949) 259: stick and slip in rolling
   and shifting contact, by Johnson, sections 7.2 and 8.3;
+* Blok, *Proc. IMechE General Discussion on Lubrication* 2 (1937) 222, Jaeger, *Proc. R. Soc. N.S.W.* 76 (1942) 203, and
+  Carslaw and Jaeger, *Conduction of Heat in Solids* (1959): moving and resting sources of heat;
+* Eshelby, *Proc. R. Soc.* A 241 (1957) 376 and Muskhelishvili, *Some Basic Problems of the Mathematical Theory of
+  Elasticity*, chapter 19: eigenstrain in a half-plane;
 * Bufler, *Ing.-Arch.* 27 (1959) 137 and Johnson, section 7.2: sliding line contact of unlike materials.
 
 Axes and signs are the package's: `z` into the body, stress positive in tension, pressure positive in compression,
@@ -24,12 +28,19 @@ from contactstudy.verification.closed_forms.circle import (
     sliding_circle_surface,
 )
 from contactstudy.verification.closed_forms.components import COMPONENTS, Stress, von_mises
+from contactstudy.verification.closed_forms.eigenstrain import rectangle_in_half_plane
 from contactstudy.verification.closed_forms.friction import (
     carter_creepage,
     carter_force,
     carter_traction,
     mindlin_shift,
     mindlin_stick,
+)
+from contactstudy.verification.closed_forms.heat import (
+    fast_line,
+    moving_band,
+    resting_hertz_circle,
+    resting_square,
 )
 from contactstudy.verification.closed_forms.hertz import (
     EllipticContact,
@@ -58,6 +69,7 @@ __all__ = [
     "carter_force",
     "carter_traction",
     "composite_modulus",
+    "fast_line",
     "hertz_circle",
     "hertz_circle_axis",
     "hertz_circle_surface",
@@ -68,9 +80,13 @@ __all__ = [
     "hertz_strip",
     "mindlin_shift",
     "mindlin_stick",
+    "moving_band",
     "point_load",
     "rectangle",
     "rectangle_displacement",
+    "rectangle_in_half_plane",
+    "resting_hertz_circle",
+    "resting_square",
     "sliding_circle_surface",
     "sliding_line",
     "von_mises",

@@ -1,0 +1,266 @@
+"""Residual stress of eigenstrains on cells, in a body with two free ends, one or none.
+
+Elements are the cells, split where asked for, and beyond them elements that grow away from the cells: to the
+ends, to a depth where nothing is left, and where there is no end to a distance where little is left.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.bodies.material import Material
+from contactstudy.checks import FloatArray
+from contactstudy.eigenstrain.splines import Splines
+from contactstudy.eigenstrain.stress_function import StressFunction
+
+DEGREE = 4
+"""Of the polynomials of Airy's function. Accuracy."""
+
+WIDEST = 0.2
+"""Largest element near the cells, over the distance of two ends. Accuracy."""
+
+GROWTH = 1.5
+"""Ratio of neighbouring elements beyond the cells. Accuracy."""
+
+FAR = 1000.0
+"""Where there is no end: distance, over the extent of the cells, at which the elements end. Accuracy: what the free
+face there adds to the stress falls with its square, to the displacement of the top with itself."""
+
+DEEP_LENGTHS = 8.0
+"""Between two ends: depth below the cells at which the elements end, over the length. Accuracy: stress without
+resultant decays like exp(-4.2 z / L) there."""
+
+XX, YY, ZZ, XY, XZ, YZ = range(6)
+"""Components in the order of every array of stresses."""
+
+
+class CellAverages(NamedTuple):
+    """Integrals over the cells of the functions' second (or first) derivatives, along x and along z."""
+
+    x: list[FloatArray]
+    z: list[FloatArray]
+
+
+def grown(start: float, stop: float, first: float) -> FloatArray:
+    """Edges from `start` (left out) to `stop`, the first element of about width `first` and growing.
+
+    Examples
+    --------
+    >>> grown(0.0, 10.0, 1.0).round(2).tolist()
+    [0.76, 1.9, 3.6, 6.16, 10.0]
+    """
+    distance = abs(stop - start)
+    if distance <= 0:
+        return np.zeros(0)
+    count = max(1, int(np.ceil(np.log1p(distance * (GROWTH - 1) / first) / np.log(GROWTH))))
+    # Widths are shrunk a little, such that the last one ends on the end.
+    edges = start + (stop - start) * np.cumsum(GROWTH ** np.arange(count)) / (GROWTH ** np.arange(count)).sum()
+    edges[-1] = stop
+    return np.asarray(edges)
+
+
+def towards_face(start: float, face: float, first: float) -> FloatArray:
+    """Edges from `start` (left out) to a free face, fine at both.
+
+    Examples
+    --------
+    >>> towards_face(0.0, 2.0, 0.3).round(2).tolist()
+    [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]
+    """
+    middle = 0.5 * (start + face)
+    if start == face:
+        return np.zeros(0)
+    near = grown(start, middle, first)
+    return np.concatenate([near, start + face - np.append(start, near[:-1])[::-1]])
+
+
+@dataclass(frozen=True, eq=False)
+class EigenstrainBody:
+    """A body, and cells of (x, z) in which eigenstrains are uniform.
+
+    Attributes
+    ----------
+    material : Material
+        Elastic constants.
+    extent : tuple of float
+        Ends of the body along x, metres; infinite for none.
+    x_edges, z_edges : array
+        Edges of the cells, metres.
+    splits : int
+        Elements per cell along either axis.
+    degree : int
+        Of the polynomials of Airy's function.
+    """
+
+    material: Material
+    extent: tuple[float, float]
+    x_edges: FloatArray
+    z_edges: FloatArray
+    splits: int = 1
+    degree: int = DEGREE
+
+    @cached_property
+    def elements(self) -> tuple[FloatArray, FloatArray]:
+        """Edges of the elements along x and z, metres."""
+        length = self.extent[1] - self.extent[0]
+        x, z = (_split(edges, self.splits, WIDEST * length) for edges in (self.x_edges, self.z_edges))
+        far = FAR * max(np.ptp(x), z[-1])
+        sides = []
+        for end, own, width, sign in zip(self.extent, x[[0, -1]], np.diff(x)[[0, -1]], (-1, 1), strict=True):
+            free = np.isfinite(end)
+            sides.append(towards_face(own, end, width) if free else grown(own, own + sign * far, width))
+        above = towards_face(z[0], 0.0, z[1] - z[0])[::-1]
+        deep = z[-1] + (min(DEEP_LENGTHS * length, far) if np.isfinite(length) else far)
+        below = grown(z[-1], deep, z[-1] - z[-2])
+        return np.concatenate([sides[0][::-1], x, sides[1]]), np.concatenate([above, z, below])
+
+    @cached_property
+    def in_plane(self) -> StressFunction:
+        """Airy's function."""
+        x, z = (Splines(edges, self.degree, continuity=1, vanishing=2) for edges in self.elements)
+        return StressFunction(x, z)
+
+    @cached_property
+    def across(self) -> StressFunction:
+        """Function of the stresses xy and yz."""
+        x, z = (Splines(edges, self.degree - 1, continuity=0, vanishing=1) for edges in self.elements)
+        return StressFunction(x, z)
+
+    @cached_property
+    def airy_integrals(self) -> CellAverages:
+        """Integrals of Airy's functions and their derivatives over the cells."""
+        return _integrals(self.in_plane, self.x_edges, self.z_edges, 2)
+
+    @cached_property
+    def across_integrals(self) -> CellAverages:
+        """Integrals of the functions across the plane and their slopes over the cells."""
+        return _integrals(self.across, self.x_edges, self.z_edges, 1)
+
+    def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
+        """Solve for the stress functions of eigenstrains (6, cell x, cell z): xx, yy, zz, xy, xz, yz (tensor's)."""
+        nu, young = self.material.poisson, self.material.young
+        e = eigenstrain
+        x, z = self.airy_integrals
+        right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T
+        right -= 2 * x[1] @ e[XZ] @ z[1].T
+        airy = self.in_plane.solve(-young / (1 - nu**2) * right)
+        shear: FloatArray = np.zeros((self.across.x.count, self.across.z.count))
+        if e[[XY, YZ]].any():
+            x, z = self.across_integrals
+            right = 2 * (x[0] @ e[XY] @ z[1].T - x[1] @ e[YZ] @ z[0].T)
+            shear = self.across.solve(-self.material.shear_modulus * right)
+        return EigenstrainSolution(self, e, airy, shear)
+
+
+@dataclass(frozen=True, eq=False)
+class EigenstrainSolution:
+    """Stress functions of some eigenstrains.
+
+    Attributes
+    ----------
+    body : EigenstrainBody
+        Body and cells.
+    eigenstrain : array (6, cell x, cell z)
+        The eigenstrains.
+    airy, shear : array (function x, function z)
+        Coefficients of the stress functions.
+    """
+
+    body: EigenstrainBody
+    eigenstrain: FloatArray
+    airy: FloatArray
+    shear: FloatArray
+
+    def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
+        """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
+        along_x, along_z = (
+            [splines.values(points, derivative) for derivative in range(3)]
+            for splines, points in ((self.body.in_plane.x, x), (self.body.in_plane.z, z))
+        )
+        across_x, across_z = (
+            [splines.values(points, derivative) for derivative in range(2)]
+            for splines, points in ((self.body.across.x, x), (self.body.across.z, z))
+        )
+        return self._assembled((along_x, along_z), (across_x, across_z), self.at(x, z))
+
+    def cell_averages(self) -> FloatArray:
+        """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
+        body = self.body
+        widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
+        airy, across = (
+            ([matrix.T / widths for matrix in own.x], [matrix.T / heights for matrix in own.z])
+            for own in (body.airy_integrals, body.across_integrals)
+        )
+        return self._assembled(airy, across, self.eigenstrain)
+
+    def _assembled(
+        self,
+        airy: tuple[list[FloatArray], list[FloatArray]],
+        across: tuple[list[FloatArray], list[FloatArray]],
+        eigenstrain: FloatArray,
+    ) -> FloatArray:
+        """Stresses from the functions' derivatives along x and z."""
+        (x, z), material = airy, self.body.material
+        stress = np.zeros((6, x[0].shape[0], z[0].shape[0]))
+        stress[XX] = x[0] @ self.airy @ z[2].T
+        stress[ZZ] = x[2] @ self.airy @ z[0].T
+        stress[XZ] = -x[1] @ self.airy @ z[1].T
+        # No strain along y: s_yy = nu (s_xx + s_zz) - E e_yy.
+        stress[YY] = material.poisson * (stress[XX] + stress[ZZ]) - material.young * eigenstrain[YY]
+        x, z = across
+        stress[XY] = x[0] @ self.shear @ z[1].T
+        stress[YZ] = -x[1] @ self.shear @ z[0].T
+        return stress
+
+    def at(self, x: FloatArray, z: FloatArray) -> FloatArray:
+        """Eigenstrains at the tensor product of positions: array (6, x, z); zero beyond the cells."""
+        body = self.body
+        numbers, inside = [], []
+        for points, edges in ((x, body.x_edges), (z, body.z_edges)):
+            number = np.searchsorted(edges, points, side="right") - 1
+            number[points == edges[-1]] = edges.size - 2
+            inside.append((number >= 0) & (number < edges.size - 1))
+            numbers.append(np.clip(number, 0, edges.size - 2))
+        found = self.eigenstrain[:, numbers[0][:, None], numbers[1]]
+        return np.where(inside[0][:, None] & inside[1], found, 0.0)
+
+    def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth.
+
+        They are the integrals of the strains zz and yz, eigenstrains included, over the depth.
+        """
+        body, material = self.body, self.body.material
+        nu, young = material.poisson, material.young
+        z_elements = body.elements[1]
+        whole = z_elements[[0, -1]]
+        airy_z = [body.in_plane.z.integrals(whole, d)[:, 0] for d in range(3)]
+        airy_x = [body.in_plane.x.values(x, d) for d in range(3)]
+        s_xx, s_zz = airy_x[0] @ self.airy @ airy_z[2], airy_x[2] @ self.airy @ airy_z[0]
+        heights = np.diff(body.z_edges)
+        centres = 0.5 * (body.z_edges[1:] + body.z_edges[:-1])
+        e = self.at(x, centres) @ heights
+        # e_zz = (1 + nu) / E ((1 - nu) s_zz - nu s_xx) + eigenstrain zz + nu eigenstrain yy
+        strain_zz = (1 + nu) / young * ((1 - nu) * s_zz - nu * s_xx) + e[ZZ] + nu * e[YY]
+        across_z = body.across.z.integrals(whole, 0)[:, 0]
+        s_yz = -body.across.x.values(x, 1) @ self.shear @ across_z
+        return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
+
+
+def _split(edges: FloatArray, splits: int, widest: float) -> FloatArray:
+    """Edges of cells and of equal parts of them, none wider than `widest`."""
+    widths = np.diff(edges)
+    parts = np.maximum(splits, np.ceil(widths / widest - 1e-9)).astype(int)
+    inner = [edge + width * np.arange(count) / count for edge, width, count in zip(edges, widths, parts, strict=False)]
+    return np.append(np.concatenate(inner), edges[-1])
+
+
+def _integrals(function: StressFunction, x_edges: FloatArray, z_edges: FloatArray, last: int) -> CellAverages:
+    """Integrals of a stress function's derivatives up to the `last` over the cells."""
+    return CellAverages(
+        [function.x.integrals(x_edges, derivative) for derivative in range(last + 1)],
+        [function.z.integrals(z_edges, derivative) for derivative in range(last + 1)],
+    )

@@ -1,0 +1,297 @@
+"""Flash temperature of a solved contact: heat from friction, its sharing, and the temperature of both surfaces."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis.axes import single_case
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import describe
+from contactstudy.case.case import Case
+from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.checks import FloatArray
+from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
+from contactstudy.heat.moving_source import MovingBody, SourceOperator
+from contactstudy.heat.partition import shared_heat
+from contactstudy.heat.properties import ThermalProperties
+from contactstudy.heat.spreading import Ends
+
+LARGEST_MISMATCH = 1e-6
+"""Difference of the surfaces' temperatures, over the largest, that counts as equal. Accuracy."""
+
+
+class _Heat(NamedTuple):
+    """Frictional heat on the cells, and how the surfaces move against the contact."""
+
+    density: FloatArray
+    power: float
+    body_speed: float
+    roller_speed: float
+
+
+def flash_temperature(
+    case: Case,
+    result: xr.Dataset,
+    *,
+    body: ThermalProperties,
+    roller: ThermalProperties | None = None,
+    body_speed: float | None = None,
+    roller_speed: float | None = None,
+    rolling_speed: float | None = None,
+    partition: float | None = None,
+    z: Sequence[float] | FloatArray | None = None,
+    limit: float | None = None,
+) -> xr.Dataset:
+    """Steady temperature that friction raises on both surfaces of a contact, above that of the bodies far away.
+
+    Parameters
+    ----------
+    case : Case
+        The case that was solved: it says where both bodies end. A roller with ``ends="none"`` conducts heat like a
+        half-space. Ends, and the top beside the contact, are insulated.
+    result : Dataset
+        What `solve` returned for it.
+    body, roller : ThermalProperties
+        What body and roller are made of; a roller that takes a stated part of the heat only needs none.
+    body_speed, roller_speed : float, optional
+        In full sliding: velocities of the surfaces along +y relative to the contact, m/s. A roller that slides over a
+        body which rolls past at V has ``body_speed = -V``.
+    rolling_speed : float, optional
+        In rolling, instead: speed with which the contact moves over both surfaces, m/s.
+    partition : float, optional
+        Part of the heat that goes into the body, everywhere the same, from 0 to 1. Default: as much at each point as
+        makes both surfaces equally hot where they touch.
+    z : sequence of float, optional
+        Depths below the body's surface at which its temperature is wanted as well, metres.
+    limit : float, optional
+        Temperature rise, K, above which a warning is given.
+
+    Returns
+    -------
+    Dataset
+        `temperature_rise` of the body's surface and `roller_temperature_rise` (x, y), K; `frictional_heat` and
+        `heat_into_body` (x, y), W/m2; `heat_partition` (x, y), the part of the heat that goes into the body, NaN
+        where there is none; `body_heat_share` of the whole; `max_temperature_rise` of both surfaces, between the
+        cells along y, with `max_temperature_rise_x` and ``_y``; `friction_power`, W; `heat_error`, heat into both
+        bodies minus that power, over it; `temperature_mismatch` of the surfaces over the largest rise. With `z` also
+        `body_temperature_rise` (x, y, z).
+
+    Raises
+    ------
+    InvalidInputError
+        If thermal properties or speeds are missing, the speeds contradict the friction, the result is not of the
+        case's motion, or a finite body's surface rests under the contact: its temperature would rise without limit.
+
+    Warns
+    -----
+    TemperatureWarning
+        If `limit` is passed.
+    ConvergenceWarning
+        If the temperatures of the surfaces could not be made equal.
+
+    Notes
+    -----
+    Properties do not depend on temperature, and the contact does not deform by heat. At a singular end the heat is
+    infinite as the pressure is, and so is the temperature of a fast surface there: the maximum is then that of the
+    last cell.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, ThermalProperties, choose_grid, solve
+    >>> space = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=0.5e-3)
+    >>> case = Case(body=space, roller=roller, max_pressure=1.5e9, friction=0.05)
+    >>> result = solve(case, choose_grid(case), stresses=False)
+    >>> steel = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+    >>> hot = flash_temperature(case, result, body=steel, roller=steel, body_speed=-10.0, roller_speed=-9.0)
+    >>> round(float(hot.max_temperature_rise)), round(float(hot.body_heat_share), 2)
+    (10, 0.51)
+    """
+    checks.instance("case", case, Case, "a Case")
+    require(result, "pressure", argument="result")
+    one = single_case(result)
+    pressure, grid = labelled_cells("result.pressure", one["pressure"], extent=case.body.extent)
+    checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")
+    if partition is None and roller is None:
+        raise InvalidInputError(
+            "roller", None, "a ThermalProperties(...)", "or give partition, the part of the heat that the body takes"
+        )
+    if roller is not None:
+        checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
+    share = None if partition is None else _share(partition)
+    if limit is not None:
+        limit = checks.positive("limit", limit, "K")
+    depths = None if z is None else checks.coordinates("z", z)
+    if depths is not None and (depths < 0).any():
+        raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
+    heat = _frictional_heat(case, one, grid, body_speed, roller_speed, rolling_speed)
+
+    moving = MovingBody(body, heat.body_speed, Ends(*case.body.extent))
+    whole = slice(0, grid.cells_x)
+    own = SourceOperator(moving, grid, whole)
+    other = None
+    if roller is not None:
+        columns, ends = _under_roller(case, grid, pressure)
+        other = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
+    mismatch = np.nan
+    if share is None:
+        assert other is not None
+        into_body, mismatch = shared_heat(own, other, heat.density, pressure > 0)
+    else:
+        into_body = share * heat.density
+    area = grid.weights * grid.cell_area
+    rises = {"temperature_rise": own(into_body)}
+    into_roller = heat.density - into_body
+    if other is not None:
+        rises["roller_temperature_rise"] = other(into_roller)
+    made = heat.density != 0
+    fields = rises | {
+        "frictional_heat": heat.density,
+        "heat_into_body": into_body,
+        "heat_partition": np.where(made, into_body / np.where(made, heat.density, 1.0), np.nan),
+    }
+    values = {name: (("x", "y"), each) for name, each in fields.items()}
+    scalars = _largest(grid, rises)
+    scalars["friction_power"] = heat.power
+    scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
+    entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
+    scalars["heat_error"] = float(entered / heat.power - 1) if heat.power else 0.0
+    scalars["temperature_mismatch"] = mismatch
+    kept = {name: one.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in one.coords}
+    hot = xr.Dataset(values | scalars, coords=kept)
+    for name in ("hertz_half_width", "hertz_max_pressure"):
+        if name in one:
+            hot[name] = one[name]
+    if depths is not None:
+        inside = [SourceOperator(moving, grid, whole, float(depth))(into_body) for depth in depths]
+        hot = hot.assign_coords(z=depths)
+        hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
+    if mismatch > LARGEST_MISMATCH:
+        warnings.warn(
+            f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+    _warn_above(hot, limit)
+    return describe(hot, "flash temperature of a contact")
+
+
+def _share(partition: object) -> float:
+    """Return a part between nothing and all, or raise."""
+    share = checks.not_negative("partition", partition)
+    if share > 1:
+        raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
+    return share
+
+
+def _frictional_heat(
+    case: Case,
+    one: xr.Dataset,
+    grid: Grid,
+    body_speed: object,
+    roller_speed: object,
+    rolling_speed: object,
+) -> _Heat:
+    """Heat per area and speeds of a solved case."""
+    motion = case.motion
+    if isinstance(motion, Shift):
+        raise InvalidInputError("case.motion", motion, "Sliding() or Rolling(...): a shift makes no steady heat")
+    area = grid.weights * grid.cell_area
+    if isinstance(motion, Sliding):
+        require(one, "traction_y", argument="result")
+        if rolling_speed is not None:
+            raise InvalidInputError(
+                "rolling_speed", rolling_speed, "None in full sliding", "give both surfaces' speeds"
+            )
+        own, others = (
+            checks.finite(name, value, "m/s, of full sliding")
+            for name, value in (("body_speed", body_speed), ("roller_speed", roller_speed))
+        )
+        traction = labelled_cells("result.traction_y", one["traction_y"], extent=case.body.extent)[0]
+        density = traction * (others - own)
+        if (density < 0).any():
+            raise InvalidInputError(
+                "roller_speed",
+                others,
+                f"{_side(traction)} body_speed, {own:g}, for the friction to drag the body the way the roller slides",
+                "speeds are along +y",
+            )
+        return _Heat(density, float((area * traction).sum() * (others - own)), own, others)
+    for name, value in (("body_speed", body_speed), ("roller_speed", roller_speed)):
+        if value is not None:
+            raise InvalidInputError(name, value, "None in rolling", "give rolling_speed: the creepage says the rest")
+    speed = checks.positive("rolling_speed", rolling_speed, "m/s, of rolling")
+    return _rolling_heat(case, motion, one, speed)
+
+
+def _side(traction: FloatArray) -> str:
+    """Say on which side of the body's speed the roller's lies."""
+    if (traction < 0).any() and (traction > 0).any():
+        return "equal to, as the friction changes its sign along the axis,"
+    return "not below" if traction.max() > 0 else "not above"
+
+
+def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float) -> _Heat:
+    """Heat of a rolling contact: traction times slip per distance, times distance per time."""
+    names = ("traction_x", "slip_x", "traction_y", "slip_y")
+    require(one, *names, "friction_work", argument="result")
+    q_x, s_x, q_y, s_y = (labelled_cells(f"result.{name}", one[name], extent=case.body.extent)[0] for name in names)
+    # The contact moves along +y over both surfaces, so these move backwards below it.
+    creepage = float(one["longitudinal_creepage"]) if "longitudinal_creepage" in one else motion.longitudinal_creepage
+    half = 0.5 * float(creepage or 0.0)
+    return _Heat(
+        speed * (q_x * s_x + q_y * s_y),
+        speed * float(one["friction_work"]),
+        -speed * (1 + half),
+        -speed * (1 - half),
+    )
+
+
+def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
+    """Columns of the roller, all that it presses among them, and its insulated ends, moved to borders of cells."""
+    if case.roller.ends == "none":
+        return slice(0, grid.cells_x), Ends(-np.inf, np.inf)
+    low, high = case.roller_start, case.roller_start + case.roller.length
+    edges = grid.x_edges
+    # A centre right under the end may count as under the roller or not, by rounding.
+    under = np.flatnonzero(((grid.x > low) & (grid.x < high)) | (pressure > 0).any(axis=1))
+    first, stop = int(under[0]), int(under[-1]) + 1
+    start = edges[first] if first > 0 else min(low, edges[0])
+    end = edges[stop] if stop < grid.cells_x else max(high, edges[-1])
+    return slice(first, stop), Ends(float(start), float(end))
+
+
+def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
+    """Largest rise of the surfaces and where it is, between the cells along y by a parabola."""
+    hottest = max(rises.values(), key=lambda rise: float(rise.max()))
+    i, j = np.unravel_index(int(hottest.argmax()), hottest.shape)
+    largest, y = float(hottest[i, j]), float(grid.y[j])
+    if 0 < j < grid.cells_y - 1:
+        before, after = hottest[i, j - 1], hottest[i, j + 1]
+        bend = before - 2 * largest + after
+        if bend < 0:
+            offset = 0.5 * (before - after) / bend
+            largest, y = float(largest - 0.25 * (before - after) * offset), float(y + offset * grid.dy)
+    return {"max_temperature_rise": largest, "max_temperature_rise_x": float(grid.x[i]), "max_temperature_rise_y": y}
+
+
+def _warn_above(hot: xr.Dataset, limit: float | None) -> None:
+    """Warn where the limit is passed."""
+    largest = float(hot["max_temperature_rise"])
+    if limit is None or largest <= limit:
+        return
+    x, y = (1e3 * float(hot[f"max_temperature_rise_{axis}"]) for axis in "xy")
+    warnings.warn(
+        f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
+        f"limit = {limit:g} K",
+        TemperatureWarning,
+        stacklevel=3,
+    )

@@ -1,0 +1,270 @@
+"""Passes of a contact over an elastic-plastic body, until what they leave does not change any more.
+
+All points of one (x, z) have the same history, the stress field along y from the leading edge to the trailing one. The
+plastic strain of an instant is taken as if it were uniform along y, so its residual stress is that of the
+cross-section (eigenstrain/): no strain along y, in the plane what the free ends allow. After many passes the plastic
+strain is uniform along y indeed, so whether flow stops is told exactly (Melan). During a pass that flows, material
+ahead and behind would hold the flow a little more. J. E. Merwin and K. L. Johnson, An analysis of plastic deformation
+in rolling contact, Proc. IMechE 177 (1963) 676, take all strains from the elastic contact instead.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import dimension_along, positions, single_case
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES, describe
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.eigenstrain.body import EigenstrainBody
+from contactstudy.eigenstrain.influence import Influence, LayerInfluence
+from contactstudy.errors import InvalidInputError
+from contactstudy.passes.cells import cross_section
+from contactstudy.passes.flow import DOUBLED, Flow, Residual, State, deviator, length
+from contactstudy.passes.plastic import ElasticPlastic
+
+STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
+"""Plastic strains, components of the tensor."""
+
+NEAR_YIELD = 0.9
+"""Von Mises stress over the yield stress from which a cell is counted among those that may flow. Speed."""
+
+SMALL_STRAIN = 0.05
+"""Plastic strain beyond which strains are not small and the stresses of the contact are not those of a flat body."""
+
+STEADY = 2.0
+"""Stress of a pass' flow, over what the tolerance leaves at an instant, below which nothing flows any more."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Section:
+    """The cross-section: elastic stresses (instant, 6, cell) and all that holds its plastic strain."""
+
+    body: Body
+    material: ElasticPlastic
+    x: FloatArray
+    z: FloatArray
+    elastic: FloatArray
+
+    @property
+    def layered(self) -> bool:
+        """Whether one position along x stands for all."""
+        return self.x.size == 1
+
+    @cached_property
+    def cells(self) -> EigenstrainBody:
+        """Cells around the positions."""
+        return cross_section(self.body, self.x, self.z)
+
+    @cached_property
+    def yield_stress(self) -> FloatArray:
+        """Yield stress in every cell, Pa."""
+        return np.tile(self.material.yield_at(self.z), self.x.size)
+
+    def residual(self, cells: IntArray) -> Residual:
+        """Residual stress of plastic strain in some of the cells, in the same ones."""
+        constants = self.body.material
+        if self.layered:
+            return LayerInfluence(constants.poisson, constants.young)
+        return Influence.of(self.cells, *np.unravel_index(cells, (self.x.size, self.z.size)))
+
+    def left(self, strain: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Residual stresses (6, x, z) everywhere, and displacements z and y of the top."""
+        shaped = strain.reshape(6, self.x.size, self.z.size)
+        if not self.layered:
+            solution = self.cells.solve(shaped)
+            return solution.cell_averages(), *solution.top_displacement(self.x)
+        stress = self.residual(np.zeros(0, np.int64)).stresses(strain).reshape(shaped.shape)
+        heights = np.diff(np.concatenate([[0.0], 0.5 * (self.z[1:] + self.z[:-1]), self.z[-1:]]))
+        constants = self.body.material
+        strain_zz = -constants.poisson / constants.young * (stress[0] + stress[1]) + shaped[2]
+        return stress, -strain_zz @ heights, -2 * shaped[5] @ heights
+
+    def may_flow(self, residual: FloatArray, part: float) -> IntArray:
+        """Cells whose von Mises stress passes a part of their yield stress at some instant."""
+        size = np.max([length(deviator(instant + residual)) for instant in self.elastic], axis=0)
+        return np.flatnonzero(size * np.sqrt(1.5) > part * self.yield_stress)
+
+
+@dataclass(frozen=True, eq=False)
+class _Left:
+    """Plastic strains (6, cell), equivalent plastic strain accumulated (cell), and whether flow was contained."""
+
+    strain: FloatArray
+    accumulated: FloatArray
+    contained: bool = True
+
+
+def rolled_in(
+    stress: xr.Dataset,
+    body: Body,
+    material: ElasticPlastic,
+    passes: int = 10,
+    *,
+    substeps: int = 2,
+    tolerance: float = 1e-4,
+) -> xr.Dataset:
+    """Residual stress, plastic strain and profile that passes of a contact roll into a body.
+
+    Parameters
+    ----------
+    stress : Dataset
+        A single case with the six elastic stresses along x, y and z, as for :func:`contactstudy.fatigue.dang_van`: from
+        :func:`contactstudy.solve` or :func:`contactstudy.stress_field`. The positions along x and z are the
+        cells' middles; they should reach beyond what yields. With one position along x the contact is a line contact.
+    body : Body
+        The body, for its elastic constants and free ends.
+    material : ElasticPlastic
+        Yield stress and hardening. Without hardening flow above the shakedown limit has no end.
+    passes : int
+        Number of passes; fewer if one leaves everything as it was.
+    substeps : int
+        Steps from one position along y to the next, between which the elastic stress is linear. The error falls with
+        their number: 1.5 % of the residual stress with 2 and 16 positions per half-width.
+    tolerance : float
+        Accuracy of the stress at each instant, over the yield stress.
+
+    Returns
+    -------
+    Dataset
+        Along `pass_number` (from 1): the six residual stresses ``sigma_xx`` ... ``tau_yz`` (Pa), which may be
+        added to those of the contact; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
+        `equivalent_plastic_strain`, accumulated; `plastic_flow`, the largest equivalent plastic strain of the pass;
+        `residual_displacement_z` and `residual_displacement_y` of the top (m, relative to the depth; of a line contact
+        relative to the last depth); `flow_contained`, whether the elastic body contains the flow of every instant. The
+        contact itself is that of the elastic body.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind, there is more than one case, or strains are not small any more.
+
+    Examples
+    --------
+    >>> from contactstudy import HalfSpace, Material
+    >>> y, z = np.linspace(-3, 3, 61), np.linspace(0.05, 1.0, 11)
+    >>> push = -2.0 * np.exp(-(y[:, None] ** 2)) * np.exp(-z) * np.ones((1, 1, 1))
+    >>> contact = xr.Dataset({name: (("x", "y", "z"), push * (name == "sigma_zz")) for name in STRESSES},
+    ...                      {"x": [0.0], "y": y, "z": z})
+    >>> body, plastic = HalfSpace(material=Material(1000.0, 0.3)), ElasticPlastic(yield_stress=1.0)
+    >>> found = rolled_in(contact, body, plastic, passes=3)
+    >>> bool(found.plastic_flow[0] > 0), bool(found.plastic_flow[-1] < 1e-3 * found.plastic_flow[0])
+    (True, True)
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    checks.instance("material", material, ElasticPlastic, "a contactstudy.passes.ElasticPlastic")
+    passes = checks.count("passes", passes)
+    substeps = checks.count("substeps", substeps)
+    tolerance = checks.positive("tolerance", tolerance)
+    section, dims = _section(stress, body, material)
+    cells = section.may_flow(np.zeros((6, 1)), NEAR_YIELD)
+    count = section.yield_stress.size
+    state = _Left(np.zeros((6, count)), np.zeros(count))
+    kept: list[xr.Dataset] = []
+    flow = _flow(section, cells, tolerance)
+    for number in range(1, passes + 1):
+        while True:
+            after = _passed(section, flow, cells, state, substeps)
+            residual, *displaced = section.left(after.strain)
+            further = np.setdiff1d(section.may_flow(residual.reshape(6, -1), 1 + tolerance), cells)
+            if not further.size:
+                break
+            # Residual stress makes cells flow that were not counted: once more with them.
+            cells = np.union1d(np.union1d(cells, further), section.may_flow(residual.reshape(6, -1), NEAR_YIELD))
+            flow = _flow(section, cells, tolerance)
+        grown = float((after.accumulated - state.accumulated).max())
+        _check_small(section, after.strain)
+        state = after
+        kept.append(_labelled(section, dims, state, residual, displaced, grown).expand_dims(pass_number=[number]))
+        if 3 * body.material.shear_modulus * grown <= STEADY * tolerance * section.yield_stress.min():
+            break
+    joined = xr.concat(kept, "pass_number")
+    return describe(joined, "what passes of a contact leave")
+
+
+def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_Section, tuple[str, str]]:
+    """Check a case and return its cross-section, and its dimensions along x and z."""
+    require(stress, *STRESSES)
+    one = single_case(stress)
+    first = one[STRESSES[0]]
+    dims = {axis: dimension_along(one["tau_yz"], axis) for axis in ("y", "x", "z")}
+    x, y, z = (np.asarray(positions(first, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))
+    # The contact moves along +y: a point meets its leading edge, at the largest y, first.
+    order = np.argsort(y)[::-1]
+    values = np.stack([one[name].transpose(*dims.values()).values[order] for name in STRESSES], axis=1)
+    if not np.isfinite(values).all():
+        raise InvalidInputError("stress", "values that are not finite", "finite stresses")
+    elastic = np.concatenate([values.reshape(*values.shape[:2], -1), np.zeros((1, 6, x.size * z.size))])
+    section = _Section(body, material, x, z, elastic)
+    if not section.layered:
+        section.cells  # noqa: B018, refuses positions that make no cells
+    return section, (dims["x"], dims["z"])
+
+
+def _flow(section: _Section, cells: IntArray, tolerance: float) -> Flow:
+    """Plastic flow in some of the cells."""
+    material, constants = section.material, section.body.material
+    return Flow(
+        section.residual(cells),
+        section.yield_stress[cells],
+        constants.shear_modulus,
+        material.isotropic_hardening,
+        material.kinematic_hardening,
+        tolerance,
+    )
+
+
+def _passed(section: _Section, flow: Flow, cells: IntArray, state: _Left, substeps: int) -> _Left:
+    """State after one more pass."""
+    total, sums, contained = state.strain.copy(), state.accumulated.copy(), True
+    if cells.size:
+        elastic, strain = section.elastic[:, :, cells], state.strain[:, cells]
+        now = State(strain, state.accumulated[cells], flow.residual.stresses(strain), True)
+        for before, there in pairwise(np.concatenate([elastic[-1:], elastic])):
+            for part in np.arange(1, substeps + 1) / substeps:
+                now = flow.step(before + part * (there - before), now)
+        total[:, cells], sums[cells], contained = now.strain, now.accumulated, now.contained
+    return _Left(total, sums, contained)
+
+
+def _check_small(section: _Section, strain: FloatArray) -> None:
+    """Raise if plastic strains are not small."""
+    size = np.sqrt((DOUBLED * strain**2).sum(axis=0))
+    if size.max(initial=0.0) > SMALL_STRAIN:
+        at = np.unravel_index(int(size.argmax()), (section.x.size, section.z.size))
+        place = f"x = {section.x[at[0]]:.4g} m, z = {section.z[at[1]]:.4g} m"
+        raise InvalidInputError(
+            "stress",
+            f"a plastic strain of {size.max():.2g} at {place}",
+            f"such that plastic strains stay below {SMALL_STRAIN:g}",
+            "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
+        )
+
+
+def _labelled(
+    section: _Section,
+    dims: tuple[str, str],
+    state: _Left,
+    residual: FloatArray,
+    displaced: list[FloatArray],
+    grown: float,
+) -> xr.Dataset:
+    """One pass as a Dataset."""
+    shape = (section.x.size, section.z.size)
+    fields = dict(zip(STRESSES, residual, strict=True))
+    fields |= dict(zip(STRAINS, state.strain.reshape(6, *shape), strict=True))
+    fields["equivalent_plastic_strain"] = state.accumulated.reshape(shape)
+    tops = dict(zip(("residual_displacement_z", "residual_displacement_y"), displaced, strict=True))
+    return xr.Dataset(
+        {name: (dims, field) for name, field in fields.items()}
+        | {name: (dims[:1], along) for name, along in tops.items()}
+        | {"plastic_flow": ((), grown), "flow_contained": ((), state.contained)},
+        coords={dims[0]: section.x, dims[1]: section.z},
+    )

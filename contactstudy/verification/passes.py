@@ -1,0 +1,110 @@
+"""Checks of what many passes leave: shakedown limits, eigenstrains, passes on either side of a limit."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+from scipy import optimize
+
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies import FiniteLengthSpace, HalfSpace, Material
+from contactstudy.fatigue import shakedown, shakedown_limit
+from contactstudy.passes import ElasticPlastic, residual_stress, rolled_in
+from contactstudy.verification.check import Check, compare, compare_fields
+from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
+
+STIFF = Material(1000.0, 0.3)
+"""A thousand times as stiff as the peak pressure of the contacts."""
+
+
+def line_contact(friction: float) -> xr.Dataset:
+    """Hertz' line contact of half-width and peak pressure 1 in plane strain, Poisson's ratio 0.3, from the top down."""
+    y, z = np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71)
+    found = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
+    fields = {name: (("x", "y", "z"), values[None]) for name, values in found.items()}
+    return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z}).assign(hertz_max_pressure=1.0)
+
+
+def on_top(friction: float) -> tuple[float, float]:
+    """Least shear yield stress on the top of the line contact for no yield, and for shakedown with rho_yy."""
+    y = np.linspace(-1, 1, 20001)
+    p = np.sqrt(1 - y**2)
+    zz, yy, shear = -p, -p - 2 * friction * y, friction * p
+    xx = 0.3 * (yy + zz)
+    squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * shear**2
+
+    def largest(rho: float) -> float:
+        return float(np.sqrt((squared + 2 * rho * (yy - 0.5 * (xx + zz)) + rho**2).max() / 3))
+
+    return largest(0.0), float(optimize.minimize_scalar(largest, bounds=(-2, 2), options={"xatol": 1e-9}).fun)
+
+
+def shakedown_checks() -> Iterator[Check]:
+    """Limits of line contacts."""
+    case, quantity = "line contact without friction", "p0 / k"
+    found, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
+    first, limit = float(found["first_yield_limit"]), float(axial["shakedown_limit"])
+    on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
+    yield compare(case, f"{quantity} at first yield", "McEwen (1949)", first, 1 / on_axis, 2e-3, relative=True)
+    yield compare(case, f"{quantity} at shakedown", "Johnson (1962)", limit, 4.0, 2e-3, relative=True)
+    for friction in (0.4, 0.6):
+        top = shakedown(line_contact(friction)).isel(x=0, z=0)
+        case = f"top of a line contact, friction {friction:g}"
+        for name, expected in zip(("first_yield_stress", "shakedown_stress"), on_top(friction), strict=True):
+            yield compare(case, f"{name} / p0", "closed form, one-dimensional search", float(top[name]), expected, 1e-3)
+
+
+def residual_checks() -> Iterator[Check]:
+    """Residual stress of given eigenstrains."""
+    body = HalfSpace(material=STIFF)
+    edges = np.linspace(-0.7, 0.7, 15), np.linspace(0.1, 1.5, 15)
+    x, z = (0.5 * (e[1:] + e[:-1]) for e in edges)
+    inside = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
+    own = (1.0, 0.5, -0.3, 0.4)
+    names = [f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xz")]
+    strains = xr.Dataset(
+        {name: (("x", "z"), value * inside) for name, value in zip(names, own, strict=True)}, {"x": x, "z": z}
+    )
+    at_x, at_z = np.array([-0.9, -0.15, 0.05, 0.45]), np.array([0.05, 0.35, 0.75, 0.9, 1.4])
+    found = residual_stress(body, strains, at_x, at_z, x_edges=edges[0], z_edges=edges[1])
+    source = "Muskhelishvili's forces in a half-plane, on the sides of the rectangle"
+    expected = rectangle_in_half_plane(at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), own, STIFF.young, STIFF.poisson)
+    size = np.abs(expected).max()
+    for name, right in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
+        case = "eigenstrain in a rectangle of a half-space"
+        yield compare_fields(case, f"{name} over the largest stress", source, found[name] / size, right / size, 1e-4)
+    between = FiniteLengthSpace(length=1.0, material=STIFF)
+    deep = np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 6.0])
+    x, z = np.array([0.125, 0.375, 0.625, 0.875]), 0.5 * (deep[1:] + deep[:-1])
+    every = (("x", "z"), np.ones((4, 6)))
+    heat = xr.Dataset({"plastic_strain_xx": every, "plastic_strain_zz": every}, {"x": x, "z": z})
+    found = residual_stress(between, heat, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    largest = max(float(abs(found[name]).max()) for name in STRESSES) / STIFF.young
+    case = "eigenstrains xx and zz all over a body between ends"
+    yield compare(case, "largest stress / E", "it fits together", largest, 0.0, 1e-5)
+    stretched = xr.Dataset({"plastic_strain_yy": every}, {"x": x, "z": z})
+    found = residual_stress(between, stretched, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    along = float(found["sigma_yy"].mean()) / STIFF.young
+    yield compare("eigenstrain yy all over it", "sigma_yy / E", "Hooke's law", along, -1.0, 1e-5)
+
+
+def passing_checks() -> Iterator[Check]:
+    """Flow on either side of the shakedown limit."""
+    contact = line_contact(0.0).drop_vars("hertz_max_pressure").isel(z=slice(8, None, 2))
+    body = HalfSpace(material=STIFF)
+    case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
+    below = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
+    flow = rolled_in(contact, body, below, passes=5)["plastic_flow"].values
+    yield compare(case, "flow of the last pass over the first's, 3 % below", source, flow[-1] / flow[0], 0.0, 1e-3)
+    above = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
+    flow = rolled_in(contact, body, above, passes=5)["plastic_flow"].values
+    yield compare(case, "flow of the fifth pass over the fourth's, 3 % above", source, flow[-1] / flow[-2], 1.0, 0.01)
+
+
+def checks() -> Iterator[Check]:
+    """All of them."""
+    yield from shakedown_checks()
+    yield from residual_checks()
+    yield from passing_checks()

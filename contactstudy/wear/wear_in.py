@@ -1,0 +1,271 @@
+"""Wear of a roller's profile over the distance that it slides or rolls."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.cells import cell_coordinates, labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import describe
+from contactstudy.cache import ArrayKey
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import choose_grid
+from contactstudy.case.motion import Shift, Sliding
+from contactstudy.checks import FloatArray
+from contactstudy.contact.contact import Settings, Shape
+from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.settled import settled_contact
+from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.profiles.base import checked_drop
+from contactstudy.wear.steps import State, Stepper
+from contactstudy.wear.worn_contact import WornContact
+
+LAWS = ("slip", "work")
+"""What wear is proportional to: pressure times slip, or frictional work."""
+
+DEEPEST = 0.01
+"""Mean worn depth over the roller's radius up to which the radius counts as unchanged. Accuracy."""
+
+TOLERANCES = (1e-5, 0.1)
+"""Tolerances that the contact is solved well enough for, and that mean something."""
+
+ROOM = 1.4
+"""Width of the window over that which the unworn contact needs: load moves along the axis as the ends wear."""
+
+MOST_ITERATIONS = 2000
+"""Bound on the iterations of one contact: those of large steps change their contact often. Speed."""
+
+
+def wear_in(
+    case: Case,
+    coefficient: float,
+    distance: float | Sequence[float] | FloatArray,
+    *,
+    law: str = "slip",
+    circumference: float | None = None,
+    grid: Grid | None = None,
+    after: xr.Dataset | None = None,
+    tolerance: float = 0.01,
+    max_steps: int = 200,
+) -> xr.Dataset:
+    """Wear the profile of a roller by Archard's law, in steps that its own estimate of the error allows.
+
+    Parameters
+    ----------
+    case : Case
+        The case, with its unworn profile; in full sliding or in rolling.
+    coefficient : float
+        Worn volume k per load and distance slid (``law="slip"``), or per frictional work (``law="work"``), 1/Pa.
+    distance : float or sequence of float
+        How far the contact slides, or in rolling rolls, metres; the states after every step are returned, or those at
+        the increasing distances of a sequence only.
+    law : str
+        "slip": the volume is ``k p |slip|`` per area and distance, in full sliding ``k p``; "work": ``k`` times the
+        frictional work.
+    circumference : float, optional
+        Length along y of the surface over which the wear is spread, metres; default: the roller's, ``2 pi R``.
+    grid : Grid, optional
+        Cells. Default: in full sliding the columns that settle the unworn contact, else those of `choose_grid`.
+    after : Dataset, optional
+        Result of this function from whose last state to go on.
+    tolerance : float
+        Error of the worn depth that one step may make, over the largest depth: from 1e-5 to 0.1.
+    max_steps : int
+        Bound on the steps.
+
+    Returns
+    -------
+    Dataset
+        Along `distance`, beginning with the state before the first step: `wear_depth` and `profile_drop` of the worn
+        profile (distance, x), metres, `line_load` (distance, x), N/m, `pressure` (distance, x, y), `worn_volume`, m3,
+        `wear_error`, the estimated error of the depth over the largest depth, and `next_step`, metres. In all,
+        `volume_error`: the volume over what the law gives, minus one. See `worn_profile` for the profile itself.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is out of range, the motion is a shift, nothing rubs, or so much would be worn off that the
+        radius changes.
+    WindowError
+        If the contact grows beyond the cells.
+
+    Warns
+    -----
+    ConvergenceWarning
+        If `max_steps` did not suffice, or a contact did not converge. What is returned then ends with the last step.
+
+    Notes
+    -----
+    The roller turns, so what it loses is spread over its circumference and depends on x alone; the body stays as it
+    is. Every step is implicit: the depth that it wears off is part of its own contact, as a compliance under the load
+    per length, so no step can wear off more than lies in the gap.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
+    >>> body = FiniteLengthSpace(length=0.6e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
+    >>> cells = choose_grid(case, cells_x=3, cells_y=8)
+    >>> worn = wear_in(case, 1e-17, [0.0, 5e3, 1e5], grid=cells)
+    >>> load = worn.line_load.where(worn.line_load > 0)
+    >>> (load.max("x") / load.min("x")).values.round(2).tolist()
+    [2.28, 1.37, 1.0]
+    """
+    checks.instance("case", case, Case, "a Case")
+    checks.instance("law", law, str, "a name")
+    checks.known_name("law", law, LAWS)
+    if isinstance(case.motion, Shift):
+        raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift has no distance")
+    if case.coupled and not isinstance(case.motion, Sliding):
+        raise InvalidInputError("case.coupled", True, "False in rolling: its tractions are solved after the pressure")
+    rate = checks.positive("coefficient", coefficient, "1/Pa")
+    around = 2 * np.pi * case.roller.radius if circumference is None else circumference
+    around = checks.positive("circumference", around, "metres")
+    tolerance = checks.positive("tolerance", tolerance)
+    if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
+        raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
+    max_steps = checks.count("max_steps", max_steps)
+    begun, depth, cells, step = (0.0, None, _cells(case, grid), None) if after is None else _state_of(after, case, grid)
+    stops, every = _stops(distance, begun)
+
+    gap = case.gap(cells)
+    prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
+    shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+    contact = WornContact(case, shape, Settings(max_iterations=MOST_ITERATIONS))
+    stepper = Stepper(contact, rate / around, law, tolerance)
+    first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth)
+    if not first.slip.any():
+        raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
+    _check_depth(case, stepper, first, float(stops[-1]))
+    states, steps = [first], [stepper.first_step(first) if step is None else step]
+    for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
+        if every or state.distance in stops:
+            states.append(state)
+            steps.append(ahead)
+    return _labelled(case, stepper, states, steps, around)
+
+
+def _cells(case: Case, grid: Grid | None) -> Grid:
+    """Cells to wear on."""
+    if grid is not None:
+        checks.instance("grid", grid, Grid, "a Grid")
+        return grid
+    if not isinstance(case.motion, Sliding):
+        return choose_grid(case)
+    settled = settled_contact(case, 0.01, 1e-6).contact.shape.grid
+    low, high = settled.y_range
+    count = 2 * int(np.ceil(0.5 * ROOM * settled.cells_y))
+    wider = count / settled.cells_y
+    return Grid.between(settled.x_edges, (wider * low, wider * high), count)
+
+
+def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
+    """Distances to reach, and whether every step is wanted."""
+    every = np.ndim(distance) == 0  # type: ignore[arg-type]
+    stops = checks.coordinates("distance", distance)
+    if (np.diff(stops) <= 0).any():
+        raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
+    if stops[0] < begun or stops[-1] <= begun:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {begun:g} m, where the wear begins")
+    return stops, every
+
+
+def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float]:
+    """Distance, depth, cells and next step of the last state of a result."""
+    require(after, "wear_depth", "pressure", "next_step", argument="after")
+    if grid is not None:
+        raise InvalidInputError("grid", grid, "None with after, which has cells")
+    last = after.isel(distance=-1)
+    cells = labelled_cells("after.pressure", last["pressure"], extent=case.body.extent)[1]
+    return float(last["distance"]), last["wear_depth"].values.astype(np.float64), cells, float(last["next_step"])
+
+
+def _check_depth(case: Case, stepper: Stepper, first: State, until: float) -> None:
+    """Raise if the roller would lose so much that it is another one."""
+    mean = stepper.rate * float(first.slip.max()) * case.normal_load / case.contact_length * until
+    if mean > DEEPEST * case.roller.radius:
+        raise InvalidInputError(
+            "distance",
+            until,
+            f"such that the mean worn depth, {mean:.3g} m, is at most {DEEPEST:g} of the roller's radius, "
+            f"{case.roller.radius:g} m",
+            "coefficient is in 1/Pa, distances in metres",
+        )
+
+
+def _limited(
+    stepper: Stepper, state: State, stops: FloatArray, step: float, max_steps: int
+) -> Iterator[tuple[State, float]]:
+    """Go to one distance after the other, in a number of steps at most."""
+    taken = 0
+    for stop in stops[stops > state.distance]:
+        for reached, ahead in stepper.states(state, float(stop), step):
+            taken += 1
+            state, step = reached, ahead
+            yield state, step
+            if taken >= max_steps and state.distance < stops[-1]:
+                warnings.warn(
+                    f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
+                    "with after=, or raise max_steps or tolerance",
+                    ConvergenceWarning,
+                    stacklevel=3,
+                )
+                return
+        if not state.converged:
+            warnings.warn(
+                "a contact of a wear step did not converge; take a smaller tolerance or other cells",
+                ConvergenceWarning,
+                stacklevel=3,
+            )
+
+
+def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[float], around: float) -> xr.Dataset:
+    """Label the states."""
+    grid = stepper.contact.shape.grid
+    distances = np.array([state.distance for state in states])
+    depths = np.array([state.depth for state in states])
+    pressures = np.array([state.pressure for state in states])
+    from_middle = grid.x - (case.roller_start + 0.5 * case.roller.length)
+    under = np.abs(from_middle) <= 0.5 * case.roller.length
+    drop = np.full(grid.cells_x, np.nan)
+    drop[under] = checked_drop(case.roller.profile, from_middle[under], case.roller.length)
+    volumes = around * depths @ grid.widths
+    due = around * np.array([state.worn for state in states])
+    scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
+    coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
+    result = xr.Dataset(
+        {
+            "wear_depth": (("distance", "x"), depths),
+            "profile_drop": (("distance", "x"), drop + depths),
+            "line_load": (("distance", "x"), grid.dy * pressures.sum(axis=2)),
+            "pressure": (("distance", "x", "y"), pressures),
+            "worn_volume": ("distance", volumes),
+            "wear_error": ("distance", np.array([state.error for state in states]) / scale),
+            "next_step": ("distance", np.array(steps)),
+            "volume_error": _volume_error(volumes, due),
+            "converged": states[-1].converged,
+            "hertz_half_width": case.hertz_half_width,
+            "hertz_max_pressure": case.hertz_max_pressure,
+        },
+        coords=coords,
+    )
+    result["distance"].attrs = {"units": "m", "long_name": "distance slid" if _slides(case) else "distance rolled"}
+    return describe(result, "wear of a roller's profile")
+
+
+def _slides(case: Case) -> bool:
+    """Whether distances are those slid."""
+    return isinstance(case.motion, Sliding)
+
+
+def _volume_error(volumes: FloatArray, expected: FloatArray) -> float:
+    """Largest difference between the worn volume and what the law gives, over the latter."""
+    gained, due = volumes - volumes[0], expected - expected[0]
+    made = due > 0
+    return float(np.abs(gained[made] / due[made] - 1).max(initial=0.0))

@@ -1,0 +1,178 @@
+"""A roller with sharp ends worn in, against the best crown.
+
+Usage: ``python studies/worn_profile.py [--out FOLDER]``; about one minute. Writes ``worn_profile.nc`` (the wear),
+``worn_profile_judged.nc`` and ``worn_profile.png`` and prints a table.
+
+A rigid cylinder that ends half a width from the free ends slides under one load until its load per length is uniform.
+What it has become, early, later and worn in, is then pressed on under other loads and tilts, beside Lundberg's profile
+with the factor that ``best_profile.py`` finds.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import xarray as xr
+
+import contactstudy as cs
+from contactstudy.plots.style import line_styles
+from contactstudy.wear import wear_in, worn_profile
+
+BESIDE_END = 0.05
+"""Distance from the roller's end over the half-width from which on pressures are compared: some are singular there."""
+
+WINDOW, CELLS_Y = 2.6, 64
+"""Half-width of the window over the Hertz half-width, and its cells: sharp ends make a contact wide."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """What wears and how it is judged: SI units."""
+
+    material: cs.Material = field(default_factory=lambda: cs.Material(210e9, 0.3))
+    radius: float = 5e-3
+    length: float = 2e-3
+    end_distance: float = 33e-6
+    design_pressure: float = 1.5e9
+    coefficient: float = 1e-17
+    mean_depths: tuple[float, ...] = (0.1e-6, 1e-6, 10e-6)
+    pressures: tuple[float, ...] = (1.0e9, 1.5e9, 2.0e9)
+    tilts: tuple[float, ...] = (0.0, 2e-4)
+    best_delta: float = 0.74
+
+    @property
+    def crown(self) -> cs.profiles.Lundberg:
+        """The best crown."""
+        modulus = self.material.plane_strain_modulus
+        return cs.profiles.Lundberg.for_pressure(
+            self.design_pressure, radius=self.radius, modulus=modulus, delta=self.best_delta
+        )
+
+    def case(
+        self, profile: cs.profiles.Profile | None = None, pressure: float | None = None, tilt: float = 0.0
+    ) -> cs.Case:
+        """One profile, load and tilt; without a profile the sharp cylinder."""
+        body = cs.FiniteLengthSpace(length=self.length + 2 * self.end_distance, material=self.material)
+        shape = cs.profiles.Cylinder() if profile is None else profile
+        return cs.Case(
+            body=body,
+            roller=cs.Roller(radius=self.radius, length=self.length, profile=shape),
+            max_pressure=self.design_pressure if pressure is None else pressure,
+            end_distance=self.end_distance,
+            tilt=tilt,
+        )
+
+
+def worn_in(task: Task) -> xr.Dataset:
+    """Wear at the design load, kept at some mean depths."""
+    case = task.case()
+    area = 2 * np.pi * task.radius * task.length
+    distances = [0.0, *(area * depth / (task.coefficient * case.normal_load) for depth in task.mean_depths)]
+    return wear_in(case, task.coefficient, distances)
+
+
+def profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:
+    """Return what is compared, by its name."""
+    names = ["sharp", *(f"worn by {1e6 * depth:g} µm" for depth in task.mean_depths)]
+    case = task.case()
+    found: dict[str, cs.profiles.Profile] = {
+        name: worn_profile(case, worn, float(distance))
+        for name, distance in zip(names, worn["distance"].values, strict=True)
+    }
+    return found | {"best crown": task.crown}
+
+
+def judged(task: Task, worn: xr.Dataset) -> xr.Dataset:
+    """Load per length and largest pressure of every profile under every load and tilt, on the cells of the wear."""
+    edges = np.append(worn["x_bounds"].values[:, 0], worn["x_bounds"].values[-1, 1])
+    compared = profiles(task, worn)
+    of_profiles = []
+    for profile in compared.values():
+        of_loads = []
+        for pressure in task.pressures:
+            reach = WINDOW * task.case(pressure=pressure).hertz_half_width
+            grid = cs.Grid.from_edges(edges, (-reach, reach), CELLS_Y)
+            of_loads.append(
+                xr.concat(
+                    [_pressed(task.case(profile, pressure, tilt), grid) for tilt in task.tilts],
+                    xr.Variable("tilt", list(task.tilts), {"units": "rad"}),
+                )
+            )
+        of_profiles.append(xr.concat(of_loads, xr.Variable("max_pressure", list(task.pressures), {"units": "Pa"})))
+    result = xr.concat(of_profiles, xr.Variable("profile", list(compared)))
+    result.attrs = {"Conventions": "CF-1.11", "title": "a worn-in roller against the best crown"}
+    return result
+
+
+def _pressed(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
+    """Load per length over the mean one, and pressure over p0 beside the ends and between them."""
+    found = cs.solve(case, grid, stresses=False)
+    line_load = cs.analysis.line_load(found) * case.contact_length / case.normal_load
+    start, stop = case.contact_range
+    away = np.minimum(found["x"] - start, stop - found["x"]) >= BESIDE_END * case.hertz_half_width
+    largest = found["pressure"].max("y").where(away).max() / case.max_pressure
+    return xr.Dataset(
+        {
+            "relative_load": line_load.assign_attrs(units="1", long_name="load per length over the mean"),
+            "largest_pressure": largest.assign_attrs(units="1", long_name="largest pressure over p0 off the ends"),
+        }
+    )
+
+
+def draw(task: Task, worn: xr.Dataset, found: xr.Dataset) -> plt.Figure:
+    """Profiles, and the load per length near an end at the load that they wore at and at a higher one."""
+    figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.2), layout="constrained")
+    compared = profiles(task, worn)
+    x = 0.5 * task.length * np.linspace(-1, 1, 2001)[1:-1]
+    styles = line_styles(len(compared))
+    for (name, profile), style in zip(compared.items(), styles, strict=True):
+        drop = profile.drop(x, task.length)
+        axes[0].plot(1e3 * x, 1e6 * (drop - drop[x.size // 2]), label=name, **style)
+    axes[0].set(xlabel="distance from mid-length (mm)", ylabel="drop below mid-length (µm)", ylim=(0.8, -0.05))
+    axes[0].legend(frameon=False, fontsize="small", loc="lower center")
+    for ax, pressure in zip(axes[1:], task.pressures[-2:], strict=True):
+        for name, style in zip(compared, styles, strict=True):
+            line = found["relative_load"].sel(profile=name, max_pressure=pressure, tilt=task.tilts[0])
+            away = (line["x"].values - task.end_distance) / task.case().hertz_half_width
+            shown = (away > BESIDE_END) & (away < 8)
+            ax.plot(away[shown], line.values[shown], **style)
+        ax.set(xlabel="distance from the end over $a$ at 1.5 GPa", ylabel="load per length over the mean")
+        ax.set(title=f"$p_0$ = {pressure / 1e9:g} GPa", ylim=(0.0, 2.0), xscale="log")
+    return figure
+
+
+def table(found: xr.Dataset) -> str:
+    """Markdown: largest pressure off the ends, by load and tilt."""
+    loads = [(float(load), float(tilt)) for tilt in found["tilt"] for load in found["max_pressure"]]
+    heads = [f"{load / 1e9:g} GPa{f', {1e3 * tilt:g} mrad' if tilt else ''}" for load, tilt in loads]
+    lines = [f"| profile | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
+    for name in found["profile"].values:
+        cells = [
+            f"{float(found['largest_pressure'].sel(profile=name, max_pressure=load, tilt=tilt)):.2f}"
+            for load, tilt in loads
+        ]
+        lines.append(f"| {name} | {' | '.join(cells)} |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Wear, judge, draw, write."""
+    parser = argparse.ArgumentParser(description="A roller with sharp ends worn in, against the best crown.")
+    parser.add_argument("--out", type=Path, default=Path("results/worn_profile"))
+    options = parser.parse_args()
+    task = Task()
+    worn = worn_in(task)
+    found = judged(task, worn)
+    options.out.mkdir(parents=True, exist_ok=True)
+    worn.to_netcdf(options.out / "worn_profile.nc")
+    found.to_netcdf(options.out / "worn_profile_judged.nc")
+    draw(task, worn, found).savefig(options.out / "worn_profile.png", dpi=110)
+    print(table(found))
+
+
+if __name__ == "__main__":
+    main()

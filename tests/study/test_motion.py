@@ -1,0 +1,133 @@
+"""Studies of motions: what their parameters become, what is refused, and that results do not depend on the run."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, Rolling, Shift, Sliding, solve
+from contactstudy.study import Study, open_study, run_study
+from contactstudy.study.common_cells import OntoCommon, resampled
+from contactstudy.study.folder import Folder
+from contactstudy.study.identity import case_id
+from contactstudy.study.setup import build_setup
+from contactstudy.study.store import load_case
+from tests.small_study import BASE, small_study
+
+ROLLS: dict[str, Any] = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 0.5e-3,
+    "roller_body": "half-space",
+    "body": "half-space",
+    "max_pressure": 1.5e9,
+    "e_over_a": 0.0,
+    "friction": 0.1,
+    "accuracy": 0.05,
+    "stresses": False,
+    "motion": "rolling",
+}
+
+
+def rolling_study(**changes: Any) -> Study:
+    """Six cases of a roller on a half-space: three creepages, two pressures."""
+    sweep = {"longitudinal_creepage": [0.0, 5e-4, 2e-3], "max_pressure": [1.0e9, 1.5e9]}
+    content = {"base": ROLLS, "sweep": sweep, "level": "surface"} | changes
+    return Study(name="rolls", **content)
+
+
+@pytest.mark.parametrize(
+    ("given", "expected"),
+    [
+        ({}, Sliding()),
+        ({"motion": "sliding"}, Sliding()),
+        ({"motion": "shift", "shift_x": 1e-6, "force_y": 2.0}, Shift(x=1e-6, force_y=2.0)),
+        (
+            {"motion": "rolling", "longitudinal_creepage": 1e-3, "force_x": 0.0, "spin": 2},
+            Rolling(longitudinal_creepage=1e-3, force_x=0.0, spin=2.0),
+        ),
+        ({"motion": "rolling", "moment_z": 0.1}, Rolling(moment_z=0.1)),
+        ({"motion": "rolling", "rolling_model": "fastsim"}, Rolling(model="fastsim")),
+    ],
+)
+def test_parameters_make_the_motion(given: dict[str, Any], expected: object) -> None:
+    assert build_setup(BASE | {"e_over_a": 0.0} | given).case.motion == expected
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"longitudinal_creepage": 1e-3}, "longitudinal_creepage = 0.001.*left out for motion = 'sliding'.*'rolling'"),
+        ({"force_y": 1.0}, "force_y = 1.0.*'shift' or 'rolling'"),
+        ({"motion": "shift", "spin": 1.0}, "spin = 1.0.*left out for motion = 'shift'"),
+        ({"motion": "rolling", "shift_y": 1e-6}, "shift_y = 1e-06.*belongs to 'shift'"),
+        ({"motion": "rolling", "longitudinal_creepage": 0.0, "force_y": 1.0}, "longitudinal_creepage, force_y = "),
+        ({"motion": "shift", "rolling_model": "fastsim"}, "rolling_model = 'fastsim'.*left out"),
+        ({"motion": "rollin"}, "did you mean 'rolling'"),
+        ({"motion": "rolling", "rolling_model": "exat"}, "did you mean 'exact'"),
+        ({"motion": "rolling", "spin": "fast"}, "spin = 'fast'"),
+    ],
+)
+def test_what_a_motion_does_not_have_is_refused(given: dict[str, Any], message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        build_setup(BASE | {"e_over_a": 0.0} | given)
+
+
+def test_a_study_lists_impossible_motions_as_skipped() -> None:
+    study = small_study(sweep={"e_over_a": [0.0], "motion": ["sliding", "rolling"], "spin": [1.0]})
+    assert [bool(case.reason) for case in study.plan().cases] == [True, False]
+
+
+def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
+    assert case_id({"friction": 0.1, "motion": "sliding", "rolling_model": "exact"}) == case_id({"friction": 0.1})
+    rolling = {"friction": 0.1, "motion": "rolling"}
+    assert len({case_id(rolling | more) for more in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})}) == 4
+
+
+def test_results_are_those_of_the_solver_and_lie_on_one_axis(tmp_path: Path) -> None:
+    study = rolling_study()
+    assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 6}
+    opened = open_study(tmp_path)
+    for case in study.plan().cases:
+        setup = build_setup(case.parameters)
+        alone = solve(setup.case, setup.grid, **setup.options)
+        stored = load_case(Folder(tmp_path).case_path(case.id))
+        for name in ("pressure", "traction_x", "traction_y", "slip_x", "slip_y", "stick"):
+            np.testing.assert_array_equal(stored[name], alone[name])
+        here = opened.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
+        for name in ("force_y", "force_y_error", "friction_work", "sticking_part", "moment_z"):
+            assert float(here[name]) == pytest.approx(float(alone[name]), nan_ok=True)
+        dy = float((here["y_over_a"][1] - here["y_over_a"][0]) * here["hertz_half_width"])
+        whole = dy * (here["traction_y"] * here["x_width"]).sum()
+        assert float(whole) == pytest.approx(float(alone["force_y"]), rel=1e-6, abs=1e-9)
+    # The creepage is a dimension here, so it is no variable.
+    assert opened["force_y"].dims == ("longitudinal_creepage", "max_pressure")
+    assert bool((opened["force_y"].diff("longitudinal_creepage") > 0).all())
+    assert bool((opened["sticking_part"].diff("longitudinal_creepage") < 0).all())
+    assert np.isin(opened["stick"].values, (0, 1)).all()
+    assert "own cell which holds" in opened["stick"].attrs["comment"]
+    assert "averaged" in opened["traction_x"].attrs["comment"]
+    assert opened["longitudinal_creepage"].attrs["units"] == "1"
+
+
+def test_a_study_that_goes_on_has_the_same_bits(tmp_path: Path) -> None:
+    first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
+    run_study(first, tmp_path / "parts", workers=0, progress=False)
+    (begun,) = (Folder(tmp_path / "parts").case_path(case.id) for case in first.plan().cases)
+    stamp = begun.stat().st_mtime_ns
+    assert run_study(study, tmp_path / "parts", workers=2, progress=False).counts == {"ok": 6}
+    assert begun.stat().st_mtime_ns == stamp
+    run_study(study, tmp_path / "once", workers=0, progress=False)
+    for case in study.plan().cases:
+        one, other = (load_case(Folder(tmp_path / name).case_path(case.id)) for name in ("parts", "once"))
+        assert one.drop_vars("seconds").identical(other.drop_vars("seconds").assign_attrs(one.attrs))
+
+
+def test_flags_come_onto_common_cells_whole() -> None:
+    own, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
+    found = resampled("stick", np.array([True, False]), [OntoCommon(own, common, np.nan)])
+    assert found.tolist() == [1, 1, 0, 0, 0]
