@@ -140,12 +140,7 @@ def solve(
     known = xr.Dataset()
     slides = isinstance(case.motion, Sliding)
     found: FrictionalContact | None = None
-    settings = {
-        "cells": "refined" if grid is None and roughness is None else "chosen" if grid is None else "given",
-        "accuracy": float(accuracy),
-        "tolerance": float(tolerance),
-        "rough": roughness is not None,
-    }
+    cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
     if grid is None and roughness is None:
         accuracy = check_accuracy(accuracy)
         settled = settled_contact(case, accuracy, checks.positive("tolerance", tolerance))
@@ -197,6 +192,9 @@ def solve(
     stages = {"contact": contact_seconds, "stresses": time.perf_counter() - began - contact_seconds}
     LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
+    settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
+    if cells == "refined":
+        settings["accuracy"] = float(accuracy)
     return with_provenance(described, case, settings, stages)
 
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import single_case
+from contactstudy.analysis.axes import axis_dimensions, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.analysis.short import ShortView, short
 from contactstudy.arrays.required import require
@@ -111,12 +111,23 @@ def _answers(one: xr.Dataset, view: ShortView) -> Iterator[Answer]:
     yield _cells(one)
     if "peak_von_mises" in view:
         row = view["peak_von_mises"]
-        if np.isinf(row.error) or np.isinf(row.value) or np.isnan(row.error):
+        single = _single_positions(one)
+        if single:
+            reason = f"stresses are known at one position along {' and '.join(single)} only"
+            yield Answer("Is the largest stress inside the points?", CARE, reason)
+        elif np.isinf(row.error) or np.isinf(row.value) or np.isnan(row.error):
             yield Answer("Is the largest stress inside the points?", CARE, row.remark or "no error is known")
         else:
             yield Answer("Is the largest stress inside the points?", YES, f"{row.text}, with points on all sides of it")
     for text in attribute(one, RUN_ATTRIBUTE).get("warnings", []):
         yield Answer("Was there a warning?", CARE, str(text))
+
+
+def _single_positions(one: xr.Dataset) -> list[str]:
+    """Axes along which the stresses have one position, and so no largest value."""
+    if "von_mises" not in one:
+        return []
+    return [axis for axis, dim in axis_dimensions(one["von_mises"]).items() if one.sizes[dim] == 1]
 
 
 def _converged(one: xr.Dataset) -> Answer:

@@ -89,6 +89,8 @@ def case_table(case: Case) -> dict[str, Any]:
 def _as_table(part: Any, length: float) -> Any:
     """Return a part of a case as plain values."""
     name = type(part).__name__
+    if isinstance(part, profiles.EffectiveLength):
+        length = part.effective_length  # what is within it is asked with this length
     if KINDS.get(name) is type(part):
         values = {entry.name: _as_table(getattr(part, entry.name), length) for entry in fields(part)}
         return {"kind": name, **{key: value for key, value in values.items() if value is not None}}

@@ -166,7 +166,8 @@ def _provenance(one: xr.Dataset) -> list[tuple[str, str]]:
     rows.append(("versions", said or str(one.attrs.get("source", "not known"))))
     if "cells" in settings:
         rows.append(("cells", CELLS.get(settings["cells"], str(settings["cells"]))))
-        rows.append(("accuracy asked for", f"{settings['accuracy']:g} of the peak pressure"))
+        if "accuracy" in settings:
+            rows.append(("accuracy asked for", f"{settings['accuracy']:g} of the peak pressure"))
         rows.append(("tolerance of the iteration", f"{settings['tolerance']:g}"))
         if settings.get("rough"):
             rows.append(("roughness", "rough surfaces were given; they are not in this report"))

@@ -14,7 +14,7 @@ from contactstudy.plots import study_figures
 from contactstudy.report.figures import Picture, as_address
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
-from contactstudy.study.opened import collect, open_study
+from contactstudy.study.opened import open_study, summaries
 from contactstudy.study.parameters import PARAMETERS, with_defaults
 from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
 
@@ -151,7 +151,7 @@ def _pictures(path: Path, cases: int) -> list[Picture]:
     """Figures that suit the study; none if nothing of it can be drawn."""
     from matplotlib import pyplot
 
-    opened = open_study(path, cells="own") if cases <= MOST_FIELDS else collect(path)
+    opened = open_study(path, cells="own") if cases <= MOST_FIELDS else summaries(path)[0]
     try:
         figures = study_figures(opened)
     except ContactStudyError:

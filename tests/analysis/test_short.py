@@ -58,6 +58,8 @@ def test_what_is_wrong_is_said(solved: xr.Dataset) -> None:
         assert answer(question, **good) == "yes", question
         assert answer(question, **bad) in ("with care", "no"), question
     assert certainty(solved.assign(converged=False)).overall == "no"
+    flat = solved.isel(z=[2])
+    assert any("one position along z only" in each.reason for each in certainty(flat).answers)
     assert certainty(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
 
 

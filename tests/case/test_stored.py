@@ -28,6 +28,7 @@ PROFILES = [
     profiles.Halves(profiles.Cylinder(), profiles.FullCrown(1.0)),
     profiles.Measured(X.tolist(), ((X - 5e-4) ** 2).tolist()),
     profiles.PartialCrown(1e-4, 1.0),
+    profiles.EffectiveLength(profiles.FullCrown(1.0), 0.9e-3),
 ]
 
 
@@ -56,6 +57,23 @@ def test_a_profile_of_the_users_own_is_kept_at_points() -> None:
     again = case_from(json.loads(json.dumps(case_table(case)))).roller.profile
     x = np.array([-4.2e-4, 0.0, 3e-4, 5e-4])
     assert np.allclose(again.drop(x, 1e-3), Own().drop(x, 1e-3), rtol=1e-3, atol=1e-14)
+
+
+class Bowl:
+    """Another one, over the effective length only."""
+
+    def drop(self, x, length):
+        return 1e-5 * (2 * np.abs(x) / length) ** 4
+
+
+def test_a_profile_of_the_users_own_counts_over_the_effective_length() -> None:
+    profile = profiles.EffectiveLength(Bowl(), 0.8e-3)
+    case = Case(
+        body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3, profile=profile), max_pressure=1e9
+    )
+    again = case_from(case_table(case)).roller.profile
+    x = np.array([-4.9e-4, 0.0, 2e-4, 4e-4])
+    assert np.allclose(again.drop(x, 1e-3), profile.drop(x, 1e-3), rtol=1e-3, atol=1e-10)
 
 
 @pytest.mark.parametrize("table", [{}, {"kind": "Nothing"}, {"kind": "Material", "young": 1.0, "poisson": 0.3}])
