@@ -33,7 +33,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "quarter space": lambda full: quarter_space.checks(),
     "finite elements": lambda full: finite_elements.checks(full=full),
     "published": lambda full: published.checks(),
-    "friction": lambda full: friction.checks(),
+    "friction": lambda full: friction.checks(full=full),
     "consistency": lambda full: consistency.checks(),
 }
 """Checks by what they compare with; those of convergence are added at the full level."""
