@@ -39,5 +39,5 @@ def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
 def test_a_name_that_is_nearly_right_is_suggested() -> None:
     with pytest.raises(AttributeError, match=r"solv; did you mean solve\?"):
         _ = contactstudy.solv
-    with pytest.raises(AttributeError, match="xyzzy$"):
+    with pytest.raises(AttributeError, match=r"xyzzy$"):
         _ = contactstudy.xyzzy

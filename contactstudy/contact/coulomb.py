@@ -298,8 +298,8 @@ class _Step:
         start = self._gathered(np.where(self._sticks, traction, 0.0))
         lifted = np.array([inverse(mode) for mode in modes]).reshape(modes.shape)
         schur = works @ lifted.T
-        # In units of the problem, for one residual to mean something.
-        unit = np.abs(works).sum(axis=1) * (np.abs(modes).mean(axis=1) + np.finfo(float).tiny)
+        # Resultants as the slip that tractions of their size take away: one residual means something for both.
+        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._typical.mean())
 
         def whole(unknowns: FloatArray) -> FloatArray:
             own, free = unknowns[:count], unknowns[count:]

@@ -36,7 +36,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "quarter space": lambda full: quarter_space.checks(),
     "finite elements": lambda full: finite_elements.checks(full=full),
     "published": lambda full: published.checks(),
-    "friction": lambda full: friction.checks(),
+    "friction": lambda full: friction.checks(full=full),
     "heat": lambda full: heat.checks(),
     "wear": lambda full: wear.checks(),
     "passes": lambda full: passes.checks(),
