@@ -17,7 +17,7 @@ pytest.importorskip("panel", reason="the extra `explore` is not installed")
 pytest.importorskip("playwright", reason="playwright, which drives the browser, is not installed")
 
 pytestmark = [
-    pytest.mark.system,
+    pytest.mark.browser,
     pytest.mark.skipif(chromium() is None, reason="Chromium is not installed"),
 ]
 
