@@ -194,3 +194,30 @@ def test_quarter_space_does_not_take_the_border_of_its_points_for_the_largest_st
     shallow = replace(shapes["sphere"], z=(0.05, 0.1, 0.15, 0.2))
     with pytest.raises(ValueError, match="border of the points"):
         module.both(shallow, module.HALF_SPACE, None, ("load",))
+
+
+def test_rolling_draws_its_four_studies(tmp_path):
+    module = script("rolling")
+    fewer = {
+        "traction_curve": {"longitudinal_creepage": [0.0, 2e-3], "roller_length": [0.26e-3]},
+        "axial_slip": {"e_over_a": [0.0, 1.0]},
+        "spin": {"spin": [0.0, 4.0], "lateral_creepage": [0.0]},
+        "partial_slip": {"longitudinal_creepage": [1e-3, 0.1], "friction": [0.3]},
+    }
+    studies = {}
+    for name in module.NAMES:
+        study = Study.from_toml(STUDIES / f"{name}.toml")
+        length = {} if "roller_length" in study.sweep else {"roller_length": 0.26e-3}
+        points = {"field_x_over_a": [0.0, 0.5, 1.0]} if name == "partial_slip" else {}
+        small = replace(
+            study,
+            base={**study.base, "accuracy": 0.1} | length | points,
+            sweep={**study.sweep, **fewer[name]},
+        )
+        run_study(small, tmp_path / name, workers=0, progress=False)
+        studies[name] = open_study(tmp_path / name)
+    figure = module.draw(studies)
+    assert [len(ax.get_legend().get_texts()) for ax in figure.axes] == [3, 3, 2, 2]
+    # Flush ends of like bodies do not slip by pressure alone; ends inside the face do.
+    lost = studies["axial_slip"]["friction_work"]
+    assert float(lost.sel(e_over_a=0.0)) < 1e-8 < float(lost.sel(e_over_a=1.0))
