@@ -201,7 +201,7 @@ def test_rolling_draws_its_four_studies(tmp_path):
     fewer = {
         "traction_curve": {"longitudinal_creepage": [0.0, 2e-3], "roller_length": [0.26e-3]},
         "axial_slip": {"e_over_a": [0.0, 1.0]},
-        "spin": {"spin": [0.0, 4.0], "lateral_creepage": [0.0]},
+        "spin": {"spin": [0.0, 4.0], "roller_length": [0.26e-3]},
         "partial_slip": {"longitudinal_creepage": [1e-3, 0.1], "friction": [0.3]},
     }
     studies = {}
