@@ -30,7 +30,7 @@ ALL = (Load.NORMAL, *TANGENTIAL)
 ROUNDS = 30
 """Rounds of pressure and tractions after which a coupled contact counts as not converged. Speed."""
 
-LEAST_ACCURACY = 1e-6
+LEAST_ACCURACY = 1e-5
 """Part of the pressure to which coupled rounds settle at least, however coarse the tolerance. Accuracy."""
 
 

@@ -229,7 +229,7 @@ def _frictional_heat(
         if value is not None:
             raise InvalidInputError(name, value, "None in rolling", "give rolling_speed: the creepage says the rest")
     speed = checks.positive("rolling_speed", rolling_speed, "m/s, of rolling")
-    return _rolling_heat(case, motion, one, speed)
+    return _rolling_heat(case, motion, one, speed, area)
 
 
 def _side(traction: FloatArray) -> str:
@@ -239,17 +239,22 @@ def _side(traction: FloatArray) -> str:
     return "not below" if traction.max() > 0 else "not above"
 
 
-def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float) -> _Heat:
-    """Heat of a rolling contact: traction times slip per distance, times distance per time."""
+def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float, area: FloatArray) -> _Heat:
+    """Heat of a rolling contact: traction times slip per distance, times distance per time.
+
+    Cells of which a part slips say roughly how much work each does; the work of the whole contact is known better.
+    """
     names = ("traction_x", "slip_x", "traction_y", "slip_y")
     require(one, *names, "friction_work", argument="result")
     q_x, s_x, q_y, s_y = (labelled_cells(f"result.{name}", one[name], extent=case.body.extent)[0] for name in names)
     # The contact moves along +y over both surfaces, so these move backwards below it.
     creepage = float(one["longitudinal_creepage"]) if "longitudinal_creepage" in one else motion.longitudinal_creepage
     half = 0.5 * float(creepage or 0.0)
+    density = np.maximum(q_x * s_x + q_y * s_y, 0.0)
+    work, summed = float(one["friction_work"]), float((area * density).sum())
     return _Heat(
-        speed * (q_x * s_x + q_y * s_y),
-        speed * float(one["friction_work"]),
+        speed * density * (work / summed if summed else 0.0),
+        speed * (work if summed else 0.0),
         -speed * (1 + half),
         -speed * (1 - half),
     )

@@ -88,7 +88,7 @@ def carter_checks() -> Iterator[Check]:
 
 
 def slope_check(length: float, cells: int, case: str, modulus: float, tolerance: float) -> Check:
-    """Check the initial slope of the traction curve, per length, in the middle of two like cylinders between free ends.
+    """Compare the initial slope of the traction curve, per length, in the middle of two like cylinders with free ends.
 
     It is ``pi E' a / 2`` with the modulus E' of the pair in the plane, ``E / 2`` in plane stress, and the half-width a
     of the load there (Johnson 8.46). From the forces of two small creepages, as Carter's curve is a parabola.

@@ -133,5 +133,8 @@ class WornContact:
             worn = pressure * np.hypot(slip[0], slip[1])
         else:
             worn = np.maximum(traction[0] * slip[0] + traction[1] * slip[1], 0.0)
+            # The work of the whole contact is known better than that of cells of which a part slips.
+            summed = float((worn * grid.weights).sum() * grid.cell_area)
+            worn *= found.tractions.work / summed if summed else 0.0
         load = pressure.sum(axis=1)
         return np.asarray(np.divide(worn.sum(axis=1), load, out=np.zeros_like(load), where=load > 0))

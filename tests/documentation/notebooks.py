@@ -8,7 +8,7 @@ import tempfile
 import nbformat
 import pytest
 
-SLOW = {"designing_a_profile.ipynb", "verification.ipynb"}
+SLOW = {"designing_a_profile.ipynb", "rolling.ipynb", "verification.ipynb"}
 """More than 20 s."""
 LARGEST = 30_000
 """Bytes; a notebook without output is smaller."""

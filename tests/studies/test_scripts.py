@@ -219,3 +219,30 @@ def test_worn_profile_is_flat_at_its_own_load_only():
     assert float(largest.sel(profile="worn by 10 µm")) < float(largest.sel(profile="sharp"))
     assert len(module.draw(task, worn, found.expand_dims(tilt=[0.0])).axes) == 3
     assert "| best crown |" in module.table(found.expand_dims(tilt=[0.0]))
+
+
+def test_rolling_draws_its_four_studies(tmp_path):
+    module = script("rolling")
+    fewer = {
+        "traction_curve": {"longitudinal_creepage": [0.0, 2e-3], "roller_length": [0.26e-3]},
+        "axial_slip": {"e_over_a": [0.0, 1.0]},
+        "spin": {"spin": [0.0, 4.0], "roller_length": [0.26e-3]},
+        "partial_slip": {"longitudinal_creepage": [1e-3, 0.1], "friction": [0.3]},
+    }
+    studies = {}
+    for name in module.NAMES:
+        study = Study.from_toml(STUDIES / f"{name}.toml")
+        length = {} if "roller_length" in study.sweep else {"roller_length": 0.26e-3}
+        points = {"field_x_over_a": [0.0, 0.5, 1.0]} if name == "partial_slip" else {}
+        small = replace(
+            study,
+            base={**study.base, "accuracy": 0.1} | length | points,
+            sweep={**study.sweep, **fewer[name]},
+        )
+        run_study(small, tmp_path / name, workers=0, progress=False)
+        studies[name] = open_study(tmp_path / name)
+    figure = module.draw(studies)
+    assert [len(ax.get_legend().get_texts()) for ax in figure.axes] == [3, 3, 2, 2]
+    # Flush ends of like bodies do not slip by pressure alone; ends inside the face do.
+    lost = studies["axial_slip"]["friction_work"]
+    assert float(lost.sel(e_over_a=0.0)) < 1e-8 < float(lost.sel(e_over_a=1.0))

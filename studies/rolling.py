@@ -1,0 +1,135 @@
+"""Figure of the four studies of rolling, from the folders in which they were run.
+
+contactstudy run studies/traction_curve.toml   # likewise axial_slip, spin and partial_slip
+python studies/rolling.py
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import contactstudy as cs
+
+NAMES = ("traction_curve", "axial_slip", "spin", "partial_slip")
+
+BELOW = 0.19
+"""Depth over a from which on von Mises stresses are compared."""
+
+LINE: dict[str, Any] = {"color": "black", "markersize": 5, "markerfacecolor": "white"}
+"""Lines that differ by dashes and markers."""
+
+
+def full_sliding(study: xr.Dataset) -> xr.DataArray:
+    """Force of full sliding, N."""
+    return study["friction"] * study["normal_load"]
+
+
+def draw_curve(ax: Axes, study: xr.Dataset) -> None:
+    """Traction curves: free ends flush and inside the face, and half-spaces."""
+    over = study["force_y"] / full_sliding(study)
+    a = study["hertz_half_width"]
+    dashes = iter(["-", "--", "-", "--", "-.", ":"])
+    markers = iter("osD^vP")
+    for length in study["roller_length"].values:
+        size = f"roller of {float(length / a.max()):.0f}a"
+        for body, e_over_a in (("finite-length", 0.0), ("finite-length", 2.0), ("half-space", 0.0)):
+            one = over.sel(roller_length=length, e_over_a=e_over_a, body=body)
+            where = "half-spaces" if body == "half-space" else f"e = {e_over_a:g}a"
+            ax.plot(
+                1e3 * one["longitudinal_creepage"],
+                one,
+                next(dashes),
+                marker=next(markers),
+                label=f"{size}, {where}",
+                **LINE,
+            )
+    ax.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
+    ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$")
+    ax.set_ylabel("force over full sliding's")
+
+
+def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
+    """Work lost and part that slips when a roller of the same material rolls freely."""
+    slips = 1 - study["sticking_part"]
+    lost = study["friction_work"] / full_sliding(study)
+    ax.errorbar(
+        study["e_over_a"],
+        1e3 * lost,
+        1e3 * study["friction_work_error"] / full_sliding(study),
+        linestyle="-",
+        marker="o",
+        label="work lost over $f W$, times $10^3$",
+        **LINE,
+    )
+    ax.plot(study["e_over_a"], slips, "--", marker="s", label="part of the contact that slips", **LINE)
+    creepage = 1e3 * study["longitudinal_creepage"]
+    ax.plot(study["e_over_a"], creepage, ":", marker="^", label=r"creepage found, $10^3\,\xi$", **LINE)
+    ax.set_xlabel("distance of the roller's ends from the free ends, $e/a$")
+
+
+def draw_spin(ax: Axes, study: xr.Dataset) -> None:
+    """Moment over that of full sliding either way from mid-length, free ends and half-spaces."""
+    over = study["moment_z"] / (0.25 * full_sliding(study) * study["contact_length"])
+    markers = iter("osD^")
+    for length in study["roller_length"].values:
+        size = f"{float(length / study['hertz_half_width'].max()):.0f}a"
+        for body, dash in (("finite-length", "-"), ("half-space", ":")):
+            one = over.sel(roller_length=length, body=body)
+            ends = "free ends" if body == "finite-length" else "half-spaces"
+            ax.plot(one["spin"], one, dash, marker=next(markers), label=f"roller of {size}, {ends}", **LINE)
+    ax.set_xlabel(r"spin, $\varphi$ (rad/m)")
+    ax.set_ylabel("moment over $f W L / 4$")
+
+
+def draw_stress(ax: Axes, study: xr.Dataset) -> None:
+    """Largest von Mises stress below the surface near a free end, and tension on the surface there."""
+    swept = study["longitudinal_creepage"]
+    p0 = study["hertz_max_pressure"]
+    near = study["x_field"] <= study["hertz_half_width"].max()
+    # A transverse traction that ends at the edge makes the stress grow into the corner: it has no largest value there.
+    below = study["z"] >= BELOW * study["hertz_half_width"].max()
+    mises = study["von_mises"].isel(x_field=near.values, z=below.values).max(("x_field", "y_field", "z")) / p0
+    tension = study["sigma_yy"].isel(x_field=near.values).sel(z=0.0).max(("x_field", "y_field")) / p0
+    markers = iter("osD^")
+    places = np.arange(swept.size)
+    for friction in study["friction"].values:
+        for values, dash, what in ((mises, "-", "von Mises below $0.2a$"), (tension, ":", "tension on the surface")):
+            one = values.sel(friction=friction)
+            ax.plot(places, one, dash, marker=next(markers), label=f"{what}, $f$ = {friction:g}", **LINE)
+    ax.set_ylim(0.0, 1.15)
+    ax.set_xticks(places, [f"{1e3 * value:g}" for value in swept.values])
+    ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$ (the last is full sliding)")
+    ax.set_ylabel("within $a$ of the free end, over $p_0$")
+
+
+def draw(studies: dict[str, xr.Dataset]) -> Figure:
+    """One panel for each study."""
+    figure, axes = plt.subplots(2, 2, figsize=(10.0, 7.4), layout="constrained")
+    panels = (draw_curve, draw_micro_slip, draw_spin, draw_stress)
+    for ax, name, panel in zip(axes.ravel(), NAMES, panels, strict=True):
+        panel(ax, studies[name])
+        ax.set_title(name.replace("_", " "), fontsize="medium")
+        ax.legend(frameon=False, fontsize="small")
+        ax.grid(color="0.9", linewidth=0.6)
+    return figure
+
+
+def main() -> None:
+    """Open the studies and draw them."""
+    parser = argparse.ArgumentParser(description="Figure of the studies of rolling.")
+    parser.add_argument("--results", type=Path, default=Path("results"))
+    options = parser.parse_args()
+    studies = {name: cs.open_study(options.results / name) for name in NAMES}
+    draw(studies).savefig(options.results / "rolling.png", dpi=110)
+
+
+if __name__ == "__main__":
+    main()
