@@ -33,6 +33,9 @@ from contactstudy.fatigue.history import FEWEST_POSITIONS, histories, over_histo
 FEWEST_FOR_ERROR = 2 * FEWEST_POSITIONS
 """Positions along y of which every second still is a history."""
 
+SAME = 1e-6
+"""Part of the largest stress that makes no difference when it is asked which instant decides."""
+
 
 def in_ball_axes(history: Array) -> tuple[Array, Array, Array]:
     """Coordinates u and v, and the square of the rest, whose squares sum up to that of von Mises' stress.
@@ -143,9 +146,9 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         whether that is on the top or at a free end. The same of `first_yield_stress`. With
         `hertz_max_pressure` in the Dataset also `shakedown_limit` and `first_yield_limit`, the pressure p0 over k that
         this field allows, with their errors. As in :func:`contactstudy.analysis.largest` an error is infinite where
-        the largest sample lies at the edge of the positions; it has a part from polynomials of two degrees in x
-        and z, and one from every second instant along y, of which the larger number counts. Of a study each has the
-        swept parameters as dimensions, and there are no comments.
+        the largest sample lies at the edge of the positions, or the first or the last position along y decides. It has
+        a part from polynomials of two degrees in x and z, and one from every second instant along y, of which the
+        larger number counts. Of a study each has the swept parameters as dimensions, and there are no comments.
 
     Raises
     ------
@@ -165,23 +168,27 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     if any(size > 1 for size in swept.values()):
         return _of_study(stress, swept, axial=axial)
     one = single_case(stress)
-    fields = shakedown(one, axial=axial)
     rolling = dimension_along(one["tau_yz"], "y")
     names = list(STRESSES)
+    # One of the two halves of the instants lacks the one that matters most.
+    enough = one.sizes[rolling] >= FEWEST_FOR_ERROR
+    parts = [one, *(one.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if enough)]
+    fields = [shakedown(part, axial=axial).compute() for part in parts]
     result = xr.Dataset()
     for variable in ("shakedown_stress", "first_yield_stress"):
 
         def between(points: xr.Dataset, variable: str = variable) -> xr.DataArray:
             return shakedown(points, axial=axial)[variable]
 
-        found = peak_between(one, names, fields[variable].compute(), between)
-        if one.sizes[rolling] >= FEWEST_FOR_ERROR:
-            # One of the two halves of the instants lacks the one that matters most.
-            halves = [one[names].isel({rolling: slice(start, None, 2)}) for start in (0, 1)]
-            least = min(peak_between(half, names, between(half).compute(), between).value for half in halves)
-            found = found._replace(error=found.error + found.value - least)
-        else:
+        found, *halves = (
+            peak_between(part, names, field[variable], between) for part, field in zip(parts, fields, strict=True)
+        )
+        if not enough:
             found = found._replace(error=np.inf, comment="too few positions along y to tell")
+        elif _at_border(one, fields[0], variable):
+            found = found._replace(error=np.inf, comment="the first or the last position along y decides")
+        else:
+            found = found._replace(error=found.error + found.value - min(half.value for half in halves))
         peak = labelled_peak(variable, found, VARIABLES[variable])
         peak[f"peak_{variable}"].attrs["comment"] = _where(one, found)
         result = result.merge(peak)
@@ -205,6 +212,52 @@ def _of_study(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> 
     coordinates = {name: study[name] for name in swept if name in study.coords}
     found = xr.Dataset({name: (tuple(swept), values) for name, values in numbers.items()}, coordinates)
     return describe(found)
+
+
+def shakedown_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Limits of first yield and shakedown of a solved case, as a study keeps them.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of :func:`contactstudy.solve`; stresses may be absent.
+
+    Returns
+    -------
+    Dataset
+        Scalars of :func:`shakedown_limit`; empty without stresses, without load, or where the stresses have fewer
+        than six positions along y: the passage of a material point is not known then, and nor is any bound.
+
+    Examples
+    --------
+    >>> stress = xr.DataArray(np.zeros((1, 1, 2)), dims=("x", "y", "z"), coords={"x": [0], "y": [0], "z": [0, 2]})
+    >>> len(shakedown_summary(xr.Dataset({name: stress for name in STRESSES})))
+    0
+    """
+    if not all(name in dataset for name in STRESSES):
+        return xr.Dataset()
+    if dataset.sizes[dimension_along(dataset["tau_yz"], "y")] < FEWEST_FOR_ERROR:
+        return xr.Dataset()
+    if not any(dataset[name].values.any() for name in STRESSES):
+        return xr.Dataset()
+    return shakedown_limit(dataset).reset_coords(drop=True)
+
+
+def _at_border(one: xr.Dataset, fields: xr.Dataset, variable: str) -> bool:
+    """Whether the first or the last instant alone is as bad as the largest: worse ones may lie beyond."""
+    tensor, _ = histories(one)
+    worst = {dim: int(index) for dim, index in fields[variable].argmax(...).items()}
+    point = tensor.isel(worst).values
+    eased = np.zeros(len(STRESSES))
+    if variable == "shakedown_stress":
+        eased[1] = float(fields["residual_sigma_yy"].isel(worst))
+        eased[0] = float(fields["residual_sigma_xx"].isel(worst)) if "residual_sigma_xx" in fields else 0.0
+    u, v, rest = in_ball_axes(point + eased)
+    size = np.sqrt((u**2 + v**2 + rest) / 3)
+    held = float(fields[variable].isel(worst))
+    # An unloaded border is as bad as the unloaded state may be, which is known.
+    at_rest = np.abs(point[[0, -1]]).max(axis=-1) <= SAME * held
+    return bool(((size[[0, -1]] >= held * (1 - SAME)) & ~at_rest).any())
 
 
 def _where(one: xr.Dataset, found: Peak) -> str:

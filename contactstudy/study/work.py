@@ -22,6 +22,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import named
 from contactstudy.case.gridding import first_that_holds
 from contactstudy.errors import ContactStudyError
+from contactstudy.fatigue.shakedown import shakedown_summary
 from contactstudy.solution import solve
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
@@ -168,7 +169,7 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
             setup = build_setup(job.parameters)
             solve_on = partial(_solve_on, solver or solve, setup)
             dataset = first_that_holds(setup.grids, solve_on)
-            scalars = summarize(dataset)
+            scalars = summarize(dataset).assign(shakedown_summary(dataset).data_vars)
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:

@@ -12,7 +12,7 @@ from scipy import optimize
 
 from contactstudy import InvalidInputError, fatigue, stress_field
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.fatigue.shakedown import in_ball_axes
+from contactstudy.fatigue.shakedown import in_ball_axes, shakedown_summary
 from contactstudy.verification.closed_forms import hertz_strip
 
 DEPTHS = np.linspace(0.0, 1.5, 61)
@@ -166,3 +166,31 @@ def test_limits_of_a_study(line_contact) -> None:
 def test_axial_stress_is_not_free_at_many_positions(solved: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="line contact"):
         fatigue.shakedown(solved, axial=True)
+
+
+def test_error_is_infinite_where_the_window_ends_too_early(line_contact) -> None:
+    """The shear before and behind the contact is as large as what yields in the middle."""
+    found = fatigue.shakedown_limit(line_contact(0.0).sel(y=slice(-0.3, 0.3)))
+    assert np.isinf(float(found["shakedown_limit_error"]))
+    assert "along y" in found["peak_shakedown_stress_error"].attrs["comment"]
+
+
+def test_summary_is_the_limit_where_a_passage_is_known(line_contact) -> None:
+    result = line_contact(0.1)
+    summary = shakedown_summary(result)
+    limit = fatigue.shakedown_limit(result)
+    assert set(summary.data_vars) == set(limit.data_vars)
+    assert not summary.coords
+    for name in ("shakedown_limit", "first_yield_limit", "shakedown_limit_error"):
+        assert float(summary[name]) == float(limit[name])
+
+
+@pytest.mark.parametrize("absent", ["stresses", "passage", "load"])
+def test_summary_is_empty_where_no_passage_is_known(line_contact, absent: str) -> None:
+    result = line_contact(0.1)
+    without = {
+        "stresses": result.drop_vars("tau_xy"),
+        "passage": result.sel(y=[0.0]),
+        "load": 0.0 * result,
+    }
+    assert not shakedown_summary(without[absent])

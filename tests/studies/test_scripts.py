@@ -246,3 +246,42 @@ def test_rolling_draws_its_four_studies(tmp_path):
     # Flush ends of like bodies do not slip by pressure alone; ends inside the face do.
     lost = studies["axial_slip"]["friction_work"]
     assert float(lost.sel(e_over_a=0.0)) < 1e-8 < float(lost.sel(e_over_a=1.0))
+
+
+def test_shakedown_is_drawn_beside_the_line_contact(tmp_path):
+    module = script("shakedown")
+    study = Study.from_toml(STUDIES / "shakedown.toml")
+    distances, along = study.zip[0].values()
+    small = replace(
+        study,
+        base={**study.base, "accuracy": 0.05, "field_z_over_a": [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]},
+        sweep={**study.sweep, "friction": [0.0, 0.2], "profile": study.sweep["profile"][1:]},
+        zip=[{"e_over_a": [distances[0], distances[-1]], "field_x_over_a": [along[0], along[-1]]}],
+    )
+    run_study(small, tmp_path, workers=0)
+    found = open_study(tmp_path)
+    line = module.line_contact(found["friction"].values, 0.3)
+    johnson = line["along rolling and axis (Johnson)"]
+    assert float(johnson.sel(friction=0.0)) == pytest.approx(4.0, rel=5e-3)
+    # No crowned roller endures what the line contact does; far inside the face its end is pressed hard.
+    limit = found["shakedown_limit"].isel(profile=0)
+    assert (limit < line["along rolling"]).all()
+    assert (limit.sel(e_over_a=4.0) < limit.sel(e_over_a=0.0)).all()
+    assert (limit.sel(friction=0.2) < limit.sel(friction=0.0)).all()
+    assert float(module.stated_errors(found).max()) < 0.1
+    assert len(module.draw(found, line).axes) == 3
+    assert module.table(found, line).count("\n") == 6
+
+
+def test_residual_stress_leaves_the_free_end_free():
+    module = script("residual_stress")
+    found = module.rolled(module.Task(length=0.6e-3, cells_x=12, cells_z=9, positions_y=31, passes=3))
+    end, near, middle = module.places(found).values()
+    along_axis = [float(abs(one["sigma_xx"].isel(pass_number=-1)).max()) for one in (end, near, middle)]
+    assert along_axis[0] < 0.2 * min(along_axis[1:])
+    # Rolling compresses the middle where it yields.
+    assert float(middle["sigma_yy"].isel(pass_number=-1).min()) < -0.05
+    first, *_, last = module.flow(near).values
+    assert 0 < last < 0.02 * first
+    assert len(module.draw(found).axes) == 5
+    assert "| in the middle |" in module.table(found)
