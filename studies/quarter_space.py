@@ -298,7 +298,7 @@ def _hertz_checks(ball: Indenter) -> list[Check]:
             "sphere, half-space: von Mises / p0", found["von_mises"] / PRESSURE, abs(axial - radial)[largest] / PRESSURE
         ),
         Check("sphere, half-space: its depth / a", found["von_mises_depth"] / a, z[largest] / a),
-        Check("sphere, e = 0, end held by a smooth wall: load / Hertz", float(halved["load"]) / ball.load, 0.5),
+        Check("sphere, e = 0, end held by a smooth wall: load / Hertz", float(halved["normal_load"]) / ball.load, 0.5),
         Check("sphere, e = 0, end held by a smooth wall: area / (pi a^2)", area / (np.pi * a**2), 0.5),
         Check(f"sphere, e = {far:g} a: load at equal depth, from a point load", load, far_from_edge(poisson, far)),
     ]
@@ -327,7 +327,7 @@ def _edge_checks(ball: Indenter) -> list[Check]:
     return [
         Check(
             "sphere, e = 0: load at equal depth, from the depth at equal load",
-            float(lowered["load"]) / ball.load,
+            float(lowered["normal_load"]) / ball.load,
             (sunk * RADIUS / a**2) ** -1.5,
         ),
         Check("sphere, e = 0: load carried by the plane z = a", carried / ball.load, 1.0),
