@@ -29,8 +29,9 @@ SOURCE = "finite elements (scikit-fem), own error {:.0e} {}"
 QUICK_STRESSES = ("full_sliding", "eccentric_sliding", "thin", "plate_sliding")
 """Load cases of the quick level."""
 
-CELLS_Y = 128
-"""Cells over the loaded width. Accuracy."""
+CELLS_Y, FINER = 128, {"wedge_sliding": 256}
+"""Cells over the loaded width, and more of them for a load that changes along x right at a free end: cells along x are
+twice as wide, and at 0.02a below the top their steps show. Accuracy."""
 
 CONTACT_CELLS = 16
 """Cells per half-width along x in contacts. Accuracy."""
@@ -49,7 +50,7 @@ def stress_checks(name: str) -> Iterator[Check]:
     below = reference.stress
     points = {axis: below[axis].values.astype(float) for axis in "xyz"}
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    stress = stress_field(body, pressure_of(case), case.friction, *points.values())
+    stress = stress_field(body, pressure_of(case, FINER.get(name, CELLS_Y)), case.friction, *points.values())
     computed = np.array([stress[component].values for component in STRESSES])
     expected = np.array([below[component].transpose("x", "y", "z").values for component in STRESSES])
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
@@ -63,7 +64,7 @@ def stress_checks(name: str) -> Iterator[Check]:
     )
     quantity = f"six stresses / p0, z >= {float(below['z'].min()):g}a"
     source = SOURCE.format(reference.error, "p0")
-    yield compare_fields(label, quantity, source, computed, expected, 2e-3, curve=curve)
+    yield compare_fields(label, quantity, source, computed, expected, 1e-3, curve=curve)
     source = SOURCE.format(reference.median_error, "p0")
     yield compare_fields(label, quantity, source, computed, expected, 2e-4, median=True)
 

@@ -23,7 +23,7 @@ from contactstudy.verification.load_cases import LOAD_CASES, LoadCase, quartic
 from tests.finite_elements.harmonics import COMPONENTS
 from tests.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
 
-Z = (0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.25, 2.0, 3.0, 5.0)
+Z = (0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.25, 2.0, 3.0, 5.0)
 Y = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25)
 X = {
     8.0: (0.0, 0.02, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 7.75, 8.0),
