@@ -47,38 +47,46 @@ def test_every_study_file_can_be_planned():
 
 @pytest.fixture(scope="module")
 def regime_errors(tmp_path_factory):
-    """Errors of a few cases of the regime map, on coarse cells."""
+    """Errors of a few cases of the regime map, to a coarse accuracy."""
     module = script("regime_map")
     study = Study.from_toml(STUDIES / "regime_map.toml")
     small = replace(
         study,
-        base={**study.base, "cells_x": 4, "cells_y": 8, "field_z_over_a": [0.5]},
-        sweep={**study.sweep, "e_over_a": [0.0, 1.0]},
+        base={**study.base, "accuracy": 0.05, "field_z_over_a": [0.5]},
+        sweep={**study.sweep, "e_over_a": [0.0, 1.0], "profile": study.sweep["profile"][:1]},
         zip=[study.zip[0], {"gamma": [0.078, 0.104], "field_x_over_a": [[0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0]]}],
     )
     folder = tmp_path_factory.mktemp("regime_map")
     run_study(small, folder, workers=0)
-    return module.errors(module.evaluated(open_study(folder, cells="own")))
+    return module.errors(module.evaluated(open_study(folder)))
 
 
 def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
     module = script("regime_map")
-    assert np.isfinite(regime_errors["peak_pressure"]).all()
-    flush = regime_errors.sel(e_over_a=0.0, friction=0.0)
+    full = regime_errors.sel(profile="full crown")
+    assert np.isfinite(full["peak_pressure_first"]).all()
+    flush = full.sel(e_over_a=0.0, friction=0.0)
     by_model = {model: flush.sel(approximation=model) for model in module.MODELS}
-    assert float(by_model["half-space"]["peak_pressure"].min()) > 3
-    assert float(by_model["half-space"]["end_load"].min()) > 30
-    assert float(np.abs(by_model["single mirror"]["end_load"]).max()) < 3
+    assert float(by_model["half-space"]["peak_pressure_first"].min()) > 3
+    assert float(by_model["half-space"]["end_load_first"].min()) > 30
+    assert float(np.abs(by_model["single mirror"]["end_load_first"]).max()) < 3
     # It believes that the body goes on behind the other end, which then takes load from this one.
-    assert float(by_model["quarter space"]["end_load"].max()) < -10
+    assert float(by_model["quarter space"]["end_load_first"].max()) < -10
     # Friction leaves the pressure as it is.
-    for name in ("peak_pressure", "end_load"):
-        np.testing.assert_allclose(
-            regime_errors[name].sel(friction=0.3), regime_errors[name].sel(friction=0.0), atol=1e-9
-        )
+    for name in ("peak_pressure_first", "end_load_first"):
+        np.testing.assert_allclose(full[name].sel(friction=0.3), full[name].sel(friction=0.0), atol=1e-9)
     for profile in regime_errors["profile"].values:
         assert len(module.draw(regime_errors, profile).axes) == 16
     assert module.table(regime_errors).count("\n") == 16
+
+
+def test_regime_map_marks_what_only_the_model_makes_singular(regime_errors):
+    """The half-space presses the ends of a slight crown without a limit."""
+    module = script("regime_map")
+    endless = regime_errors.copy(deep=True)
+    endless["peak_pressure_first"].loc[{"approximation": "half-space"}] = np.inf
+    figure = module.draw(endless, "full crown")
+    assert any(text.get_text() == "\N{INFINITY}" for text in figure.axes[0].texts)
 
 
 def test_regime_map_says_from_where_on_errors_stay_small():
@@ -86,14 +94,15 @@ def test_regime_map_says_from_where_on_errors_stay_small():
     # Small at 0 but not at 1, and so from 2 on only; never small; small at 0, where longer distances do not exist.
     values = [[-2.0, 9.0, -0.5], [8.0, 9.0, np.nan], [-0.5, 7.0, np.nan], [0.7, np.nan, np.nan]]
     error = xr.Dataset(
-        {"end_load": (("e_over_a", "gamma"), values)}, {"e_over_a": [0.0, 1.0, 2.0, 4.0], "gamma": [3.0, 2.0, 1.0]}
+        {"end_load_first": (("e_over_a", "gamma"), values)},
+        {"e_over_a": [0.0, 1.0, 2.0, 4.0], "gamma": [3.0, 2.0, 1.0]},
     )
-    found = module.limits(error)["end_load"]
+    found = module.limits(error)["end_load_first"]
     np.testing.assert_array_equal(found.sel(below=5.0), [2.0, np.nan, 0.0])
     np.testing.assert_array_equal(found.sel(below=1.0), [2.0, np.nan, 0.0])
 
 
-def test_regime_map_checks_its_cells_on_some_of_its_cases():
+def test_regime_map_checks_its_accuracy_on_some_of_its_cases():
     module = script("regime_map")
     study = Study.from_toml(STUDIES / "regime_map.toml")
     known = {case.name for case in study.plan().cases}
@@ -101,7 +110,7 @@ def test_regime_map_checks_its_cells_on_some_of_its_cases():
     assert check.cases
     assert not check.skipped
     assert {case.name for case in check.cases} < known
-    assert {case.parameters["cells_x"] for case in check.cases} == {2 * study.base["cells_x"]}
+    assert {case.parameters["accuracy"] for case in check.cases} == {study.base["accuracy"] / 4}
 
 
 def test_best_profile_needs_less_crown_between_free_ends():
