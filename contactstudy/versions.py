@@ -9,8 +9,8 @@ from importlib.metadata import PackageNotFoundError, version
 PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")
 """What a number depends on."""
 
-OTHERS = ("dask", "matplotlib", "pandas", "panel", "holoviews", "hvplot")
-"""What is worth knowing besides; the last three come with the extra `explore`."""
+OTHERS = ("dask", "matplotlib", "pandas", "panel", "clarabel")
+"""What is worth knowing besides; the last two come with the extras `explore` and `shakedown`."""
 
 
 def version_of(package: str) -> str:

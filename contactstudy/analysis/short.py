@@ -35,9 +35,12 @@ PLAIN = {
     "longitudinal_creepage": "longitudinal creepage",
     "lateral_creepage": "lateral creepage",
     "spin": "spin",
-    "frictional_work": "frictional work",
+    "friction_work": "frictional work",
 }
 """Scalars that are shown where they are there and not zero."""
+
+CERTIFICATES = ("load_position",)
+"""Scalars of which the variable with ``_error`` says how well a prescribed value was met, in other units."""
 
 
 class MainNumber(NamedTuple):
@@ -155,7 +158,8 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
     yield from _stress(one)
     for name, meaning in PLAIN.items():
         if name in one and float(one[name]) != 0 and np.isfinite(float(one[name])):
-            yield _row(one, name, meaning)
+            with_estimate = f"{name}_error" in one and name not in CERTIFICATES
+            yield (_settled if with_estimate else _row)(one, name, meaning)
 
 
 def _row(one: xr.Dataset, name: str, meaning: str = "", remark: str = "") -> MainNumber:

@@ -252,6 +252,7 @@ HEAT = {
     "heat_partition": Variable(XY, "1", r"\dot{q}_1/\dot{q}", "part of the frictional heat that goes into the body"),
     "body_heat_share": Variable(SCALAR, "1", "", "part of the whole frictional heat that goes into the body"),
     "max_temperature_rise": Variable(SCALAR, "K", r"\max T", "largest temperature rise of the surfaces"),
+    "max_temperature_rise_error": Variable(SCALAR, "K", "", "estimated error of the largest temperature rise"),
     "max_temperature_rise_x": Variable(SCALAR, "m", "", "x of the largest temperature rise"),
     "max_temperature_rise_y": Variable(SCALAR, "m", "", "y of the largest temperature rise"),
     "friction_power": Variable(SCALAR, "W", "", "power that friction turns into heat"),

@@ -37,6 +37,14 @@ class _Heat(NamedTuple):
     roller_speed: float
 
 
+class _Temperatures(NamedTuple):
+    """Rises of the surfaces by name, heat into the body, and how well the surfaces' temperatures agree."""
+
+    rises: dict[str, FloatArray]
+    into_body: FloatArray
+    mismatch: float
+
+
 def flash_temperature(
     case: Case,
     result: xr.Dataset,
@@ -80,9 +88,9 @@ def flash_temperature(
         `temperature_rise` of the body's surface and `roller_temperature_rise` (x, y), K; `frictional_heat` and
         `heat_into_body` (x, y), W/m2; `heat_partition` (x, y), the part of the heat that goes into the body, NaN
         where there is none; `body_heat_share` of the whole; `max_temperature_rise` of both surfaces, between the
-        cells along y, with `max_temperature_rise_x` and ``_y``; `friction_power`, W; `heat_error`, heat into both
-        bodies minus that power, over it; `temperature_mismatch` of the surfaces over the largest rise. With `z` also
-        `body_temperature_rise` (x, y, z).
+        cells along y, with `max_temperature_rise_x` and ``_y`` and `max_temperature_rise_error`; `friction_power`, W;
+        `heat_error`, heat into both bodies minus that power, over it; `temperature_mismatch` of the surfaces over the
+        largest rise. With `z` also `body_temperature_rise` (x, y, z).
 
     Raises
     ------
@@ -102,6 +110,9 @@ def flash_temperature(
     Properties do not depend on temperature, and the contact does not deform by heat. At a singular end the heat is
     infinite as the pressure is, and so is the temperature of a fast surface there: the maximum is then that of the
     last cell.
+
+    The stated error of the maximum is its change on cells twice as wide along y, plus the relative error of the
+    largest pressure. It is NaN where that pressure has no known error, or no limit.
 
     Examples
     --------
@@ -134,46 +145,37 @@ def flash_temperature(
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = _frictional_heat(case, one, grid, body_speed, roller_speed, rolling_speed)
 
-    moving = MovingBody(body, heat.body_speed, Ends(*case.body.extent))
-    whole = slice(0, grid.cells_x)
-    own = SourceOperator(moving, grid, whole)
-    other = None
-    if roller is not None:
-        columns, ends = _under_roller(case, grid, pressure)
-        other = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
-    mismatch = np.nan
-    if share is None:
-        assert other is not None
-        into_body, mismatch = shared_heat(own, other, heat.density, pressure > 0)
-    else:
-        into_body = share * heat.density
+    found = _temperatures(case, grid, heat, pressure, body, roller, share)
+    into_body, into_roller = found.into_body, heat.density - found.into_body
     area = grid.weights * grid.cell_area
-    rises = {"temperature_rise": own(into_body)}
-    into_roller = heat.density - into_body
-    if other is not None:
-        rises["roller_temperature_rise"] = other(into_roller)
     made = heat.density != 0
-    fields = rises | {
+    fields = found.rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
         "heat_partition": np.where(made, into_body / np.where(made, heat.density, 1.0), np.nan),
     }
     values = {name: (("x", "y"), each) for name, each in fields.items()}
-    scalars = _largest(grid, rises)
+    scalars = _largest(grid, found.rises)
+    halved, wider = _on_wider_cells(grid, heat.density), _on_wider_cells(grid, pressure)
+    on_half = _temperatures(case, halved.grid, heat._replace(density=halved.values), wider.values, body, roller, share)
+    change = abs(_largest(halved.grid, on_half.rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
+    scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * _pressure_error(one)
     scalars["friction_power"] = heat.power
     scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
     entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
     scalars["heat_error"] = float(entered / heat.power - 1) if heat.power else 0.0
-    scalars["temperature_mismatch"] = mismatch
+    scalars["temperature_mismatch"] = found.mismatch
     kept = {name: one.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in one.coords}
     hot = xr.Dataset(values | scalars, coords=kept)
     for name in ("hertz_half_width", "hertz_max_pressure"):
         if name in one:
             hot[name] = one[name]
     if depths is not None:
+        moving, whole = MovingBody(body, heat.body_speed, Ends(*case.body.extent)), slice(0, grid.cells_x)
         inside = [SourceOperator(moving, grid, whole, float(depth))(into_body) for depth in depths]
         hot = hot.assign_coords(z=depths)
         hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
+    mismatch = found.mismatch
     if mismatch > LARGEST_MISMATCH:
         warnings.warn(
             f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest",
@@ -182,6 +184,56 @@ def flash_temperature(
         )
     _warn_above(hot, limit)
     return describe(hot, "flash temperature of a contact")
+
+
+def _temperatures(
+    case: Case,
+    grid: Grid,
+    heat: _Heat,
+    pressure: FloatArray,
+    body: ThermalProperties,
+    roller: ThermalProperties | None,
+    share: float | None,
+) -> _Temperatures:
+    """Share the heat and find how hot both surfaces get."""
+    own = SourceOperator(MovingBody(body, heat.body_speed, Ends(*case.body.extent)), grid, slice(0, grid.cells_x))
+    if roller is None:
+        assert share is not None
+        return _Temperatures({"temperature_rise": own(share * heat.density)}, share * heat.density, np.nan)
+    columns, ends = _under_roller(case, grid, pressure)
+    other = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
+    if share is None:
+        into_body, mismatch = shared_heat(own, other, heat.density, pressure > 0)
+    else:
+        into_body, mismatch = share * heat.density, np.nan
+    rises = {"temperature_rise": own(into_body), "roller_temperature_rise": other(heat.density - into_body)}
+    return _Temperatures(rises, into_body, mismatch)
+
+
+class _OnCells(NamedTuple):
+    """Cells, and means over them."""
+
+    grid: Grid
+    values: FloatArray
+
+
+def _on_wider_cells(grid: Grid, values: FloatArray) -> _OnCells:
+    """Means over half as many cells along y."""
+    wider = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
+    summed = np.concatenate([np.zeros((grid.cells_x, 1)), np.cumsum(values, axis=1)], axis=1)
+    # A border of a wider cell may cut a cell: that one's part is its share of the width.
+    cuts = np.arange(wider.cells_y + 1) * (grid.cells_y / wider.cells_y)
+    whole = np.minimum(cuts.astype(int), grid.cells_y - 1)
+    at_cuts = summed[:, whole] + (cuts - whole) * values[:, whole]
+    return _OnCells(wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y)
+
+
+def _pressure_error(one: xr.Dataset) -> float:
+    """Error of the largest pressure over that pressure; NaN where there is none, or no largest pressure."""
+    if not {"peak_pressure", "peak_pressure_error"} <= set(one.variables):
+        return float("nan")
+    peak, error = float(one["peak_pressure"]), float(one["peak_pressure_error"])
+    return error / peak if np.isfinite(peak) and np.isfinite(error) and peak > 0 else float("nan")
 
 
 def _share(partition: object) -> float:

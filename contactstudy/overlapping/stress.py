@@ -80,11 +80,12 @@ def _beside_face_load(
     waves = np.exp(1j * np.outer(depth, z))
     right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for components that both see alike or reversed.
-    decay, alike, reversed_ = _from_end(x, kappa, tau)
+    decay, ramp = _from_end(x, kappa, tau)
+    alike = reversed_ = ramp
     if modes.parity:
-        own, ramp, _ = _from_end(modes.length - x, kappa, tau)
+        own, ramp = _from_end(modes.length - x, kappa, tau)
         decay += modes.parity * own
-        alike += modes.parity * ramp
+        alike = alike + modes.parity * ramp
         reversed_ = reversed_ - modes.parity * ramp
     potential = (1 - 2 * nu) * decay - alike
     lateral_part = 2 * nu * decay
@@ -102,15 +103,13 @@ def _beside_face_load(
     return result
 
 
-def _from_end(
-    distance: FloatArray, kappa: ComplexArray, tau: ComplexArray
-) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
-    """Return ``exp(-X)`` and twice ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
+def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
     scaled = np.outer(distance, kappa)
     decay = np.exp(-scaled)
     scaled += tau
     scaled *= decay
-    return decay, scaled, scaled.copy()
+    return decay, scaled
 
 
 STRESS = Harmonics(

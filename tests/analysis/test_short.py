@@ -28,6 +28,17 @@ def test_a_settled_peak_has_its_error_and_a_cell_says_that_it_has_none(solved: x
     assert table.loc["peak_pressure", "error"] == 0.0121e9
 
 
+def test_scalars_of_a_motion_have_their_errors(solved: xr.Dataset) -> None:
+    work = xr.DataArray(2.5e-3, attrs={"units": "J/m"})
+    moved = solved.assign(force_y=1.25, force_y_error=0.02, friction_work=work, friction_work_error=2e-5, spin=0.3)
+    view = short(moved.assign(load_position=1e-3, load_position_error=1e-12))
+    assert (view["force_y"].error, view["friction_work"].error) == (0.02, 2e-5)
+    assert "±" in view["friction_work"].text
+    # No estimate at all, and a certificate that is no estimate of this number.
+    assert np.isnan(view["spin"].error)
+    assert np.isnan(view["load_position"].error)
+
+
 def test_no_singular_value_is_shown_as_a_number(singular: xr.Dataset) -> None:
     view = short(singular)
     for name in ("peak_pressure", "end_pressure_first", "peak_von_mises"):

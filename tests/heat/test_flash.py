@@ -174,3 +174,18 @@ def test_bad_speeds_and_motions_in_rolling(rolled, line_case, on_line, steel):
         flash_temperature(shifted, result, body=steel, roller=steel, rolling_speed=1.0)
     with pytest.raises(InvalidInputError, match="slip"):
         flash_temperature(case, on_line(), body=steel, roller=steel, rolling_speed=1.0)
+
+
+def test_the_stated_error_covers_finer_cells_and_a_singular_end_has_none(line_case, on_line, steel):
+    coarse, fine = (on_line(Grid((0.0, 1e-3), (-1.3e-4, 1.3e-4), 4, cells)) for cells in (20, 160))
+    known = {"peak_pressure": 1.5e9, "peak_pressure_error": 1.5e6}
+    speeds = {"body_speed": -10.0, "roller_speed": -9.0}
+    found, settled = (
+        flash_temperature(line_case, each.assign(known), body=steel, roller=steel, **speeds) for each in (coarse, fine)
+    )
+    difference = abs(float(found.max_temperature_rise - settled.max_temperature_rise))
+    assert difference < float(found.max_temperature_rise_error) < 0.1 * float(found.max_temperature_rise)
+    assert float(settled.max_temperature_rise_error) < 0.3 * float(found.max_temperature_rise_error)
+    for unknown in ({}, {"peak_pressure": np.inf, "peak_pressure_error": np.inf}):
+        open_end = flash_temperature(line_case, coarse.assign(unknown), body=steel, roller=steel, **speeds)
+        assert np.isnan(float(open_end.max_temperature_rise_error))
