@@ -5,7 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from contactstudy import Rolling
+from contactstudy.contact import leading_edge
 from contactstudy.contact.leading_edge import EDGE_OFFSET, TIED_PLACE, RollingCells
+from contactstudy.verification.friction import material, rolling_ellipse
 
 
 def strip(part: float, cells: int = 20) -> np.ndarray:
@@ -62,3 +65,22 @@ def test_change_is_exact_for_parabolas_wherever_it_is_taken() -> None:
     displaced = (2 + 3 * y - 0.7 * y**2)[None, :]
     at = y[cells.unknown[1]] + cells.place * dy
     assert cells.change(displaced, dy) == pytest.approx(3 - 1.4 * at)
+
+
+def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell_late(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The program CONTACT on the same 1276 cells, with plain differences: force, moment and cells that stick.
+
+    Its spin acts a third of a cell further ahead, which is a lateral creepage of that much spin. One shift gives all
+    three numbers; both ways converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
+    """
+    between_neighbours = 0.5 - EDGE_OFFSET
+    monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: between_neighbours)
+    load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
+    motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
+    found = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
+    assert int((found["pressure"] > 0).sum()) == 1276
+    assert float(found["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
+    assert float(found["moment_z"]) == pytest.approx(-48.21, abs=0.02)
+    assert int(found["stick"].sum()) == pytest.approx(356, abs=2)
