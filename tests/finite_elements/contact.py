@@ -141,7 +141,7 @@ def solve(case: ContactCase, flexible: Flexibility, step: float, window: float, 
     gaps = np.outer(twice * step, merge @ _moments(case.gap_x, flexible.nodes))
     # Integral of y**2 times a hat: step (y**2 + step**2 / 6).
     gaps += np.outer(twice * step * (y**2 + step**2 / 6), merge @ flexible.weights)
-    pressure = _complementarity(matrix, gaps.ravel(), weights, case.load)
+    pressure = complementarity(matrix, gaps.ravel(), weights, case.load)
     half = merge.T @ pressure.reshape(y.size, -1).T
     whole = np.concatenate([half, half[: flexible.nodes.size // 2][::-1]])
     return FoundContact(flexible.nodes, y, whole)
@@ -163,7 +163,7 @@ def _moments(function: Callable[[Array], Array], nodes: Array) -> Array:
     return np.array([float((values * hat(x)).sum()) for hat in hat_pairs(nodes)])
 
 
-def _complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:
+def complementarity(matrix: Array, gap: Array, weights: Array, load: float) -> Array:
     """Pressure `>= 0` of the given load that minimises the energy; the approach is found by bracketing."""
     # A constant between all hats only shifts the approach: enough of it makes the matrix positive definite.
     constant = 10 * np.abs(matrix).sum() / weights.sum() ** 2

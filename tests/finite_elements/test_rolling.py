@@ -1,0 +1,43 @@
+"""Stick and slip between free ends: the solver against finite elements with a convex program of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import FiniteLengthSpace, Material, Rolling
+from contactstudy.bodies import Counterbody
+from contactstudy.contact import leading_edge
+from contactstudy.contact.solve import solve_contact
+from contactstudy.verification.problems import on_cells
+from tests.finite_elements.rolling import flexibility, roll
+from tests.finite_elements.superpose import PANELS, Resolution
+
+LENGTH, COLUMNS, STRIPS, WINDOW, POISSON, FRICTION, PART = 8.0, 8, 26, 1.3, 0.3, 0.3, 0.64
+LOAD = 0.25 * np.pi * 0.5 * LENGTH  # half-width 1 of a pair with the modulus 1/2
+
+
+@pytest.mark.slow
+def test_rolling_between_free_ends_is_that_of_finite_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A short body under longitudinal creepage, with the transverse traction that its ends make.
+
+    Slip is taken between neighbours here as there: both then have the same error of first order.
+    """
+    mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
+    expected = roll(flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, PART, 2 * STRIPS)
+    assert expected.change < 1e-3
+    monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: 0.5 - leading_edge.EDGE_OFFSET)
+    gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
+    body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
+    motion = Rolling(force_y=PART * FRICTION * LOAD)
+    found = solve_contact(body, gap, LOAD, FRICTION, counterbody=Counterbody(body), motion=motion)
+    # At this creepage 1 % of it is 0.75 % of the force.
+    assert float(found["longitudinal_creepage"]) == pytest.approx(expected.creepage, rel=1e-3)
+    first, largest = found.isel(x=slice(0, COLUMNS // 2)), FRICTION * float(found["pressure"].max())
+    # Means of columns as wide as a half-width there, their middles here.
+    assert np.abs(first["pressure"] - expected.pressure).max() < 1e-2 * float(found["pressure"].max())
+    assert np.abs(expected.along_x).max() > 0.1 * largest
+    for own, theirs in ((first["traction_x"], expected.along_x), (first["traction_y"], expected.along_y)):
+        # Where slip begins a cell of one sticks that slips in the other.
+        assert np.abs(own - theirs).max() < 0.05 * largest
+        assert np.abs(own - theirs).mean() < 2e-3 * largest
