@@ -12,6 +12,10 @@ from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.fine_cells import FineCells, ends_in_steps
 from contactstudy.kernels.influence import Influence
 
+CELLS_PER_POSITION = 32
+"""Uniform cells along x per position from which on each position sums over them as over columns: a convolution has
+the field at all of them. Speed."""
+
 
 def smooth_field(
     load: FloatArray,
@@ -30,7 +34,7 @@ def smooth_field(
     if not load.any() or ends_in_steps(load):
         return half_space_field(load, influence, grid, x, y, z, extent=extent)
     fine = FineCells(load, grid, extent, influence.load.sign_x)
-    if not grid.uniform:
+    if not grid.uniform or CELLS_PER_POSITION * x.size <= grid.cells_x:
         return columns_field(load, influence, grid, x, y, z, extent=extent, fine=fine)
     near = fine.near(z)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)

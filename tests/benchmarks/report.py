@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from importlib import metadata
 from pathlib import Path
 
-from tests.benchmarks import bodies, contacts
+from tests.benchmarks import bodies, contacts, rolling, settled
 from tests.benchmarks.timing import Report, Row
 
 PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
@@ -19,6 +19,8 @@ PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
     "building": bodies.building,
     "stresses": bodies.stresses,
     "long": bodies.long_rollers,
+    "rolling": rolling.steady_rolling,
+    "refined": settled.refined_columns,
     "iterations": contacts.iterations,
 }
 VERSIONS = ("contactstudy", "numpy", "scipy", "pyfftw", "aspher", "tamaas", "ContactMechanics")
