@@ -11,7 +11,7 @@ from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.compliance import contact_cells, tangential_inverse
 from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
-from contactstudy.contact.leading_edge import RollingCells
+from contactstudy.contact.leading_edge import RollingCells, taken_together
 from contactstudy.contact.nested import Coarser, guess_from, joined
 from contactstudy.contact.rubbed import RelativeOperator, Surfaces, amplitude, check_forces, motions_of, resultant
 from contactstudy.contact.tractions import Tractions, no_tractions, tractions_of_strips
@@ -65,7 +65,8 @@ def tractions_of(
     grid = surfaces.grid
     bound = friction * pressure
     rolling = isinstance(motion, Rolling)
-    cells = RollingCells.of(pressure, bound) if rolling else _all_cells(bound)
+    together = taken_together(grid.x, grid.widths, grid.dy)
+    cells = RollingCells.of(pressure, bound, together) if rolling else _all_cells(bound)
     check_forces(motion, float((bound * surfaces.areas).sum()))
     if not cells.unknown.size:
         return no_tractions(motion, surfaces)

@@ -31,6 +31,9 @@ EDGE_OFFSET, TIED_PLACE = -0.84, 0.475
 FEWEST = 6
 """Cells along y from which on the place of the edge is told from the pressure. Accuracy."""
 
+TOGETHER = 1.0
+"""Distance of columns, over a cell's length along y, below which the places of both are mixed. Accuracy."""
+
 BEHIND = 1.5
 """Cells between the third last centre and the inner border of the last cell."""
 
@@ -61,8 +64,12 @@ class RollingCells:
     ratio: FloatArray
 
     @classmethod
-    def of(cls, pressure: FloatArray, bound: FloatArray) -> RollingCells:
-        """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
+    def of(cls, pressure: FloatArray, bound: FloatArray, together: FloatArray | None = None) -> RollingCells:
+        """Cells of a contact under `pressure` (x, y), with the bound on the traction.
+
+        `together` says how much each column counts in the place of each, as `taken_together` does. Default: each has
+        its own.
+        """
         carries: BoolArray = (pressure > 0) & (bound > 0)
         ahead = np.pad(carries, ((0, 0), (0, 1)))[:, 1:]
         leading = np.argwhere(carries & ~ahead)
@@ -80,6 +87,9 @@ class RollingCells:
                 place[row, first : last + 1] = TIED_PLACE
                 tied.append((row, last))
                 ratio.append(bound[row, last] / bound[row, last - 1])
+        if together is not None:
+            counted = together @ carries
+            place = together @ (carries * place) / np.where(counted > 0, counted, 1.0)
         own = carries.copy()
         tied_cells = np.array(tied, dtype=np.int64).reshape(-1, 2).T
         own[tuple(tied_cells)] = False
@@ -113,6 +123,16 @@ class RollingCells:
         b, last = self.place, displacement.shape[1] - 1
         here, next_, second = (displacement[row, np.minimum(column + step, last)] for step in (0, 1, 2))
         return np.asarray(((b - 1.5) * here + (2 - 2 * b) * next_ + (b - 0.5) * second) / dy)
+
+
+def taken_together(x: FloatArray, widths: FloatArray, dy: float) -> FloatArray | None:
+    """How much each column counts in the place at which another takes the slip: array (column, column).
+
+    Columns nearer to each other than a cell is long share their places: taken at different places, the slips of narrow
+    neighbours would differ by more than their tractions. None if there are none so near.
+    """
+    near = np.maximum(1 - np.abs(x[:, None] - x) / (TOGETHER * dy), 0.0)
+    return near * widths if np.count_nonzero(near) > x.size else None
 
 
 def _part_inside(pressure: FloatArray) -> float:

@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import Rolling
 from contactstudy.contact import leading_edge
-from contactstudy.contact.leading_edge import EDGE_OFFSET, TIED_PLACE, RollingCells
+from contactstudy.contact.leading_edge import EDGE_OFFSET, TIED_PLACE, RollingCells, taken_together
 from contactstudy.verification.friction import material, rolling_ellipse
 
 
@@ -84,3 +84,17 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     assert float(found["force_x"]) / (friction * load) == pytest.approx(0.6074, abs=2e-4)
     assert float(found["moment_z"]) == pytest.approx(-48.21, abs=0.02)
     assert int(found["stick"].sum()) == pytest.approx(356, abs=2)
+
+
+def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None:
+    """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
+    pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
+    x, widths, dy = np.array([0.0, 0.01, 2.0]), np.array([0.01, 0.01, 1.0]), 1.0
+    together = taken_together(x, widths, dy)
+    assert together is not None
+    cells = RollingCells.of(pressure, pressure, together)
+    first, second, third = (cells.place[cells.unknown[0] == row][0] for row in range(3))
+    assert abs(first - second) < 0.01  # their own are 0.55 apart
+    assert first == pytest.approx(EDGE_OFFSET + 0.5 * (0.75 + 1.3), abs=0.01)
+    assert third == pytest.approx(EDGE_OFFSET + 0.9)
+    assert taken_together(np.arange(4.0), np.ones(4), 0.5) is None
