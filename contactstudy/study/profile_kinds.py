@@ -119,19 +119,20 @@ class MeasuredPoints:
 
     def read(self, table: Mapping[str, Any], depth: int) -> Table:
         """Positions and drops, from the file if one is named: the content is what counts, not where it was."""
-        options = ("remove_tilt", "remove_offset", "largest_spike")
-        points = ("positions", "drops")
-        _only(table, ["file", *options, *points])
+        numbers, points = ("largest_spike", "cutoff"), ("positions", "drops")
+        flags = ("remove_tilt", "remove_offset")
+        _only(table, ["file", *flags, "turn", *numbers, *points])
         values = {key: value for key, value in table.items() if value is not None}
         if "file" in values:
             if any(name in values for name in points):
                 raise InvalidInputError("profile", sorted(values), "given with file, or with positions and drops")
             checks.instance("profile.file", values["file"], str, "the path of a CSV or netCDF file")
-            for option in options[:2]:
+            for option in flags:
                 checks.instance(f"profile.{option}", values.get(option, False), bool, "true or false")
             read = profiles.Measured.from_file(values.pop("file"), **values)
-            values = {"positions": read.positions, "drops": read.drops, "largest_spike": read.largest_spike}
-        _only(values, [*points, "largest_spike"])
+            kept = {name: getattr(read, name) for name in (*points, *numbers)}
+            values = {name: value for name, value in kept.items() if value is not None}
+        _only(values, [*points, *numbers])
         _require(values, *points)
         result: Table = {
             name: checks.coordinates(f"profile.{name}", values[name], "metres").tolist() for name in points
@@ -143,9 +144,8 @@ class MeasuredPoints:
                 f"measured at no more than {MOST_POINTS} points, because every result keeps them",
                 "thin the points out: cells of the contact are micrometres wide",
             )
-        if values.get("largest_spike") is not None:
-            result["largest_spike"] = number("profile.largest_spike", values["largest_spike"])
-        return result
+        given = {name: number(f"profile.{name}", values[name]) for name in numbers if name in values}
+        return result | given
 
     def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
         """Make the profile of the points."""

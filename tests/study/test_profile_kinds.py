@@ -32,7 +32,7 @@ EXAMPLES = {
     "partial-crown": profiles.PartialCrown(1e-4, 0.5, 5e-5, 0.1),
     "ellipsoid": profiles.Ellipsoid(0.5),
     "sphere": profiles.Sphere(BASE["radius"]),
-    "measured": profiles.Measured([0.0, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4], [1e-6, 5e-7, 0.0, 0.0, 5e-7, 1e-6], 1e-6),
+    "measured": profiles.Measured([round(5e-5 * k, 6) for k in range(11)], [4e-7] + 9 * [1e-7] + [0.0], 1e-6, 3e-4),
     "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
     "effective-length": profiles.EffectiveLength(profiles.FullCrown(0.5), 4.5e-4),
     "sum": profiles.Tapered(0.05) + profiles.IsoTapered(8e-3),
@@ -110,6 +110,9 @@ def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> 
     assert identity(trace(tmp_path / "one")) == first
     assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
     assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
+    assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first
+    filtered = built({"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180})
+    assert filtered.cutoff == 1e-4
 
 
 def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path, monkeypatch) -> None:
