@@ -102,7 +102,7 @@ def test_export(study_file, tmp_path, capsys):
     with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 4
-    assert float(rows[0]["peak_pressure"]) > 1e9
+    assert float(rows[0]["peak_pressure [Pa]"]) > 1e9
     capsys.readouterr()
     assert command("export", "results/small", "--out", "-") == 0
     assert capsys.readouterr().out.startswith("e_over_a,friction,")
