@@ -6,7 +6,7 @@ import itertools
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from contactstudy.arrays.engineering import quantity
 from contactstudy.errors import ContactStudyError
@@ -149,35 +149,45 @@ def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]
     return any(all(label(name, values.get(name)) in allowed for name, allowed in rule.items()) for rule in rules)
 
 
-def make_plan(
-    name: str,
-    level: Level,
+class Combination(NamedTuple):
+    """One case before it is planned: all its values, those that are its own, and its place in a product."""
+
+    values: dict[str, Any]
+    own: dict[str, Any]
+    position: tuple[int, ...]
+
+
+def combinations(
     base: Mapping[str, Any],
     axes: tuple[Axis, ...],
     cases: tuple[Mapping[str, Any], ...],
     exclude: tuple[Mapping[str, list[Any]], ...],
-) -> Plan:
+) -> list[Combination]:
     """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
 
     All values are checked already; rules of `exclude` hold lists of labels.
     """
-    chosen: list[tuple[dict[str, Any], dict[str, Any], tuple[int, ...]]] = []
+    chosen: list[Combination] = []
     if axes or not cases:
         for position in itertools.product(*(range(len(axis.entries)) for axis in axes)):
             swept: dict[str, Any] = {}
             for axis, index in zip(axes, position, strict=True):
                 swept |= axis.entries[index]
-            chosen.append(({**base, **swept}, swept, position))
-    chosen += [({**base, **case}, dict(case), ()) for case in cases]
-    kept = [entry for entry in chosen if not _excluded(entry[0], exclude)]
-    if cases:
-        cube, positions = cube_of_cases([entry[0] for entry in kept], label)
+            chosen.append(Combination({**base, **swept}, swept, position))
+    chosen += [Combination({**base, **case}, dict(case), ()) for case in cases]
+    return [entry for entry in chosen if not _excluded(entry.values, exclude)]
+
+
+def make_plan(name: str, level: Level, kept: list[Combination], axes: tuple[Axis, ...], explicit: bool) -> Plan:
+    """Lay out the combinations of a study along its axes, or along what differs if it has explicit cases."""
+    if explicit:
+        cube, positions = cube_of_cases([entry.values for entry in kept], label)
     else:
         cube = cube_of_axes(axes, label)
-        positions = [entry[2] if cube.dims != ("case",) or axes else (0,) for entry in kept]
+        positions = [entry.position if cube.dims != ("case",) or axes else (0,) for entry in kept]
     planner = Planner()
     planned = [
-        planner.planned(values, swept, position) for (values, swept, _), position in zip(kept, positions, strict=True)
+        planner.planned(entry.values, entry.own, position) for entry, position in zip(kept, positions, strict=True)
     ]
     return Plan(name, level, tuple(planned), cube)
 
