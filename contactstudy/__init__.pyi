@@ -33,6 +33,7 @@ from .contact.end_law import edge_peak as edge_peak
 from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError
+from .errors import MagnitudeWarning as MagnitudeWarning
 from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
 from .explorer.show import explore as explore

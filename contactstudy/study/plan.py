@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from contactstudy.arrays.engineering import quantity
+from contactstudy.case.doubts import doubts
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
@@ -48,6 +50,8 @@ class PlannedCase:
         Sizes of grid and stress field.
     described : dict
         End distance over the half-width, friction, gamma and profile; empty for a skipped case.
+    doubts : tuple of str
+        Questions on values of a size that is mostly a mistake in the unit.
     """
 
     id: str
@@ -59,6 +63,7 @@ class PlannedCase:
     cells: int = 0
     points: int = 0
     described: Described = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()
 
     def size(self, level: Level) -> int:
         """Bytes of the case's file before compression."""
@@ -103,6 +108,12 @@ class Plan:
     def unique(self) -> tuple[PlannedCase, ...]:
         """Cases to solve, each once, even if the study names it twice."""
         return tuple({case.id: case for case in self.cases if not case.reason}.values())
+
+    @property
+    def doubts(self) -> tuple[str, ...]:
+        """Questions on values of a size that is mostly a mistake in the unit, each once, with the number of cases."""
+        counts = Counter(question for case in self.unique for question in case.doubts)
+        return tuple(f"{question} ({number} case{'s' * (number > 1)})" for question, number in counts.items())
 
     @property
     def size(self) -> int:
@@ -219,5 +230,13 @@ class Planner:
             return PlannedCase(identity, parameters, words, position, reason=str(error))
         cells = math.prod(setup.shape)
         return PlannedCase(
-            identity, parameters, words, position, "", setup.operator, cells, setup.points, setup.described
+            identity,
+            parameters,
+            words,
+            position,
+            operator=setup.operator,
+            cells=cells,
+            points=setup.points,
+            described=setup.described,
+            doubts=doubts(setup.case),
         )

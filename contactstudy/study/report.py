@@ -82,7 +82,9 @@ def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterat
 
 
 def forecast_lines(plan: Plan, entries: list[Entry]) -> Iterator[str]:
-    """Lines on the bytes and the time that the cases to come will take."""
+    """Lines on doubtful magnitudes, and on the bytes and the time that the cases to come will take."""
+    for doubt in plan.doubts[:SHOWN]:
+        yield f"  doubtful, for units are SI: {doubt}"
     pairs = list(zip(plan.cases, entries, strict=True))
     done = {case.id: (case.cost, entry.scalars["seconds"]) for case, entry in pairs if "seconds" in entry.scalars}
     todo = {case.id: case for case, entry in pairs if entry.status == "missing"}
