@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import xarray as xr
 
@@ -22,7 +23,7 @@ KNOWN: dict[str, dict[str, float]] = {
 
 
 def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
-    """Return an array with its values in `unit`, "m" or "Pa", and its positions in metres.
+    """Return an array with its values in `unit`, one of :data:`KNOWN`, and its positions in metres.
 
     Values and positions that do not say their unit are taken to be in these.
 
@@ -38,12 +39,26 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
     """
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     factors = {
-        axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in ("x", "y", "x_width") if axis in array.coords
+        axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in ("x", "y", "z", "x_width") if axis in array.coords
     }
-    moved = {axis: array[axis] * factor for axis, factor in factors.items() if factor != 1}
+    moved = {axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1}
     own = _factor(name, array, unit)
     converted = array.assign_coords(moved) if moved else array
-    return converted if own == 1 else converted * own
+    return converted if own == 1 else (converted * own).assign_attrs(units=unit)
+
+
+def metres(name: str, positions: Any) -> Any:
+    """Return positions in metres: a DataArray that says its unit is converted, all else stays as it is.
+
+    Examples
+    --------
+    >>> metres("z", [0.1]), metres("z", xr.DataArray([0.1], attrs={"units": "mm"})).values.tolist()
+    ([0.1], [0.0001])
+    """
+    if not isinstance(positions, xr.DataArray):
+        return positions
+    factor = _factor(name, positions, "m")
+    return positions if factor == 1 else positions * factor
 
 
 def _factor(name: str, array: xr.DataArray, unit: str) -> float:

@@ -16,6 +16,7 @@ from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.instruments import Heights, of_instrument, read_heights, turned
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import labels, named
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -206,7 +207,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
     [[1.5], [2.5]]
     """
-    values, own = labelled_cells("roughness", heights)
+    values, own = labelled_cells("roughness", in_si("roughness", heights, "m"))
     if own.shape == grid.shape and all(
         np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
         for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))
