@@ -20,6 +20,7 @@ from .bodies import FiniteLengthSpace as FiniteLengthSpace
 from .bodies import HalfSpace as HalfSpace
 from .bodies import Material as Material
 from .bodies import QuarterSpace as QuarterSpace
+from .bodies import materials as materials
 from .case import Case as Case
 from .case import Roller as Roller
 from .case import choose_grid as choose_grid
