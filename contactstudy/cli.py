@@ -250,7 +250,7 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     entries = folder.entries(plan)
     _say(state_lines(plan, entries, everything=options.all))
     _say(forecast_lines(plan, entries))
-    return ALL_OK
+    return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
 
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:

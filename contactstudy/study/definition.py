@@ -18,6 +18,7 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
+from contactstudy.study.parameter import points
 from contactstudy.study.parameters import PARAMETERS, checked
 from contactstudy.study.plan import LEVELS, Combination, Plan, combinations, in_engineers_words, label, make_plan
 from contactstudy.study.profile_kinds import with_files_in
@@ -37,10 +38,12 @@ LISTED = 12
 
 def _listed(name: str, values: object) -> list[Any]:
     """Values of a swept parameter as a list that is not empty."""
+    if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
+        values = points(name, values)
     if isinstance(values, np.ndarray):
         values = values.tolist()
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-        raise InvalidInputError(name, values, "a list of values")
+        raise InvalidInputError(name, values, "a list of values, or for numbers a table with start, stop and count")
     if not values:
         raise InvalidInputError(name, values, "a list of at least one value")
     return list(values)
@@ -70,7 +73,8 @@ class Study:
     base : mapping
         Parameters that all cases share, see :data:`contactstudy.study.parameters.PARAMETERS`.
     sweep : mapping of lists
-        Parameters that are combined each with each; every one becomes a dimension.
+        Parameters that are combined each with each; every one becomes a dimension. For evenly spaced numbers a mapping
+        ``{"start": ..., "stop": ..., "count": ...}`` stands for the list.
     zip : mapping of lists, or list of such mappings
         Parameters that change together: lists of equal length; every mapping becomes one dimension.
     cases : list of mappings

@@ -241,7 +241,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         _one_of(values, *pair)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
-    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure)
+    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure, sizes.roller_length)
     middle = sizes.end_distance + 0.5 * sizes.roller_length
     with unquestioned():  # the plan asks, for all cases at once
         case = Case(

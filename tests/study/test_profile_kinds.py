@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contactstudy import profiles
+from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.identity import case_id
@@ -94,6 +94,13 @@ def test_design_pressure(kind: str) -> None:
     assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
 
 
+def test_design_load() -> None:
+    profile = built({"kind": "lundberg", "design_load": 100.0})
+    material = Material(BASE["young"], BASE["poisson"])
+    about = {"radius": BASE["radius"], "modulus": material.plane_strain_modulus}
+    assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **about)
+
+
 def test_sizes_that_follow_the_roller() -> None:
     assert built("sphere") == profiles.Sphere(BASE["radius"])
     assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
@@ -153,9 +160,15 @@ def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
         ({"kind": "tapered", "angle": 0.1}, "profile key = 'angle'.*half_angle"),
         ({"kind": "tapered"}, "given with half_angle"),
         ({"kind": "tapered", "half_angle": "3 degrees"}, "profile.half_angle = '3 degrees'"),
-        ({"kind": "lundberg", "amplitude": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude and design_press"),
+        (
+            {"kind": "lundberg", "amplitude": 1e-6, "design_pressure": 1e9},
+            "exactly one of amplitude, design_pressu",
+        ),
         ({"kind": "johns-gohar", "amplitude": 1e-6}, "given with half_width"),
-        ({"kind": "johns-gohar", "half_width": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude with half_wid"),
+        (
+            {"kind": "johns-gohar", "half_width": 1e-6, "design_pressure": 1e9},
+            "exactly one of amplitude with half",
+        ),
         ({"kind": "fujiwara-kawase", "design_pressure": 1e9}, "given with edge_drop"),
         ({"kind": "sphere", "radius": 4e-3}, "radius = 0.004: must be the roller's radius"),
         ({"kind": "measured"}, "given with positions"),
