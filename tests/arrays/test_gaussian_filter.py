@@ -44,3 +44,19 @@ def test_noise_gets_smaller_by_what_the_weight_says() -> None:
     left = np.array([gaussian_filtered(X, row, CUTOFF) for row in noise])[:, 300:-300]
     expected = np.sqrt((X[1] - X[0]) / (np.sqrt(np.log(2) / np.pi) * CUTOFF * np.sqrt(2)))
     assert left.std() == pytest.approx(expected, rel=0.05)
+
+
+@pytest.mark.parametrize("cutoff", [0.05e-3, 0.8e-3, 11e-3])
+def test_even_and_uneven_points_are_filtered_alike(cutoff: float) -> None:
+    """The sums by Fourier transforms are those at the points one by one."""
+    values = np.cos(2 * np.pi * X / 1e-3) + X / X[-1]
+    moved = X + 2e-3 * (X[1] - X[0]) * np.sin(1e4 * X)  # beyond what counts as even
+    np.testing.assert_allclose(
+        gaussian_filtered(X, values, cutoff), gaussian_filtered(moved, values, cutoff), atol=2e-4
+    )
+
+
+def test_a_long_trace_of_dense_points_takes_no_time_to_speak_of() -> None:
+    x = np.linspace(0.0, 14e-3, 50_000)
+    line = 1e-6 + 1e-3 * x
+    np.testing.assert_allclose(gaussian_filtered(x, line, 8e-3), line, rtol=1e-9)
