@@ -55,7 +55,7 @@ def gaussian_filtered(x: FloatArray, values: FloatArray, cutoff: float) -> Float
 
 
 def _even(step: float, values: FloatArray) -> tuple[FloatArray, ...]:
-    """Return the sums of the weight times 1, ``s``, ``s**2``, the values and ``s`` times these around each even point."""
+    """Return the sums of the weight times 1, ``s``, ``s**2``, the values and ``s`` times these at each even point."""
     from scipy.signal import oaconvolve
 
     reach = min(int(REACH / step), values.size - 1)
