@@ -20,6 +20,7 @@ from .bodies import FiniteLengthSpace as FiniteLengthSpace
 from .bodies import HalfSpace as HalfSpace
 from .bodies import Material as Material
 from .bodies import QuarterSpace as QuarterSpace
+from .bodies import materials as materials
 from .case import Case as Case
 from .case import Roller as Roller
 from .case import choose_grid as choose_grid
@@ -33,6 +34,7 @@ from .contact.end_law import edge_peak as edge_peak
 from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import InvalidInputError as InvalidInputError
+from .errors import MagnitudeWarning as MagnitudeWarning
 from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
 from .explorer.show import explore as explore

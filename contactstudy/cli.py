@@ -68,10 +68,10 @@ def _parser() -> argparse.ArgumentParser:
     added = commands.add_parser("verify", help=text, description=text)
     added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
     added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
-    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV or VTK."
+    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
     added = commands.add_parser("export", help=text, description=text)
     added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
-    added.add_argument("--format", choices=("csv", "vtk"), help="default csv")
+    added.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
     added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
     added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
     added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
@@ -250,7 +250,7 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     entries = folder.entries(plan)
     _say(state_lines(plan, entries, everything=options.all))
     _say(forecast_lines(plan, entries))
-    return ALL_OK
+    return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
 
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:

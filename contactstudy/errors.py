@@ -63,5 +63,9 @@ class ConvergenceWarning(UserWarning):
     """The contact iteration stopped before its tolerance; the result says ``converged = False``."""
 
 
+class MagnitudeWarning(UserWarning):
+    """A value of a case is of a size that is mostly a mistake in the unit; the case is taken as it is."""
+
+
 class TemperatureWarning(UserWarning):
     """The temperature of a contact passes the limit that was given."""

@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 
 from contactstudy.cli import main
-from tests.small_study import as_toml, small_study
+from tests.small_study import BASE, as_toml, small_study
 from tests.stand_in_solver import FAILS, IS_WRONG, solve_fake
 from tests.study.conftest import ROOT
 
@@ -88,6 +88,16 @@ def test_skipped_cases_are_listed_with_the_reason(study_file, capsys):
         assert re.search(reason, capsys.readouterr().out), arguments[0]
 
 
+def test_equal_reasons_are_said_once_and_a_conflict_of_all_cases_fails(study_file, capsys):
+    study_file.write_text(as_toml(small_study(base=BASE | {"load": 3.0})))
+    assert command("plan", study_file) == 2
+    output = capsys.readouterr().out
+    assert output.count("given as one of the two") == 1
+    assert "(and 3 more)" in output
+    assert command("run", study_file, "--workers", 0) == 2
+    assert "no case that can be solved" in capsys.readouterr().err
+
+
 def test_collect(study_file, tmp_path):
     run(study_file)
     assert command("collect", "results/small", "--out", tmp_path / "all.nc") == 0
@@ -102,7 +112,7 @@ def test_export(study_file, tmp_path, capsys):
     with open(tmp_path / "results" / "small" / "summary.csv", newline="") as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 4
-    assert float(rows[0]["peak_pressure"]) > 1e9
+    assert float(rows[0]["peak_pressure [Pa]"]) > 1e9
     capsys.readouterr()
     assert command("export", "results/small", "--out", "-") == 0
     assert capsys.readouterr().out.startswith("e_over_a,friction,")

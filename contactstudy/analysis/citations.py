@@ -36,6 +36,8 @@ PROFILES = {
 }
 """Sources of profiles by their class."""
 
+FILTER = ("filter of the measured profile", "ISO 16610-21, ends by the moment criterion of ISO 16610-28")
+
 
 @dataclass(frozen=True)
 class Citations:
@@ -94,7 +96,17 @@ def citations(dataset: xr.Dataset) -> Citations:
     for kind in sorted(_kinds(case.get("roller", {}).get("profile", {}))):
         if kind in PROFILES:
             found.append((f"profile {kind}", PROFILES[kind]))
+    if _filtered(case.get("roller", {}).get("profile", {})):
+        found.append(FILTER)
     return Citations(tuple(dict.fromkeys(found)))
+
+
+def _filtered(entry: Any) -> bool:
+    """Whether a profile, or one within it, is measured and filtered."""
+    if isinstance(entry, dict):
+        own = entry.get("kind") == "Measured" and "cutoff" in entry
+        return own or any(_filtered(value) for value in entry.values())
+    return isinstance(entry, list) and any(_filtered(value) for value in entry)
 
 
 def _kinds(entry: Any) -> set[str]:

@@ -88,7 +88,8 @@ def unit_in_metres(name: str, unit: object) -> float:
     """
     text = str(unit).strip() if unit else ""
     if text not in METRES:
-        raise InvalidInputError(f"unit of {name}", text or None, f"one of {', '.join(METRES)}")
+        hint = f"a header says it in brackets, such as {name} [mm]; netCDF in the attribute units"
+        raise InvalidInputError(f"unit of {name}", text or None, f"one of {', '.join(METRES)}", hint)
     return METRES[text]
 
 
@@ -119,7 +120,8 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     lines = _lines(path)
     first = next(lines, None)
     if first is None:
-        raise InvalidInputError("path", str(path), "a file with a header and data")
+        hint = f"a header such as: {_wanted_header(positions, values)}"
+        raise InvalidInputError("path", str(path), "a file with a header and data", hint)
     separator = next((mark for mark in ";\t" if mark in first[1]), ",")
     header = [_named_unit(entry) for entry in _fields(*first, separator)]
     names = _chosen([name for name, _ in header], positions, values, path)
@@ -198,8 +200,15 @@ def _chosen(found: list[str], positions: tuple[str, ...], values: tuple[str, ...
     if any(found.count(name) != 1 for name in positions) or len(present) != 1 or found.count(present[0]) != 1:
         wanted = f"{', '.join(positions)} and one of {', '.join(values)}"
         shown = [name if NAME.fullmatch(name) else "..." for name in found[:MOST_NAMES]]
-        raise InvalidInputError("columns", shown, f"{wanted}, each with its unit", f"in {path}")
+        header = _wanted_header(positions, values)
+        hint = f"the first line of {path} that is no comment names the columns, such as: {header}"
+        raise InvalidInputError("columns", shown, f"{wanted}, each with its unit", hint)
     return [*positions, present[0]]
+
+
+def _wanted_header(positions: tuple[str, ...], values: tuple[str, ...]) -> str:
+    """Return an example of a header that would fit."""
+    return ", ".join([*(f"{name} [mm]" for name in positions), f"{values[0]} [um]"])
 
 
 def _number(line: int, name: str, field: str) -> float:

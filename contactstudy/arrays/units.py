@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 
-LENGTHS = {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9}
-"""Metres per unit."""
-
-PRESSURES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5}
-"""Pascals per unit."""
+KNOWN: dict[str, dict[str, float]] = {
+    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9},
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N m": {"N m": 1.0, "Nm": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180},
+    "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
+    "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
+}
+"""Units that input may have, by the one in SI, and their sizes in it."""
 
 
 def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
-    """Return an array with its values in `unit`, "m" or "Pa", and its positions in metres.
+    """Return an array with its values in `unit`, one of :data:`KNOWN`, and its positions in metres.
 
     Values and positions that do not say their unit are taken to be in these.
 
@@ -31,22 +39,49 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
     """
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     factors = {
-        axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in ("x", "y", "x_width") if axis in array.coords
+        axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in ("x", "y", "z", "x_width") if axis in array.coords
     }
-    moved = {axis: array[axis] * factor for axis, factor in factors.items() if factor != 1}
+    moved = {axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1}
     own = _factor(name, array, unit)
     converted = array.assign_coords(moved) if moved else array
-    return converted if own == 1 else converted * own
+    return converted if own == 1 else (converted * own).assign_attrs(units=unit)
+
+
+def metres(name: str, positions: Any) -> Any:
+    """Return positions in metres: a DataArray that says its unit is converted, all else stays as it is.
+
+    Examples
+    --------
+    >>> metres("z", [0.1]), metres("z", xr.DataArray([0.1], attrs={"units": "mm"})).values.tolist()
+    ([0.1], [0.0001])
+    """
+    if not isinstance(positions, xr.DataArray):
+        return positions
+    factor = _factor(name, positions, "m")
+    return positions if factor == 1 else positions * factor
 
 
 def _factor(name: str, array: xr.DataArray, unit: str) -> float:
     """Factor that takes the values of an array to `unit`; 1 where it does not say its unit."""
-    known = LENGTHS if unit == "m" else PRESSURES
     said = array.attrs.get("units")
-    if said is None:
-        return 1.0
+    return 1.0 if said is None else factor_to(unit, f"{name}.attrs['units']", said)
+
+
+def factor_to(unit: str, name: str, said: object) -> float:
+    """Return the factor that takes values in the unit that was said to `unit`, one of those in SI.
+
+    Raises
+    ------
+    InvalidInputError
+        With `name` if the unit is none that is known for it.
+
+    Examples
+    --------
+    >>> factor_to("N", "load.attrs['units']", "kN")
+    1000.0
+    """
+    known = KNOWN.get(unit, {})
     if not isinstance(said, str) or said.strip() not in known:
-        raise InvalidInputError(
-            f"{name}.attrs['units']", said, f"one of {', '.join(known)}", f"without it {unit} is meant"
-        )
+        allowed = f"one of {', '.join(known)}" if known else "left out"
+        raise InvalidInputError(name, said, allowed, f"without it {unit} is meant" if known else "")
     return known[said.strip()]

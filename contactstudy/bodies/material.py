@@ -25,6 +25,10 @@ class Material:
     InvalidInputError
         If a value is outside its range.
 
+    See Also
+    --------
+    contactstudy.materials : Some materials, each with its source.
+
     Examples
     --------
     >>> steel = Material(young=210e9, poisson=0.3)

@@ -13,6 +13,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
+from contactstudy.case.doubts import question
 from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
 from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
@@ -76,6 +77,11 @@ class Case:
     InvalidInputError
         If a value is out of range, both or neither of pressure and load are given, or the roller misses the body.
 
+    Warns
+    -----
+    MagnitudeWarning
+        If a value is of a size that is mostly a mistake in the unit, such as a length in millimetres.
+
     Examples
     --------
     >>> from contactstudy import FiniteLengthSpace, Material
@@ -110,6 +116,7 @@ class Case:
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
         self._check_place()
         self._check_load()
+        question(self)
 
     def __repr__(self) -> str:
         return in_lines(self)

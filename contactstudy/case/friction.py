@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.units import in_si
 from contactstudy.case.motion import Motion, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -62,6 +63,7 @@ def checked_friction(friction: object) -> Friction:
         return checks.finite("friction", friction)
     if friction.dims != ("x",) or "x" not in friction.coords:
         raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")
+    friction = in_si("friction", friction, "1")
     x = checks.coordinates("friction.x", friction["x"].values)
     values = checks.coordinates("friction", friction.values, "1")
     if (np.diff(x) <= 0).any():

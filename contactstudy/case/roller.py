@@ -73,6 +73,45 @@ class Roller:
         sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
         return f"Roller({sizes}, {self.profile!r}, end drop {quantity(drop, 'm')}, {made})"
 
+    @staticmethod
+    def combined_radius(first: float, second: float) -> float:
+        """Radius that a roller on a flat body has when it stands for two curved bodies with parallel axes.
+
+        The gap between them is that of a roller with ``1 / R = 1 / R1 + 1 / R2`` on a plane, as far as the contact is
+        narrow against both radii.
+
+        Parameters
+        ----------
+        first, second : float
+            Radii of curvature where they touch, metres: positive if convex, as of a roller, an inner raceway, a cam or
+            a tooth's flank; negative if hollow, as of an outer raceway.
+
+        Returns
+        -------
+        float
+            Radius, metres.
+
+        Raises
+        ------
+        InvalidInputError
+            If a radius is 0 or not finite, or a hollow one is not the larger: the bodies would fit without a gap.
+
+        Examples
+        --------
+        >>> [round(1e3 * Roller.combined_radius(6e-3, raceway), 3) for raceway in (30e-3, -42e-3)]
+        [5.0, 7.0]
+        """
+        sizes = {"first": checks.finite("first", first, "metres"), "second": checks.finite("second", second, "metres")}
+        for name, radius in sizes.items():
+            if radius == 0:
+                raise InvalidInputError(name, radius, "a radius (metres), negative if hollow")
+        curvature = sum(1 / radius for radius in sizes.values())
+        if not curvature > 0:
+            raise InvalidInputError(
+                "first, second", (first, second), "such that a hollow radius is the larger one", "no gap would be left"
+            )
+        return 1 / curvature
+
     @property
     def body(self) -> Body | None:
         """The roller as an elastic body seen from its own end I; None if it is rigid."""

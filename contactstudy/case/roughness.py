@@ -14,7 +14,9 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.instruments import Heights, of_instrument, read_heights, turned
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import labels, named
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -104,14 +106,24 @@ def self_affine(
     return _height_map(grid, heights, f"contactstudy.roughness.self_affine({values})")
 
 
-def read_height_map(path: str | Path, grid: Grid, *, remove_slope: bool = False) -> xr.DataArray:
+def read_height_map(
+    path: str | Path,
+    grid: Grid,
+    *,
+    remove_slope: bool = False,
+    remove_form: bool = False,
+    turn: int = 0,
+    mirror: bool = False,
+    corner: tuple[float, float] | None = None,
+) -> xr.DataArray:
     """Read a measured height map and bring it onto a grid.
 
     Parameters
     ----------
     path : str or Path
         CSV with one line for each point and the columns `x`, `y`, `height`, in any order of the points; or netCDF
-        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. The coordinates are
+        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. Or an instrument's file:
+        x3p (``.x3p``), or a format that SurfaceTopography knows; both need the extra `measured`. The coordinates are
         those of the grid: `x` from end I of the body, `y` from under the roller's centre.
     grid : Grid
         Cells; their centres must lie within the measured area. Between measured points heights are interpolated
@@ -119,6 +131,17 @@ def read_height_map(path: str | Path, grid: Grid, *, remove_slope: bool = False)
         into long ones: filter the map before.
     remove_slope : bool
         Whether the plane that fits the measured heights best is taken off.
+    remove_form : bool
+        Whether the surface of second order that fits the measured heights best is taken off: the curvature of roller
+        and raceway, and the slope.
+    turn : {0, 90, 180, 270}
+        Degrees by which the part is turned about the axis of the heights, from x to y.
+    mirror : bool
+        Whether the y axis points the other way, after the turn. A body's surface is seen from the other side than here,
+        where z points into it, so an instrument's y runs against this one; the roller's does not.
+    corner : tuple of float, optional
+        Where the first point along x and y comes to lie, metres, after turning. Default: where the file says, which
+        for an instrument is mostly (0, 0).
 
     Returns
     -------
@@ -130,18 +153,35 @@ def read_height_map(path: str | Path, grid: Grid, *, remove_slope: bool = False)
     InvalidInputError
         If the file cannot be read, has other columns or units, gaps, missing, repeated or infinite values (with
         their places), or does not cover the grid.
+    ContactStudyError
+        If the file needs the extra `measured`, and that is not installed.
     """
     path = Path(path)
     checks.instance("grid", grid, Grid, "a Grid")
-    checks.instance("remove_slope", remove_slope, bool, "True or False")
-    x, y, heights = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
+    for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
+        checks.instance(name, value, bool, "True or False")
+    x, y, heights = turned(_read(path), turn, mirror)
+    if y is None:
+        raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
+    if corner is not None:
+        first = checks.coordinates("corner", corner, "metres")
+        if first.size != 2:
+            raise InvalidInputError("corner", corner, "two positions, x and y (metres)")
+        x, y = x - x[0] + first[0], y - y[0] + first[1]
     check_positions("x", x)
     check_positions("y", y)
     check_values("height", heights, ("x", x), ("y", y))
     _check_cover(x, y, grid)
-    if remove_slope:
-        heights = heights - _plane(x, y, heights)
+    if remove_slope or remove_form:
+        heights = heights - _form(x, y, heights, order=2 if remove_form else 1)
     return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
+
+
+def _read(path: Path) -> Heights:
+    """Return the positions and heights of a file, metres."""
+    if of_instrument(path):
+        return read_heights(path)
+    return Heights(*(_read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)))
 
 
 def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
@@ -167,7 +207,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
     [[1.5], [2.5]]
     """
-    values, own = labelled_cells("roughness", heights)
+    values, own = labelled_cells("roughness", in_si("roughness", heights, "m"))
     if own.shape == grid.shape and all(
         np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
         for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))
@@ -197,11 +237,23 @@ def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid)
     return np.asarray(RegularGridInterpolator((x, y), heights)(inside))
 
 
-def _plane(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:
-    """Plane of the least squares."""
-    along_x, along_y = np.broadcast_arrays(x[:, None], y[None, :])
-    columns = np.stack([np.ones(heights.size), along_x.ravel() - x.mean(), along_y.ravel() - y.mean()], axis=1)
-    return np.asarray((columns @ np.linalg.lstsq(columns, heights.ravel(), rcond=None)[0]).reshape(heights.shape))
+def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
+    """Polynomial of the least squares, with all terms up to an order."""
+    # Over -1 to 1 the normal equations of so few terms lose two digits at most, and need no array per term.
+    along_x, along_y = (np.polynomial.legendre.legvander(_scaled(axis), order) for axis in (x, y))
+    terms = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
+    products_x, products_y = along_x.T @ along_x, along_y.T @ along_y
+    matrix = np.array([[products_x[i, k] * products_y[j, m] for k, m in terms] for i, j in terms])
+    moments = along_x.T @ heights @ along_y
+    factors = np.zeros((order + 1, order + 1))
+    wanted = np.array([moments[term] for term in terms])
+    factors[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, wanted, rcond=None)[0]
+    return np.asarray(along_x @ factors @ along_y.T)
+
+
+def _scaled(positions: FloatArray) -> FloatArray:
+    """Positions over a range of -1 to 1."""
+    return np.asarray(np.interp(positions, positions[[0, -1]], [-1.0, 1.0]))
 
 
 Map = tuple[FloatArray, FloatArray, FloatArray]

@@ -12,6 +12,7 @@ from contactstudy import profiles
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import unquestioned
 from contactstudy.case.friction import AxialFriction
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.case.roller import Roller
@@ -122,7 +123,8 @@ def case_from(table: Mapping[str, Any]) -> Case:
     True
     """
     try:
-        found = _from_table(table)
+        with unquestioned():  # that was done when it was made
+            found = _from_table(table)
     except (TypeError, KeyError) as error:
         raise InvalidInputError("case", dict(table), "a table of a case of this version", str(error)) from None
     if not isinstance(found, Case):

@@ -217,7 +217,7 @@ class _State:
 
     def stated(self, theta: float, accuracy: float) -> Refined:
         """Values with their errors."""
-        finite = [value for value in self.peaks[-1] if np.isfinite(value)]
+        finite = [value for value in self.peaks[-1] if 0 < value < np.inf]  # a half may have no contact
         scale = max(finite, default=float(self.pressure.max()))
         floor = scale * (theta / THETA_PER_ERROR + self.along_y)
         peak_errors = [_moved([peaks[side] for peaks in self.peaks], floor) for side in (0, 1)]

@@ -14,6 +14,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import EndedBody, HalfSpace
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import changed
 from contactstudy.case.gridding import columns_of
 from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
@@ -72,8 +73,8 @@ def settled_contact(case: Case, accuracy: float, tolerance: float) -> SettledCon
     """
     if not isinstance(case.motion, Sliding):
         # No creepage or shift changes the columns.
-        case = replace(case, friction=0.0, motion=Rolling())
-    request = _Request(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
+        case = changed(case, friction=0.0, motion=Rolling())
+    request = _Request(case if case.coupled else changed(case, friction=0.0), accuracy, tolerance)
     return _kept(request) if _is_value(case) else _settled(request)
 
 
@@ -115,7 +116,7 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
         # How wide the contact is depends on what frees the ends by little, and that is what takes longest to prepare.
         body = case.body
         mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
-        first = _Solver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
+        first = _Solver(changed(case, body=mirrored), half_window, ROUGH_CELLS_Y)
         rough = refined_contact(first, shape, ROUGHLY)
         touched = np.flatnonzero(rough.pressure.any(axis=0))
         cells = first.grid(rough.edges)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import asdict
+from functools import partial
+from numbers import Real
 
 import numpy as np
 import xarray as xr
@@ -37,7 +40,7 @@ def solve_contact(
     friction: Friction | xr.DataArray = 0.0,
     coupled: bool = False,
     *,
-    approach: float | None = None,
+    approach: float | Sequence[float] | None = None,
     load_position: float | None = None,
     counterbody: Counterbody | None = None,
     motion: Motion = FULL_SLIDING,
@@ -63,8 +66,9 @@ def solve_contact(
     coupled : bool
         Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
         Poisson's ratio is 1/2, nor between half-spaces of one material).
-    approach : float, optional
-        How far the shape is pressed down from first touch, metres, relative to the reference of `displacement_z`.
+    approach : float or sequence of float, optional
+        How far the shape is pressed down from first touch, metres, relative to the reference of `displacement_z`. With
+        several, the result has a dimension `approach`.
     load_position : float, optional
         Position x on which the load acts, metres: the shape tilts until the pressure balances it. Default: the shape
         keeps its inclination, whatever moment that takes.
@@ -122,6 +126,25 @@ def solve_contact(
     >>> bool(contact.converged), round(float(contact.pressure.max()), 2)
     (True, 0.64)
     """
+    if not isinstance(approach, (Real, str, type(None))):
+        if after is not None:
+            raise InvalidInputError("after", "a result", "left out with several approaches, which are no history")
+        steps = checks.coordinates("approach", approach, "metres").tolist()
+        each = partial(
+            solve_contact,
+            body,
+            gap,
+            load,
+            friction,
+            coupled,
+            load_position=load_position,
+            counterbody=counterbody,
+            motion=motion,
+            tolerance=tolerance,
+            max_iterations=max_iterations,
+        )
+        results = [each(approach=step).set_coords("approach") for step in steps]
+        return xr.concat(results, "approach", data_vars="all", coords="minimal", compat="override", join="exact")
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:
         checks.instance("counterbody", counterbody, Counterbody, "a Counterbody")

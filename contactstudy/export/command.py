@@ -1,4 +1,4 @@
-"""What ``contactstudy export`` does with the fields of a case: from a file or a study's folder to CSV or VTK."""
+"""What ``contactstudy export`` does: from a file or a study's folder to CSV, VTK or MATLAB."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ import xarray as xr
 
 from contactstudy.arrays.old_names import with_present_names
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.table import Line, csv_text, to_csv, to_table
+from contactstudy.export.matlab import to_mat
+from contactstudy.export.table import Line, csv_text, headings, to_csv, to_table
 from contactstudy.export.vtk import to_vtk
 
-SUFFIXES = {"csv": ".csv", "vtk": ".vtr"}
+SUFFIXES = {"csv": ".csv", "vtk": ".vtr", "mat": ".mat"}
 
 
 def parse_line(text: str) -> Line:
@@ -86,22 +87,23 @@ def export(
     select: Sequence[str] = (),
     out: Path | None = None,
 ) -> Path | None:
-    """Write a field or a line of a case for others' tools.
+    """Write a field or a line of a case, or for MATLAB a whole case or study, for others' tools.
 
     Parameters
     ----------
     path : Path
         netCDF file of a case, or folder of a study.
-    kind : {"csv", "vtk"}
+    kind : {"csv", "vtk", "mat"}
         Format.
     variables : sequence of str, optional
-        As for :func:`contactstudy.export.to_table` and :func:`contactstudy.export.to_vtk`.
+        As for :func:`contactstudy.export.to_table`, :func:`contactstudy.export.to_vtk` and
+        :func:`contactstudy.export.to_mat`; without them, of a study of several cases the summaries go to MATLAB.
     line : str, optional
         ``X,Y,Z:X,Y,Z`` in metres, for CSV.
     points : int
         Number of points of the line.
     select : sequence of str
-        ``NAME=VALUE`` of swept parameters, for a study of more than one case.
+        ``NAME=VALUE`` of swept parameters: CSV and VTK hold one case.
     out : Path, optional
         Default: beside the file, or ``export`` in the folder; ``-`` prints CSV.
 
@@ -117,15 +119,19 @@ def export(
     """
     dataset = _select(_open(path), select)
     swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
-    if swept:
+    if line is not None and kind != "csv":
+        raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")
+    if swept and kind != "mat":
         example = f"--select {swept[0]}={dataset[swept[0]].values[0]}"
         raise InvalidInputError("select", list(select), f"with a value of {', '.join(swept)} too", f"such as {example}")
     default = path / f"export{SUFFIXES[kind]}" if path.is_dir() else path.with_suffix(SUFFIXES[kind])
     target = default if out is None else out
     if kind == "vtk":
-        if line is not None:
-            raise InvalidInputError("line", line, "left out for VTK", "write the line as CSV")
         return to_vtk(dataset, target, variables)
+    if kind == "mat":
+        if swept and variables is None:
+            dataset = dataset.drop_dims([dim for dim in dataset.dims if dim not in dataset["status"].dims])
+        return to_mat(dataset, target, variables)
     ends = None if line is None else parse_line(line)
     if str(target) == "-":
         print(csv_text(to_table(dataset, variables, line=ends, points=points)), end="")
@@ -151,7 +157,9 @@ def export_summaries(folder: Path, out: Path | None = None) -> Path | None:
     from contactstudy.study import collect
     from contactstudy.study.store import write_text
 
-    text = csv_text(collect(folder).to_dataframe().reset_index())
+    collected = collect(folder)
+    table = collected.to_dataframe().reset_index()
+    text = csv_text(table.rename(columns=headings(collected, [str(name) for name in table.columns])))
     if str(out) == "-":
         print(text, end="")
         return None

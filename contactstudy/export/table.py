@@ -20,10 +20,17 @@ if TYPE_CHECKING:
 Line = tuple[Sequence[float], Sequence[float]]
 
 
-def _heading(name: str, array: xr.DataArray, *, coordinate: bool) -> str:
-    """Name of a column, with its unit."""
-    units = variable_of(name, array.attrs, coordinate=coordinate).units
-    return f"{name} [{units}]" if units and units != "1" else name
+def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
+    """Headings of columns: the names, with their units where they have some.
+
+    Examples
+    --------
+    >>> headings(xr.Dataset({"peak_pressure": 1e9, "friction": 0.1}), ["peak_pressure", "friction", "other"])
+    {'peak_pressure': 'peak_pressure [Pa]', 'friction': 'friction'}
+    """
+    known = [name for name in names if name in dataset.variables]
+    units = {name: variable_of(name, dataset[name].attrs, coordinate=name in dataset.coords).units for name in known}
+    return {name: f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()}
 
 
 def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
@@ -89,10 +96,7 @@ def to_table(
     along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
     frame = chosen.to_dataframe().reset_index()
     names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
-    headings = {
-        name: _heading(str(name), chosen[name], coordinate=name in chosen.coords) for name in names if name in chosen
-    }
-    return frame[names].rename(columns=headings)
+    return frame[names].rename(columns=headings(chosen, [str(name) for name in names]))
 
 
 # A spreadsheet takes a cell that begins so for a formula, and would run it.

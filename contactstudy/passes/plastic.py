@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.units import in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -50,7 +51,8 @@ class ElasticPlastic:
     def __post_init__(self) -> None:
         """Check the constants."""
         if isinstance(self.yield_stress, xr.DataArray):
-            profile = self.yield_stress
+            profile = in_si("yield_stress", self.yield_stress, "Pa")
+            checks.store(self, yield_stress=profile)
             if profile.dims != ("z",) or "z" not in profile.coords:
                 raise InvalidInputError("yield_stress.dims", profile.dims, "('z',) with depths z in metres")
             depths = checks.coordinates("yield_stress.z", profile["z"].values)
@@ -81,7 +83,10 @@ class ElasticPlastic:
         1960000000.0
         """
         checks.instance("vickers", vickers, xr.DataArray, "an xarray.DataArray with the dimension z")
-        return cls(yield_stress=vickers * (GRAVITY * 1e6 / TABOR), **hardening)
+        if vickers.attrs.get("units", "HV") not in ("HV", "1"):
+            raise InvalidInputError("vickers.attrs['units']", vickers.attrs["units"], "HV, or left out")
+        yields = (vickers * (GRAVITY * 1e6 / TABOR)).assign_attrs(units="Pa")
+        return cls(yield_stress=yields, **hardening)
 
     @property
     def shear_yield_stress(self) -> float:

@@ -140,6 +140,7 @@ def plot_depth(
     for name, style in zip(names, line_styles(len(names)), strict=True):
         ax.plot(line[name].values / unit.stress, line["z"].values / unit.length, label=unit.stress_label(name), **style)
     ax.set_ylim(depth.max() / unit.length, depth.min() / unit.length)
+    ax.set_title(f"below {unit.place('x', at)}, {unit.place('y', y)}", fontsize="medium")
     ax.set_xlabel("stress over $p_0$" if not si else "stress (MPa)")
     ax.set_ylabel(unit.axis("z"))
     ax.legend(frameon=False, fontsize="small")

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.errors import InvalidInputError
@@ -142,7 +143,9 @@ def plot_study_lines(
         figure.legend(marks, list(keys), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
     if chosen:
         stated = ", ".join(
-            f"{dim} = {value:g}" if isinstance(value, int | float | np.number) else f"{dim} = {as_written(value)}"
+            f"{dim} = {quantity(float(value), str(dataset[dim].attrs.get('units', '1')))}"
+            if isinstance(value, int | float | np.number)
+            else f"{dim} = {as_written(value)}"
             for dim, value in chosen.items()
         )
         figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")

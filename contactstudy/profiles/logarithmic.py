@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any, Self
 
 import numpy as np
 
@@ -45,8 +46,37 @@ def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) ->
     return checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2
 
 
+class Logarithmic(Shape):
+    """Base of the profiles whose amplitude follows from a design load."""
+
+    @classmethod
+    def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **others: float) -> Self:
+        """Profile for a design load (N) on a roller.
+
+        Parameters
+        ----------
+        load : float
+            Design load, N.
+        length : float
+            Length of the roller that carries it, metres.
+        radius, modulus, **others
+            As for ``for_pressure``.
+
+        Examples
+        --------
+        >>> round(1e6 * Lundberg.for_load(1532.0, length=10e-3, radius=5e-3, modulus=230.77e9).amplitude, 4)
+        0.2113
+        """
+        sizes = {"length": (length, "metres"), "radius": (radius, "metres"), "modulus": (modulus, "Pa")}
+        length, radius, modulus = (checks.positive(name, *value) for name, value in sizes.items())
+        pressure = hertz.line_max_pressure(checks.positive("load", load, "N") / length, radius, modulus)
+        made: Any = cls
+        found: Self = made.for_pressure(pressure, radius=radius, modulus=modulus, **others)
+        return found
+
+
 @dataclass(frozen=True, repr=False)
-class Lundberg(Shape):
+class Lundberg(Logarithmic):
     """Lundberg's logarithmic profile, ``drop = delta * A * ln(1 / (1 - (2 x / length)**2))``.
 
     At its design load on a half-space, and with ``delta = 1``, the pressure is uniform along the roller.
@@ -55,7 +85,7 @@ class Lundberg(Shape):
     ----------
     amplitude : float
         ``A = q / (pi E*)``, metres, with the design load per length ``q`` and the contact modulus ``E*``
-        (equivalently ``R (p0 / E*)**2``); see :meth:`for_pressure`. Not negative.
+        (equivalently ``R (p0 / E*)**2``); see :meth:`for_pressure` and :meth:`for_load`. Not negative.
     delta : float
         Modification factor on the amplitude. Not negative; 0 is the cylinder.
 
@@ -113,7 +143,7 @@ class Lundberg(Shape):
 
 
 @dataclass(frozen=True, repr=False)
-class JohnsGohar(Shape):
+class JohnsGohar(Logarithmic):
     """Johns and Gohar's profile: Lundberg's with a finite drop at the ends.
 
     ``drop = A ln(1 / (1 - (1 - 0.3033 b / h) (x / h)**2))`` with half the length ``h`` and
@@ -180,7 +210,7 @@ class JohnsGohar(Shape):
 
 
 @dataclass(frozen=True, repr=False)
-class FujiwaraKawase(Shape):
+class FujiwaraKawase(Logarithmic):
     """Fujiwara and Kawase's profile: a straight middle and a logarithmic crown with a chosen end drop.
 
     ``drop = K1 A ln(1 / (1 - (1 - exp(-z_m / (K1 A))) t**2))`` with ``t = (|x| - h) / (K2 h) + 1`` and half the

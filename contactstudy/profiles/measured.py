@@ -13,10 +13,13 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.gaussian_filter import gaussian_filtered
+from contactstudy.arrays.instruments import Heights, of_instrument, read_heights, turned
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
+from contactstudy.profiles.ridge import ridge
 
 VALUES = ("drop", "height")
 """What a file may say along x: material that is missing, or that is too much."""
@@ -26,6 +29,9 @@ FITS = 1e-3
 
 FEWEST = 5
 """Smallest number of measured points."""
+
+FEWEST_IN_WAVE = 5
+"""Smallest number of steps between points in the cut-off of a filter: with fewer its weight is not seen. Accuracy."""
 
 SPIKE_BENDS, SPIKE_SHARE = 8.0, 0.02
 """A point is an outlier if it stands out of the median of five points by more than this many times the usual bend
@@ -47,16 +53,24 @@ class Measured(Shape):
     largest_spike : float, optional
         How far (metres) a point, or two beside each other, may stand out of the median of five points before it is
         refused as an outlier. Default: 8 times the usual bend around it, at least 0.02 of the profile's height.
+    cutoff : float, optional
+        Cut-off of a Gaussian filter, metres: of waves of this length one half is left, of shorter ones less. The
+        filtered drop is counted from its highest point. Default: the points as they are.
 
     Raises
     ------
     InvalidInputError
         If positions and drops differ in number, positions are not increasing or have a gap, a value is negative or
-        not finite, a point is an outlier (with the positions), or (on use) the measured length differs from the
-        roller's by more than 0.1 %.
+        not finite, a point is an outlier (with the positions), the cut-off is shorter than five steps or longer than
+        the profile, or (on use) the measured length differs from the roller's by more than 0.1 %.
 
     Notes
     -----
+    The filter is that of ISO 16610-21: of a wavelength `l` it transmits ``2**-(cutoff / l)**2``. Within a cut-off of
+    the ends a straight line is fitted with the filter's weight, so that an inclined end keeps its inclination (moment
+    criterion, ISO 16610-28). Outliers are looked for before. Features shorter than the cut-off are rounded off, edges
+    too: a filter for the shape of an end is shorter than the end.
+
     The interpolation is piecewise cubic with continuous slope (F. N. Fritsch, J. Butland, SIAM Journal on Scientific
     and Statistical Computing 5 (1984) 300-304): monotone between two points, so it adds no height of its own. A
     median does not change where a profile only rises or falls, so steep ends are no outliers. Of the very first and
@@ -73,6 +87,7 @@ class Measured(Shape):
     positions: Sequence[float]
     drops: Sequence[float]
     largest_spike: float | None = None
+    cutoff: float | None = None
 
     def __post_init__(self) -> None:
         """Check the points, and keep them as tuples so that equal profiles are equal."""
@@ -94,13 +109,17 @@ class Measured(Shape):
             )
         if self.largest_spike is not None:
             object.__setattr__(self, "largest_spike", checks.positive("largest_spike", self.largest_spike, "metres"))
+        if self.cutoff is not None:
+            checks.store(self, cutoff=_checked_cutoff(self.cutoff, x))
         refuse_outliers(x, drops, self.largest_spike)
         object.__setattr__(self, "positions", tuple(x.tolist()))
         object.__setattr__(self, "drops", tuple(drops.tolist()))
 
     def __repr__(self) -> str:
         length = quantity(self.positions[-1] - self.positions[0], "m")
-        return f"Measured({len(self.positions)} points over {length}, drop up to {quantity(max(self.drops), 'm')})"
+        filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {quantity(self.cutoff, 'm')}"
+        largest = quantity(float(self._smooth.max()), "m")
+        return f"Measured({len(self.positions)} points over {length}, drop up to {largest}{filtered})"
 
     @classmethod
     def from_file(
@@ -110,6 +129,8 @@ class Measured(Shape):
         remove_tilt: bool = False,
         remove_offset: bool = False,
         largest_spike: float | None = None,
+        cutoff: float | None = None,
+        turn: int = 0,
     ) -> Measured:
         """Read a profile from a file.
 
@@ -117,33 +138,47 @@ class Measured(Shape):
         ----------
         path : str or Path
             CSV or netCDF (ending ``.nc``) with positions `x` and either `drop` (positive where material is missing)
-            or `height` (positive where it is too much), all with units of length.
+            or `height` (positive where it is too much), all with units of length. Or an instrument's file with the
+            heights of a line or of a map: x3p (``.x3p``), or a format that SurfaceTopography knows; both need the
+            extra `measured`. Of a map the roller's highest line is taken, wherever it runs, averaged over the map's
+            width.
         remove_tilt : bool
             Whether the slope of the straight line that fits the points best is taken off, about mid-length.
         remove_offset : bool
             Whether the drop is counted from the highest point. Needed for waviness about a mean line, for heights,
             and mostly after removing a tilt.
-        largest_spike : float, optional
+        largest_spike, cutoff : float, optional
             See the class.
+        turn : {0, 90, 180, 270}
+            Degrees by which the part is turned about the axis of the heights, from x to y: 180 exchanges the roller's
+            ends, 90 takes a map's y for the roller's axis.
 
         Raises
         ------
         InvalidInputError
             If the file cannot be read, has other columns or units, or its points are refused by the class.
+        ContactStudyError
+            If the file needs the extra `measured`, and that is not installed.
         """
-        path = Path(path)
-        columns = _read_netcdf(path) if path.suffix.lower() == ".nc" else read_columns(path, ("x",), VALUES)
-        x = columns["x"]
-        drop = columns["drop"] if "drop" in columns else -columns["height"]
+        x, drop, name = _read(Path(path), turn)
         if remove_tilt or remove_offset:
             check_positions("x", x, FEWEST)
-            check_values(next(name for name in columns if name != "x"), drop, ("x", x))
+            check_values(name, drop, ("x", x))
         if remove_tilt:
             from_middle = x - 0.5 * (x[0] + x[-1])
             drop = drop - np.polynomial.polynomial.polyfit(from_middle, drop, 1)[1] * from_middle
         if remove_offset:
             drop = drop - drop.min()
-        return cls(x.tolist(), drop.tolist(), largest_spike)
+        return cls(x.tolist(), drop.tolist(), largest_spike, cutoff)
+
+    @cached_property
+    def _smooth(self) -> FloatArray:
+        """Drops at the positions, filtered if that is wanted."""
+        drops = np.asarray(self.drops)
+        if self.cutoff is None:
+            return drops
+        filtered = gaussian_filtered(np.asarray(self.positions), drops, self.cutoff)
+        return np.asarray(filtered - filtered.min())
 
     @cached_property
     def _interpolation(self) -> Any:
@@ -151,7 +186,7 @@ class Measured(Shape):
 
         x = np.asarray(self.positions)
         with np.errstate(over="ignore"):  # steps of 1e-300 m, harmless in a harmonic mean
-            return PchipInterpolator(x - 0.5 * (x[0] + x[-1]), np.asarray(self.drops))
+            return PchipInterpolator(x - 0.5 * (x[0] + x[-1]), self._smooth)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
@@ -163,6 +198,27 @@ class Measured(Shape):
             )
         inside = np.clip(x, -measured / 2, measured / 2)
         return np.asarray(np.maximum(self._interpolation(inside), 0.0))
+
+
+def _checked_cutoff(cutoff: object, x: FloatArray) -> float:
+    """Return a cut-off that suits the positions, or raise."""
+    found = checks.positive("cutoff", cutoff, "metres")
+    least, most = FEWEST_IN_WAVE * float(np.diff(x).max()), float(x[-1] - x[0])
+    if not least <= found <= most:
+        allowed = f"from {FEWEST_IN_WAVE} steps between points, {least:g} m, to the measured length, {most:g} m"
+        raise InvalidInputError("cutoff", found, allowed, "units are SI")
+    return found
+
+
+def _read(path: Path, turn: int) -> tuple[FloatArray, FloatArray, str]:
+    """Positions and drops of a file, metres, and what the file calls the latter."""
+    if of_instrument(path):
+        x, y, heights = turned(read_heights(path), turn)
+        return x, -(heights if y is None else ridge(x, y, heights)), "height"
+    columns = _read_netcdf(path) if path.suffix.lower() == ".nc" else read_columns(path, ("x",), VALUES)
+    name = next(name for name in columns if name != "x")
+    x, _, values = turned(Heights(columns["x"], None, columns[name]), turn)
+    return x, values if name == "drop" else -values, name
 
 
 def _read_netcdf(path: Path) -> dict[str, FloatArray]:

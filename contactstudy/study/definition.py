@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -18,9 +18,13 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
+from contactstudy.study.parameter import points
 from contactstudy.study.parameters import PARAMETERS, checked
-from contactstudy.study.plan import LEVELS, Plan, in_engineers_words, label, make_plan
+from contactstudy.study.plan import LEVELS, Combination, Plan, combinations, in_engineers_words, label, make_plan
 from contactstudy.study.profile_kinds import with_files_in
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
@@ -34,10 +38,12 @@ LISTED = 12
 
 def _listed(name: str, values: object) -> list[Any]:
     """Values of a swept parameter as a list that is not empty."""
+    if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
+        values = points(name, values)
     if isinstance(values, np.ndarray):
         values = values.tolist()
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-        raise InvalidInputError(name, values, "a list of values")
+        raise InvalidInputError(name, values, "a list of values, or for numbers a table with start, stop and count")
     if not values:
         raise InvalidInputError(name, values, "a list of at least one value")
     return list(values)
@@ -67,7 +73,8 @@ class Study:
     base : mapping
         Parameters that all cases share, see :data:`contactstudy.study.parameters.PARAMETERS`.
     sweep : mapping of lists
-        Parameters that are combined each with each; every one becomes a dimension.
+        Parameters that are combined each with each; every one becomes a dimension. For evenly spaced numbers a mapping
+        ``{"start": ..., "stop": ..., "count": ...}`` stands for the list.
     zip : mapping of lists, or list of such mappings
         Parameters that change together: lists of equal length; every mapping becomes one dimension.
     cases : list of mappings
@@ -227,6 +234,62 @@ class Study:
             checks.known_name("key of the study file", str(key), KEYS)
         return cls(**content)
 
+    @classmethod
+    def from_dataset(
+        cls,
+        table: xr.Dataset,
+        name: str | None = None,
+        *,
+        base: Mapping[str, Any] | None = None,
+        level: str | None = None,
+        description: str | None = None,
+    ) -> Study:
+        """Study whose cases are the entries of a table, or a part of a study that was opened.
+
+        Parameters
+        ----------
+        table : Dataset
+            Variables and coordinates named after parameters. Those along one dimension change together, dimensions are
+            combined each with each: coordinates of a grid are a product, columns along one dimension a list of cases.
+            Those along two or more dimensions give each combination its own value. Numbers without a dimension are
+            shared. NaN and an empty text leave a parameter out. An attribute `units` that is known is
+            converted, any other is refused. Instead, what :func:`contactstudy.open_study` or
+            :func:`contactstudy.study.collect` returns, or a selection of it: its cases again.
+        name : str, optional
+            See the class. An opened study keeps its own, and so its level and description.
+        base : mapping, optional
+            Further parameters that all cases share; of an opened study, those that shall be others.
+        level, description : str, optional
+            See the class.
+
+        Raises
+        ------
+        InvalidInputError
+            If a variable is no parameter, a unit does not fit, or a value is refused by the class.
+
+        Examples
+        --------
+        >>> import xarray as xr
+        >>> table = xr.Dataset(
+        ...     {"max_pressure": ("case", [1000.0, 1500.0], {"units": "MPa"}), "tilt": ("case", [0.0, 1e-4])},
+        ...     coords={"friction": [0.0, 0.1]},
+        ... )
+        >>> base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 10e-3, "e_over_a": 2}
+        >>> study = Study.from_dataset(table, "table", base=base)
+        >>> [case.name for case in study.plan().cases][:2]
+        ['friction=0 max_pressure=1e+09 tilt=0', 'friction=0 max_pressure=1.5e+09 tilt=0.0001']
+        """
+        from contactstudy.study.table import content_of_table, is_opened, part_of_study
+
+        said = {"name": name, "level": level, "description": description}
+        given = {key: value for key, value in said.items() if value is not None}
+        if is_opened(table):
+            study = cls.from_mapping(json.loads(table.attrs["contactstudy_study"]))
+            content = part_of_study(study, table, base or {})
+        else:
+            content = content_of_table(table, base or {})
+        return cls(**({"name": "table"} | content | given))
+
     def to_json(self) -> str:
         """Everything the study says, as JSON that :meth:`from_mapping` reads back after ``json.loads``."""
         return json.dumps({key: getattr(self, key) for key in KEYS}, indent=1)
@@ -255,12 +318,20 @@ class Study:
                 f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
+        return make_plan(self.name, self.level, self.combinations(), self.axes(), bool(self.cases))
+
+    def axes(self) -> tuple[Axis, ...]:
+        """Swept parameters, then those that change together."""
         axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
         for group in self.zip:
             rows = zip(*group.values(), strict=True)
             axes.append(Axis(tuple(dict(zip(group, row, strict=True)) for row in rows)))
+        return tuple(axes)
+
+    def combinations(self) -> list[Combination]:
+        """Values of every case that is not excluded, in the order of the plan."""
         rules = tuple({**rule} for rule in self.exclude)
-        return make_plan(self.name, self.level, self._complete(), tuple(axes), tuple(self.cases), rules)
+        return combinations(self._complete(), self.axes(), tuple(self.cases), rules)
 
     def _complete(self) -> dict[str, Any]:
         """Return the base with the defaults that exclusions may name."""

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from contactstudy.arrays.engineering import quantity
+from contactstudy.case.doubts import doubts
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
@@ -48,6 +50,8 @@ class PlannedCase:
         Sizes of grid and stress field.
     described : dict
         End distance over the half-width, friction, gamma and profile; empty for a skipped case.
+    doubts : tuple of str
+        Questions on values of a size that is mostly a mistake in the unit.
     """
 
     id: str
@@ -59,6 +63,7 @@ class PlannedCase:
     cells: int = 0
     points: int = 0
     described: Described = field(default_factory=dict)
+    doubts: tuple[str, ...] = ()
 
     def size(self, level: Level) -> int:
         """Bytes of the case's file before compression."""
@@ -105,6 +110,12 @@ class Plan:
         return tuple({case.id: case for case in self.cases if not case.reason}.values())
 
     @property
+    def doubts(self) -> tuple[str, ...]:
+        """Questions on values of a size that is mostly a mistake in the unit, each once, with the number of cases."""
+        counts = Counter(question for case in self.unique for question in case.doubts)
+        return tuple(f"{question} ({number} case{'s' * (number > 1)})" for question, number in counts.items())
+
+    @property
     def size(self) -> int:
         """Bytes of all files before compression: an upper bound."""
         return sum(case.size(self.level) for case in self.unique)
@@ -149,35 +160,45 @@ def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]
     return any(all(label(name, values.get(name)) in allowed for name, allowed in rule.items()) for rule in rules)
 
 
-def make_plan(
-    name: str,
-    level: Level,
+class Combination(NamedTuple):
+    """One case before it is planned: all its values, those that are its own, and its place in a product."""
+
+    values: dict[str, Any]
+    own: dict[str, Any]
+    position: tuple[int, ...]
+
+
+def combinations(
     base: Mapping[str, Any],
     axes: tuple[Axis, ...],
     cases: tuple[Mapping[str, Any], ...],
     exclude: tuple[Mapping[str, list[Any]], ...],
-) -> Plan:
+) -> list[Combination]:
     """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
 
     All values are checked already; rules of `exclude` hold lists of labels.
     """
-    chosen: list[tuple[dict[str, Any], dict[str, Any], tuple[int, ...]]] = []
+    chosen: list[Combination] = []
     if axes or not cases:
         for position in itertools.product(*(range(len(axis.entries)) for axis in axes)):
             swept: dict[str, Any] = {}
             for axis, index in zip(axes, position, strict=True):
                 swept |= axis.entries[index]
-            chosen.append(({**base, **swept}, swept, position))
-    chosen += [({**base, **case}, dict(case), ()) for case in cases]
-    kept = [entry for entry in chosen if not _excluded(entry[0], exclude)]
-    if cases:
-        cube, positions = cube_of_cases([entry[0] for entry in kept], label)
+            chosen.append(Combination({**base, **swept}, swept, position))
+    chosen += [Combination({**base, **case}, dict(case), ()) for case in cases]
+    return [entry for entry in chosen if not _excluded(entry.values, exclude)]
+
+
+def make_plan(name: str, level: Level, kept: list[Combination], axes: tuple[Axis, ...], explicit: bool) -> Plan:
+    """Lay out the combinations of a study along its axes, or along what differs if it has explicit cases."""
+    if explicit:
+        cube, positions = cube_of_cases([entry.values for entry in kept], label)
     else:
         cube = cube_of_axes(axes, label)
-        positions = [entry[2] if cube.dims != ("case",) or axes else (0,) for entry in kept]
+        positions = [entry.position if cube.dims != ("case",) or axes else (0,) for entry in kept]
     planner = Planner()
     planned = [
-        planner.planned(values, swept, position) for (values, swept, _), position in zip(kept, positions, strict=True)
+        planner.planned(entry.values, entry.own, position) for entry, position in zip(kept, positions, strict=True)
     ]
     return Plan(name, level, tuple(planned), cube)
 
@@ -209,5 +230,13 @@ class Planner:
             return PlannedCase(identity, parameters, words, position, reason=str(error))
         cells = math.prod(setup.shape)
         return PlannedCase(
-            identity, parameters, words, position, "", setup.operator, cells, setup.points, setup.described
+            identity,
+            parameters,
+            words,
+            position,
+            operator=setup.operator,
+            cells=cells,
+            points=setup.points,
+            described=setup.described,
+            doubts=doubts(setup.case),
         )

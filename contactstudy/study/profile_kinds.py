@@ -23,6 +23,9 @@ Table = dict[str, Any]
 # Profiles within profiles, as sums of halves of sums.
 DEEPEST = 16
 
+DESIGN = ("design_pressure", "design_load")
+"""Keys of which a profile's amplitude may follow: Pa, and N on the whole roller."""
+
 # Points of a measured profile in a study.
 MOST_POINTS = 50_000
 
@@ -34,6 +37,7 @@ class Surroundings:
     radius: float
     modulus: float
     max_pressure: float
+    length: float
 
 
 class ProfileKind(Protocol):
@@ -73,7 +77,8 @@ class Numbers:
     made : type
         The dataclass.
     designed : tuple of str
-        Fields that `design_pressure` may be given for, through the class' ``for_pressure``.
+        Fields that `design_pressure` or `design_load` may be given for, through the class' ``for_pressure`` or
+        ``for_load``.
     of_radius : mapping
         Fields that need not be given, and how many times the roller's radius they then are.
     """
@@ -89,26 +94,30 @@ class Numbers:
 
     def read(self, table: Mapping[str, Any], depth: int) -> Table:
         """Check that the keys are fields and the values numbers."""
-        defaults = {**self._defaults, "design_pressure": None} if self.designed else self._defaults
+        defaults = {**self._defaults, **dict.fromkeys(DESIGN)} if self.designed else self._defaults
         _only(table, list(defaults))
         given = {key: number(f"profile.{key}", value) for key, value in table.items() if value is not None}
         return {key: value for key, value in given.items() if value != defaults[key]}
 
     def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
-        """Call the class with the numbers, or its ``for_pressure`` with a `design_pressure`."""
-        values = dict(table)
-        pressure = values.pop("design_pressure", None)
-        if self.designed and (pressure is None) != any(name in values for name in self.designed):
-            choice = f"exactly one of {' with '.join(self.designed)} and design_pressure"
+        """Call the class with the numbers, or its ``for_pressure`` or ``for_load``."""
+        design = {name: table[name] for name in DESIGN if name in table}
+        values = {name: value for name, value in table.items() if name not in design}
+        if self.designed and len(design) + any(name in values for name in self.designed) != 1:
+            choice = f"exactly one of {' with '.join(self.designed)}, {' and '.join(DESIGN)}"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
         needed = [name for name, default in self._defaults.items() if default is MISSING]
-        if pressure is None:
+        if not design:
             _require(values, *needed)
             sizes = {name: times * around.radius for name, times in self.of_radius.items()}
             made: Profile = self.made(**(sizes | values))
         else:
             _require(values, *(name for name in needed if name not in self.designed))
-            made = self.made.for_pressure(pressure, radius=around.radius, modulus=around.modulus, **values)
+            values |= {"radius": around.radius, "modulus": around.modulus}
+            if "design_load" in design:
+                made = self.made.for_load(design["design_load"], length=around.length, **values)
+            else:
+                made = self.made.for_pressure(design["design_pressure"], **values)
         return made
 
 
@@ -119,19 +128,20 @@ class MeasuredPoints:
 
     def read(self, table: Mapping[str, Any], depth: int) -> Table:
         """Positions and drops, from the file if one is named: the content is what counts, not where it was."""
-        options = ("remove_tilt", "remove_offset", "largest_spike")
-        points = ("positions", "drops")
-        _only(table, ["file", *options, *points])
+        numbers, points = ("largest_spike", "cutoff"), ("positions", "drops")
+        flags = ("remove_tilt", "remove_offset")
+        _only(table, ["file", *flags, "turn", *numbers, *points])
         values = {key: value for key, value in table.items() if value is not None}
         if "file" in values:
             if any(name in values for name in points):
                 raise InvalidInputError("profile", sorted(values), "given with file, or with positions and drops")
             checks.instance("profile.file", values["file"], str, "the path of a CSV or netCDF file")
-            for option in options[:2]:
+            for option in flags:
                 checks.instance(f"profile.{option}", values.get(option, False), bool, "true or false")
             read = profiles.Measured.from_file(values.pop("file"), **values)
-            values = {"positions": read.positions, "drops": read.drops, "largest_spike": read.largest_spike}
-        _only(values, [*points, "largest_spike"])
+            kept = {name: getattr(read, name) for name in (*points, *numbers)}
+            values = {name: value for name, value in kept.items() if value is not None}
+        _only(values, [*points, *numbers])
         _require(values, *points)
         result: Table = {
             name: checks.coordinates(f"profile.{name}", values[name], "metres").tolist() for name in points
@@ -143,9 +153,8 @@ class MeasuredPoints:
                 f"measured at no more than {MOST_POINTS} points, because every result keeps them",
                 "thin the points out: cells of the contact are micrometres wide",
             )
-        if values.get("largest_spike") is not None:
-            result["largest_spike"] = number("profile.largest_spike", values["largest_spike"])
-        return result
+        given = {name: number(f"profile.{name}", values[name]) for name in numbers if name in values}
+        return result | given
 
     def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
         """Make the profile of the points."""
@@ -260,7 +269,8 @@ def profile_table(value: object, depth: int = 0) -> Table:
         value = {"kind": KIND_OF[type(value)], **given}
     if isinstance(value, str):
         value = {"kind": value}
-    checks.instance("profile", value, Mapping, "a table with a kind, such as {kind = 'cylinder'}")
+    allowed = "a profile or a table with a kind, such as {kind = 'cylinder'}; one's own as Measured(x, drop)"
+    checks.instance("profile", value, Mapping, allowed)
     assert isinstance(value, Mapping)
     if not isinstance(value.get("kind"), str):
         raise InvalidInputError("profile", dict(value), f"a table with a kind: one of {', '.join(PROFILES)}")

@@ -50,8 +50,7 @@ def run_lines(report: RunReport) -> Iterator[str]:
     if report.failures:
         yield f"  details in {shown(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {shown(report.folder)}"
-    for case in report.plan.skipped[:SHOWN]:
-        yield f"  skipped: {case.name}: {case.reason}"
+    yield from skipped_lines(report.plan)
     for case in report.not_converged[:SHOWN]:
         yield f"  not converged, do not rely on it: {case.name}"
     for remark in report.remarks:
@@ -70,11 +69,23 @@ def stale_lines(report: RunReport) -> Iterator[str]:
         yield f"{len(stale)} stale ({stale[0].reason}); again with: {again}"
 
 
+def skipped_lines(plan: Plan) -> Iterator[str]:
+    """Lines on the cases that cannot be solved: of those with the same reason the first, and how many more."""
+    reasons: dict[str, list[str]] = {}
+    for case in plan.skipped:
+        reasons.setdefault(case.reason, []).append(case.name)
+    for reason, names in list(reasons.items())[:SHOWN]:
+        yield f"  skipped: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
+
+
 def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterator[str]:
     """Lines of counts, and of the cases that need attention, or of every case."""
     for status, count in Counter(entry.status for entry in entries).items():
         yield f"  {count} {status}"
-    listed = [(case, entry) for case, entry in zip(plan.cases, entries, strict=True) if everything or entry.reason]
+    if not everything:
+        yield from skipped_lines(plan)
+    pairs = zip(plan.cases, entries, strict=True)
+    listed = [(case, entry) for case, entry in pairs if everything or (entry.reason and not case.reason)]
     for case, entry in listed if everything else listed[:SHOWN]:
         yield f"  {entry.status}: {case.id[:16]} {case.name}" + (f": {entry.reason}" if entry.reason else "")
     if not everything and len(listed) > SHOWN:
@@ -82,7 +93,9 @@ def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterat
 
 
 def forecast_lines(plan: Plan, entries: list[Entry]) -> Iterator[str]:
-    """Lines on the bytes and the time that the cases to come will take."""
+    """Lines on doubtful magnitudes, and on the bytes and the time that the cases to come will take."""
+    for doubt in plan.doubts[:SHOWN]:
+        yield f"  doubtful, for units are SI: {doubt}"
     pairs = list(zip(plan.cases, entries, strict=True))
     done = {case.id: (case.cost, entry.scalars["seconds"]) for case, entry in pairs if "seconds" in entry.scalars}
     todo = {case.id: case for case, entry in pairs if entry.status == "missing"}

@@ -25,6 +25,9 @@ from contactstudy.study.work import Job, Record, Solver, differences
 
 SAVE_SECONDS = 5.0
 
+# Questions on magnitudes that a run repeats; `plan` shows more.
+MOST_DOUBTS = 5
+
 
 @dataclass(frozen=True)
 class RunReport:
@@ -195,6 +198,8 @@ def run_study(
             log.say(took_over)
         place.clean()
         place.write_study(study)
+        for doubt in plan.doubts[:MOST_DOUBTS]:
+            log.remark(f"doubtful, for units are SI: {doubt}")
         jobs = _todo(plan, place, again, log.say)
         log.begin(jobs, total=len(plan.unique))
         records = execute(jobs, workers=workers, scheduler=scheduler, wait=wait, solver=solver, say=log.remark)

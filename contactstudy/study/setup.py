@@ -12,6 +12,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.material import Material, contact_modulus
 from contactstudy.bodies.models import MODELS, Body, FiniteLengthSpace, HalfSpace, QuarterSpace
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import unquestioned
 from contactstudy.case.gridding import choose_grid, widening_grids
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
@@ -240,22 +241,23 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         _one_of(values, *pair)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
-    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure)
+    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure, sizes.roller_length)
     middle = sizes.end_distance + 0.5 * sizes.roller_length
-    case = Case(
-        body=_body(values, material, sizes.body_length),
-        roller=Roller(
-            radius=sizes.radius,
-            length=sizes.roller_length,
-            profile=build_profile(values["profile"], around),
-            material=roller_material,
-            ends=ROLLER_BODIES[values["roller_body"]] or "free",
-        ),
-        end_distance=sizes.end_distance,
-        load_position=middle + values["load_offset"] if "load_offset" in values else None,
-        motion=motion_of(values),
-        **taken_by(Case, values),
-    )
+    with unquestioned():  # the plan asks, for all cases at once
+        case = Case(
+            body=_body(values, material, sizes.body_length),
+            roller=Roller(
+                radius=sizes.radius,
+                length=sizes.roller_length,
+                profile=build_profile(values["profile"], around),
+                material=roller_material,
+                ends=ROLLER_BODIES[values["roller_body"]] or "free",
+            ),
+            end_distance=sizes.end_distance,
+            load_position=middle + values["load_offset"] if "load_offset" in values else None,
+            motion=motion_of(values),
+            **taken_by(Case, values),
+        )
     tolerance = checks.positive("tolerance", values["tolerance"])
     options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solve, values)
     described: Described = {

@@ -29,7 +29,7 @@ from contactstudy.analysis.measures import MEASURES
 from contactstudy.arrays import vocabulary
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.study.parameters import documented
-from contactstudy.study.profile_kinds import PROFILES, MeasuredPoints, Numbers
+from contactstudy.study.profile_kinds import DESIGN, PROFILES, MeasuredPoints, Numbers
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
@@ -85,7 +85,7 @@ def profile_kinds() -> str:
             for entry in fields(kind.made)
         ]
         if isinstance(kind, Numbers) and kind.designed:
-            keys.append(code("design_pressure"))
+            keys.append(code(*DESIGN))
         if isinstance(kind, MeasuredPoints):
             keys.append(code("file"))
         rows.append(

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import HalfSpace, InvalidInputError, solve_contact, stress_field, surface_displacement
+from contactstudy import Grid, HalfSpace, InvalidInputError, solve_contact, stress_field, surface_displacement
 from contactstudy.arrays.units import in_si
+from contactstudy.case.friction import AxialFriction, checked_friction
+from contactstudy.case.roughness import heights_on
+from contactstudy.passes import ElasticPlastic
 
 OnCells = Callable[..., xr.DataArray]
 
@@ -48,3 +52,44 @@ def test_only_real_numbers_are_taken(values: np.ndarray, half_space: HalfSpace) 
     complex_cells = xr.DataArray(np.ones((4, 4)), coords={"x": cells * 1j, "y": cells}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=r"x = .* numbers"):
         surface_displacement(half_space, complex_cells)
+
+
+def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) -> None:
+    friction = xr.DataArray([10.0, 20.0], {"x": ("x", [0.0, 2.0], {"units": "mm"})}, "x", attrs={"units": "%"})
+    assert checked_friction(friction) == AxialFriction((0.0, 2e-3), (0.1, 0.2))
+    cells = Grid((0.0, 4e-3), (0.0, 2e-3), 4, 2)
+    map_ = xr.DataArray(np.arange(8.0).reshape(4, 2), {"x": 1e3 * cells.x, "y": 1e3 * cells.y}, ("x", "y"))
+    for axis in "xy":
+        map_[axis].attrs["units"] = "mm"
+    np.testing.assert_allclose(heights_on(cells, map_.assign_attrs(units="um")), 1e-6 * map_.values)
+    for wrong in (map_.assign_attrs(units="GPa"), map_.assign_coords(x=map_.x.assign_attrs(units="1"))):
+        with pytest.raises(InvalidInputError, match=r"roughness.*attrs\['units'\]"):
+            heights_on(cells, wrong)
+    with pytest.raises(InvalidInputError, match=r"friction.attrs\['units'\] = 'N'"):
+        checked_friction(friction.assign_attrs(units="N"))
+
+
+def test_depths_in_micrometres(on_cells: OnCells, half_space: HalfSpace) -> None:
+    pressure = on_cells(lambda x, y: 1.0 + 0 * x + 0 * y, (-1.0, 1.0), (-1.0, 1.0), (8, 8))
+    depths = xr.DataArray([0.5e6], dims="z", attrs={"units": "um"})
+    expected, found = (stress_field(half_space, pressure, z=z) for z in ([0.5], depths))
+    xr.testing.assert_allclose(found, expected)
+    with pytest.raises(InvalidInputError, match=r"z.attrs\['units'\] = '1'"):
+        stress_field(half_space, pressure, z=depths.assign_attrs(units="1"))
+
+
+def test_yield_stress_over_depth() -> None:
+    over = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
+    material = ElasticPlastic(yield_stress=over)
+    for each in (material, replace(material, isotropic_hardening=1e9)):
+        np.testing.assert_allclose(each.yield_at(np.array([0.5e-3])), 500e6)
+    hard = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
+    assert ElasticPlastic.from_hardness(hard).yield_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
+    with pytest.raises(InvalidInputError, match="HV, or left out"):
+        ElasticPlastic.from_hardness(hard.assign_attrs(units="HRC"))
+
+
+def test_what_was_converted_says_so() -> None:
+    found = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
+    assert (found.attrs["units"], found["x"].attrs["units"]) == ("m", "m")
+    xr.testing.assert_identical(in_si("gap", found, "m"), found)

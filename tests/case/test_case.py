@@ -164,3 +164,29 @@ def test_a_body_of_no_kind_is_none() -> None:
 def test_coupled_is_yes_or_no() -> None:
     with pytest.raises(InvalidInputError, match="coupled = 1"):
         Case(body=BODY, roller=ROLLER, max_pressure=1e9, coupled=1)  # type: ignore[arg-type]
+
+
+def test_combined_radius_of_two_curved_bodies() -> None:
+    assert Roller.combined_radius(6e-3, 30e-3) == pytest.approx(5e-3)
+    assert Roller.combined_radius(30e-3, 6e-3) == pytest.approx(5e-3)
+    assert Roller.combined_radius(6e-3, -42e-3) == pytest.approx(7e-3)
+    x = np.linspace(-1e-4, 1e-4, 5)  # the gap between two circles, against that of the combined one
+    circles = [radius - np.sqrt(radius**2 - x**2) for radius in (6e-3, 42e-3)]
+    roller = Roller(radius=Roller.combined_radius(6e-3, -42e-3), length=1e-3)
+    np.testing.assert_allclose(roller.clearance(np.zeros(1), x)[0], circles[0] - circles[1], rtol=2e-4, atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "message"),
+    [
+        (6e-3, -6e-3, "hollow radius is the larger"),
+        (6e-3, -5e-3, "hollow radius is the larger"),
+        (-6e-3, -7e-3, "hollow radius is the larger"),
+        (0.0, 6e-3, "first = 0"),
+        (6e-3, np.inf, "second = inf"),
+        ("6 mm", 6e-3, "first = '6 mm'"),
+    ],
+)
+def test_radii_that_leave_no_gap_are_refused(first, second, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        Roller.combined_radius(first, second)

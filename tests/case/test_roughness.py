@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import x3pio
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
@@ -162,3 +163,29 @@ def test_bad_netcdf_maps_are_named(tmp_path: Path) -> None:
         read_height_map(tmp_path / "missing.nc", GRID)
     with pytest.raises(InvalidInputError, match="remove_slope = 'yes'"):
         read_height_map(tmp_path / "units.nc", GRID, remove_slope="yes")
+
+
+def test_a_map_of_an_instrument_is_placed_turned_and_freed_of_its_form(tmp_path: Path) -> None:
+    x, y = 2e-6 * np.arange(501), 5e-6 * np.arange(201)
+    wave = 1e-7 * np.sin(2 * np.pi * x / 0.1e-3)[:, None] * np.cos(2 * np.pi * y / 0.2e-3)
+    form = 1e-6 + 3e-3 * x[:, None] - 1e-3 * y - (y - 0.6e-3) ** 2 / 0.012 + 0.4 * x[:, None] * y
+    x3pio.write(tmp_path / "map.x3p", (wave + form).T, x_scale=2e-6, y_scale=5e-6)
+    corner = (GRID.x_range[0], GRID.y_range[0])
+    plain = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_form=True)
+    expected = np.sin(2 * np.pi * GRID.x / 0.1e-3)[:, None] * np.cos(2 * np.pi * (GRID.y - corner[1]) / 0.2e-3)
+    np.testing.assert_allclose(plain, 1e-7 * expected, atol=3e-9)
+    sloped = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, remove_slope=True)
+    assert float(sloped.max() - sloped.min()) > 10 * float(plain.max() - plain.min())
+    back = read_height_map(tmp_path / "map.x3p", GRID, corner=corner, turn=180, mirror=True, remove_form=True)
+    np.testing.assert_allclose(back.values[::-1], plain.values, atol=3e-9)
+
+
+def test_bad_maps_of_instruments_are_named(tmp_path: Path) -> None:
+    x3pio.Profile.from_array(np.zeros(9), x_scale=1e-6).save(tmp_path / "line.x3p")
+    with pytest.raises(InvalidInputError, match="it holds one line"):
+        read_height_map(tmp_path / "line.x3p", GRID)
+    x3pio.write(tmp_path / "map.x3p", np.zeros((9, 9)), x_scale=1e-6, y_scale=1e-6)
+    with pytest.raises(InvalidInputError, match=r"corner = 0.0: must be two positions"):
+        read_height_map(tmp_path / "map.x3p", GRID, corner=0.0)
+    with pytest.raises(InvalidInputError, match=r"grid.x = .*within the measured"):
+        read_height_map(tmp_path / "map.x3p", GRID)

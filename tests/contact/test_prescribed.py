@@ -265,3 +265,23 @@ def test_a_tolerance_beyond_rounding_is_not_converged(on_cells, half_space: Half
     with pytest.warns(ConvergenceWarning, match="penetration_error"):
         result = solve_contact(half_space, gap, load=4 / 3, tolerance=1e-40)
     assert not bool(result.converged)
+
+
+def test_several_approaches_are_a_dimension(on_cells) -> None:
+    gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.6, 1.6), (-1.6, 1.6), (32, 32))
+    body = HalfSpace(material=Material(0.75, 0.5))
+    steps = [0.25, 0.5, 1.0]
+    found = solve_contact(body, gap, approach=steps)
+    assert found["pressure"].dims == ("approach", "x", "y")
+    assert found["approach"].values.tolist() == steps
+    assert found["approach"].attrs["units"] == "m"
+    xr.testing.assert_allclose(
+        found.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
+    )
+    # Hertz: W = 4/3 E* R**(1/2) d**(3/2), with E* = R = 1
+    np.testing.assert_allclose(found["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
+    for wrong in ([], [0.1, np.nan], [[0.1]], "deep"):
+        with pytest.raises(InvalidInputError, match="approach"):
+            solve_contact(body, gap, approach=wrong)
+    with pytest.raises(InvalidInputError, match="after"):
+        solve_contact(body, gap, approach=steps, after=found)

@@ -228,6 +228,14 @@ def test_same_end_without_its_own_freedom_is_a_logarithm_when_tilted() -> None:
     assert freed.ends[0] < freed.ends[1] < freed.peak
 
 
+def test_a_singular_end_and_the_other_half_free_of_contact() -> None:
+    roller = Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(0.5))
+    found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE, tilt=0.02), 0.1).refined
+    assert found.settled
+    assert found.peaks == (0.0, np.inf)
+    assert found.loads[0] == 0.0
+
+
 def test_sharp_elastic_end_in_a_face_grows_with_a_smaller_power() -> None:
     """A 90 degree edge on a half-space of the same material, without friction: about 0.226."""
     half_width = 2 * A

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pandas as pd
 import pytest
 import xarray as xr
+from scipy.io import loadmat
 
 from contactstudy.cli import main
 from tests.export.vtk_reader import read
@@ -57,7 +58,18 @@ def test_case_of_a_study(folder, capsys) -> None:
 
 def test_summaries_are_what_a_folder_gives_alone(folder) -> None:
     assert command(folder) == 0
-    assert len(pd.read_csv(folder / "summary.csv")) == 4
+    table = pd.read_csv(folder / "summary.csv")
+    assert len(table) == 4
+    assert {"e_over_a", "hertz_max_pressure [Pa]"} <= set(table)
+
+
+def test_all_cases_for_matlab(folder) -> None:
+    assert command(folder, "--format", "mat") == 0
+    summaries = loadmat(folder / "export.mat", simplify_cells=True)
+    assert summaries["hertz_max_pressure"].shape == (2, 2)
+    assert "pressure" not in summaries
+    assert command(folder, "--format", "mat", "--variable", "pressure", "--select", "friction=0.1") == 0
+    assert loadmat(folder / "export.mat")["pressure"].shape[0] == 2
 
 
 @pytest.mark.parametrize(

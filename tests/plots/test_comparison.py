@@ -35,13 +35,15 @@ def test_depth(strip_result, assert_nothing_clipped):
     assert [line.get_xdata().max() for line in ax.lines] == pytest.approx([0.5575, 0.3], abs=2e-3)
     low, high = ax.get_ylim()
     assert low > high
+    assert ax.get_title() == "below $x/a$ = 3, $y/a$ = 0"
     assert_nothing_clipped(ax.figure)
 
 
 def test_given_axes_are_used(solved):
     ax = pyplot.figure().add_subplot()
     assert plots.plot_comparison({"case": solved}, ax=ax) is ax
-    assert plots.plot_depth(solved, ax=ax) is ax
+    assert plots.plot_depth(solved, ax=ax, x=0.2e-3, si=True) is ax
+    assert ax.get_title() == "below $x$ = 0.2 mm, $y$ = 0 mm"
 
 
 def test_bad_input(solved, opened):

@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import xarray as xr
 
 from contactstudy import plots
 from contactstudy.errors import InvalidInputError
@@ -45,6 +46,13 @@ def test_the_first_solved_cases_are_drawn_and_named(opened):
     assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
     only_failed = plots.plot_study_lines(opened.isel(friction=[1]), "e_over_a", "body")
     assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
+
+
+def test_what_is_held_is_named_with_its_unit(opened):
+    load = xr.DataArray([200.0, 300.0], dims="load", attrs={"units": "N"})
+    loaded = opened.isel(friction=0, drop=True).expand_dims(load=load)
+    loaded["load"].attrs["units"] = "N"
+    assert plots.plot_study_lines(loaded, "e_over_a", "body").get_suptitle() == "load = 200 N"
 
 
 def test_the_legend_has_the_unit_of_its_title(opened):

@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, Material
+from contactstudy.bodies.hertz import line_load
 from contactstudy.profiles import Cylinder, FujiwaraKawase, JohnsGohar, Lundberg
 from tests.profiles.conftest import LENGTH, PRESSURE, RADIUS, along
 
@@ -134,3 +135,18 @@ def test_design_pressure_of_fujiwara_and_kawase(steel: Material) -> None:
 def test_bad_values_are_named(make, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         make()
+
+
+@pytest.mark.parametrize(
+    ("kind", "more"), [(Lundberg, {"delta": 0.9}), (JohnsGohar, {}), (FujiwaraKawase, {"edge_drop": 1e-6})]
+)
+def test_design_load_is_that_of_the_hertz_line(kind, more: dict[str, float], steel: Material) -> None:
+    about = {"radius": RADIUS, "modulus": steel.plane_strain_modulus}
+    load = line_load(PRESSURE, **about) * 0.8 * LENGTH
+    by_load = kind.for_load(load, length=0.8 * LENGTH, **about, **more)
+    by_pressure = kind.for_pressure(PRESSURE, **about, **more)
+    assert by_load.amplitude == pytest.approx(by_pressure.amplitude, rel=1e-12)
+    x = np.linspace(-0.49, 0.49, 11) * LENGTH
+    np.testing.assert_allclose(by_load.drop(x, LENGTH), by_pressure.drop(x, LENGTH), rtol=1e-9)
+    with pytest.raises(InvalidInputError, match="length = 0"):
+        kind.for_load(load, length=0, **about, **more)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import x3pio
 import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
@@ -201,3 +202,80 @@ def test_bad_netcdf_files_are_named(tmp_path: Path) -> None:
 def test_missing_files_are_named(tmp_path: Path, name: str) -> None:
     with pytest.raises(InvalidInputError, match=f"path = .*{name}"):
         Measured.from_file(tmp_path / name)
+
+
+NOISE = 0.05e-6 * np.random.default_rng(0).standard_normal(X.size)
+NOISY = DROP + NOISE - (DROP + NOISE).min()
+
+
+def test_a_filter_leaves_the_crown_and_takes_the_noise() -> None:
+    rough, smooth = Measured(X, NOISY), Measured(X, NOISY, cutoff=0.8e-3)
+    off = [profile.drop(X - LENGTH / 2, LENGTH) - DROP for profile in (rough, smooth)]
+    assert np.std(off[0]) == pytest.approx(0.05e-6, rel=0.2)
+    assert np.std(off[1]) < 0.4 * np.std(off[0])
+    assert smooth.drop(X - LENGTH / 2, LENGTH).min() == 0.0
+    assert "Gaussian filter with cut-off 0.8 mm" in repr(smooth)
+    assert "filter" not in repr(rough)
+    assert pickle.loads(pickle.dumps(smooth)) == smooth != rough
+
+
+def test_a_file_is_filtered_as_its_points_are(tmp_path: Path) -> None:
+    path = csv_file(tmp_path, drop=DROP + NOISE + 2e-6)
+    read = Measured.from_file(path, remove_offset=True, cutoff=0.8e-3)
+    assert read.cutoff == 0.8e-3
+    np.testing.assert_allclose(
+        read.drop(X - LENGTH / 2, LENGTH),
+        Measured(X, NOISY, cutoff=0.8e-3).drop(X - LENGTH / 2, LENGTH),
+        rtol=1e-5,
+        atol=1e-13,
+    )
+
+
+@pytest.mark.parametrize("cutoff", [0.0, -1e-3, 0.2e-3, 11e-3, 0.8, "0.8 mm", np.nan])
+def test_bad_cutoffs_are_named(cutoff: object) -> None:
+    with pytest.raises(InvalidInputError, match="cutoff = "):
+        Measured(X, DROP, cutoff=cutoff)
+
+
+def test_outliers_are_found_before_they_are_smeared() -> None:
+    drop = DROP + 1e-6
+    drop[100] += 5e-6
+    with pytest.raises(InvalidInputError, match="1 outliers"):
+        Measured(X, drop, cutoff=0.8e-3)
+
+
+def test_line_and_map_of_an_instrument(tmp_path: Path, places: np.ndarray) -> None:
+    """Heights of the crown; end II is lower, so that directions show."""
+    lower = -DROP - 4e-4 * np.maximum(X - 0.5 * LENGTH, 0.0)
+    across = np.linspace(0.0, 0.3e-3, 16)
+    heights = lower[:, None] - (across - 0.13e-3) ** 2 / (2 * RADIUS)
+    x3pio.Profile.from_array(lower, x_scale=X[1]).save(tmp_path / "line.x3p")
+    x3pio.write(tmp_path / "map.x3p", heights.T, x_scale=X[1], y_scale=across[1])
+    x3pio.write(tmp_path / "other.x3p", heights, x_scale=across[1], y_scale=X[1])
+    for name, turn, side in (("line", 0, 1), ("line", 180, -1), ("map", 0, 1), ("map", 180, -1), ("other", 270, 1)):
+        profile = Measured.from_file(tmp_path / f"{name}.x3p", remove_offset=True, turn=turn)
+        expected = CROWN.drop(places, LENGTH) + 4e-4 * np.maximum(side * places, 0.0)
+        np.testing.assert_allclose(profile.drop(places, LENGTH), expected, rtol=1e-6, atol=1e-12)
+    assert np.ptp(Measured.from_file(tmp_path / "other.x3p", remove_offset=True).positions) == pytest.approx(0.3e-3)
+
+
+def test_columns_can_be_turned_end_for_end(tmp_path: Path) -> None:
+    path = csv_file(tmp_path, drop=DROP + 2e-4 * X)
+    turned = Measured.from_file(path, turn=180)
+    np.testing.assert_allclose(turned.drops, (DROP + 2e-4 * X)[::-1], rtol=1e-6)
+    with pytest.raises(InvalidInputError, match="turn = 90: must be one of 0, 180"):
+        Measured.from_file(path, turn=90)
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("0, 0\n1, 1", r"such as: x \[mm\], drop \[um\]"),
+        ("", r"a header such as: x \[mm\]"),
+        ("x, drop\n0, 0", r"such as x \[mm\]"),
+    ],
+)
+def test_the_header_that_is_wanted_is_shown(tmp_path: Path, text: str, shown: str) -> None:
+    (tmp_path / "trace.csv").write_text(text)
+    with pytest.raises(InvalidInputError, match=shown):
+        Measured.from_file(tmp_path / "trace.csv")

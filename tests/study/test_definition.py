@@ -158,3 +158,21 @@ def test_files_that_are_not_toml(tmp_path, text):
         Study.from_toml(path)
     with pytest.raises(StudyFileError, match="no_such"):
         Study.from_toml(tmp_path / "no_such.toml")
+
+
+def test_evenly_spaced_numbers_are_swept():
+    study = small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 3}})
+    assert study.sweep["friction"] == [0.0, 0.05, 0.1]
+    with pytest.raises(InvalidInputError, match="or for numbers a table with start, stop and count"):
+        small_study(sweep={"friction": {"start": 0.0}})
+    with pytest.raises(InvalidInputError, match=r"sweep.friction.count = 100000000"):
+        small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 100_000_000}})
+
+
+def test_a_profile_of_ones_own_is_told_how_to_go_in():
+    class Own:
+        def drop(self, x, length):
+            return x**2
+
+    with pytest.raises(InvalidInputError, match=r"one's own as Measured\(x, drop\)"):
+        small_study(sweep={"profile": [Own()]})

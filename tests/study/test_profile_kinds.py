@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from contactstudy import profiles
+from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.identity import case_id
@@ -32,7 +32,7 @@ EXAMPLES = {
     "partial-crown": profiles.PartialCrown(1e-4, 0.5, 5e-5, 0.1),
     "ellipsoid": profiles.Ellipsoid(0.5),
     "sphere": profiles.Sphere(BASE["radius"]),
-    "measured": profiles.Measured([0.0, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4], [1e-6, 5e-7, 0.0, 0.0, 5e-7, 1e-6], 1e-6),
+    "measured": profiles.Measured([round(5e-5 * k, 6) for k in range(11)], [4e-7] + 9 * [1e-7] + [0.0], 1e-6, 3e-4),
     "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
     "effective-length": profiles.EffectiveLength(profiles.FullCrown(0.5), 4.5e-4),
     "sum": profiles.Tapered(0.05) + profiles.IsoTapered(8e-3),
@@ -94,6 +94,13 @@ def test_design_pressure(kind: str) -> None:
     assert built({"kind": kind, "design_pressure": 2e9, **more}) == made
 
 
+def test_design_load() -> None:
+    profile = built({"kind": "lundberg", "design_load": 100.0})
+    material = Material(BASE["young"], BASE["poisson"])
+    about = {"radius": BASE["radius"], "modulus": material.plane_strain_modulus}
+    assert profile == profiles.Lundberg.for_load(100.0, length=BASE["roller_length"], **about)
+
+
 def test_sizes_that_follow_the_roller() -> None:
     assert built("sphere") == profiles.Sphere(BASE["radius"])
     assert built("iso-cylindrical") == profiles.IsoCylindrical(2 * BASE["radius"])
@@ -110,6 +117,9 @@ def test_the_content_of_a_file_is_the_case_and_not_its_place(tmp_path: Path) -> 
     assert identity(trace(tmp_path / "one")) == first
     assert identity(tmp_path / "one" / "trace.csv", remove_offset=True) == first
     assert identity(tmp_path / "one" / "trace.csv", largest_spike=1e-3) != first
+    assert identity(tmp_path / "one" / "trace.csv", cutoff=1e-4) != first
+    filtered = built({"kind": "measured", "file": str(tmp_path / "one" / "trace.csv"), "cutoff": 1e-4, "turn": 180})
+    assert filtered.cutoff == 1e-4
 
 
 def test_files_are_found_from_the_study_file_and_not_needed_later(tmp_path: Path, monkeypatch) -> None:
@@ -150,9 +160,15 @@ def test_labels_tell_measured_profiles_apart(tmp_path: Path) -> None:
         ({"kind": "tapered", "angle": 0.1}, "profile key = 'angle'.*half_angle"),
         ({"kind": "tapered"}, "given with half_angle"),
         ({"kind": "tapered", "half_angle": "3 degrees"}, "profile.half_angle = '3 degrees'"),
-        ({"kind": "lundberg", "amplitude": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude and design_press"),
+        (
+            {"kind": "lundberg", "amplitude": 1e-6, "design_pressure": 1e9},
+            "exactly one of amplitude, design_pressu",
+        ),
         ({"kind": "johns-gohar", "amplitude": 1e-6}, "given with half_width"),
-        ({"kind": "johns-gohar", "half_width": 1e-6, "design_pressure": 1e9}, "exactly one of amplitude with half_wid"),
+        (
+            {"kind": "johns-gohar", "half_width": 1e-6, "design_pressure": 1e9},
+            "exactly one of amplitude with half",
+        ),
         ({"kind": "fujiwara-kawase", "design_pressure": 1e9}, "given with edge_drop"),
         ({"kind": "sphere", "radius": 4e-3}, "radius = 0.004: must be the roller's radius"),
         ({"kind": "measured"}, "given with positions"),

@@ -1,0 +1,184 @@
+"""Heights in the files of measuring instruments: x3p, and the formats of profilometers.
+
+Two libraries of the extra ``measured`` read them: x3pio knows every part of x3p (ISO 25178-72), profiles included;
+SurfaceTopography knows the instruments' own formats. Here lengths become metres and the axes are turned.
+"""
+
+from __future__ import annotations
+
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.measurements import regular_file
+from contactstudy.checks import FloatArray
+from contactstudy.errors import ContactStudyError, InvalidInputError
+
+X3P = ".x3p"
+
+TEXT = ("", ".csv", ".txt", ".tsv", ".dat", ".nc")
+"""Endings of files that need no other library: columns with units, and netCDF."""
+
+TURNS = (0, 90, 180, 270)
+
+REGULAR = 1e-6
+"""Part of a step by which points may be off the lines of a grid. Accuracy."""
+
+
+class Heights(NamedTuple):
+    """What was measured, metres: positions along one axis or two, heights ``(x,)`` or ``(x, y)``, NaN if missing."""
+
+    x: FloatArray
+    y: FloatArray | None
+    heights: FloatArray
+
+
+def of_instrument(path: Path) -> bool:
+    """Whether a file is an instrument's, by its ending.
+
+    Examples
+    --------
+    >>> of_instrument(Path("roller.x3p")), of_instrument(Path("roller.csv"))
+    (True, False)
+    """
+    return path.suffix.lower() not in TEXT
+
+
+def read_heights(path: Path) -> Heights:
+    """Read the positions and heights of an instrument's file.
+
+    Parameters
+    ----------
+    path : Path
+        An x3p file, or one in a format that SurfaceTopography knows.
+
+    Raises
+    ------
+    ContactStudyError
+        If the extra `measured` is not installed.
+    InvalidInputError
+        If the file cannot be read, holds no heights over one or two axes, or does not say its unit of length.
+    """
+    x3p = path.suffix.lower() == X3P
+    _check_installed(path, "x3pio" if x3p else "SurfaceTopography")
+    regular_file(path, "measured")
+    found = _x3p(path) if x3p else _topography(path)
+    if found.y is not None and found.y.size == 1:
+        return Heights(found.x, None, found.heights[:, 0])
+    return found
+
+
+def turned(found: Heights, turn: int, mirror: bool = False) -> Heights:
+    """Return heights as they look after the part was turned.
+
+    Parameters
+    ----------
+    found : Heights
+        As read.
+    turn : {0, 90, 180, 270}
+        Degrees, about the axis of the heights, from x to y. A line can be turned by 180 only.
+    mirror : bool
+        Whether the y axis points the other way, after the turn.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is none of these.
+
+    Examples
+    --------
+    >>> found = turned(Heights(np.array([0.0, 1.0]), np.array([0.0, 5.0]), np.array([[1.0, 2.0], [3.0, 4.0]])), 90)
+    >>> found.x.tolist(), found.y.tolist(), found.heights.tolist()
+    ([0.0, 5.0], [0.0, 1.0], [[2.0, 4.0], [1.0, 3.0]])
+    """
+    checks.instance("mirror", mirror, (bool, np.bool_), "True or False")
+    allowed = TURNS if found.y is not None else TURNS[::2]
+    if isinstance(turn, bool) or turn not in allowed:
+        degrees = ", ".join(map(str, allowed))
+        raise InvalidInputError("turn", turn, f"one of {degrees} (degrees)" + (" for a line" * (found.y is None)))
+    x, y, heights = found
+    if y is None:
+        return found if turn == 0 else Heights(_backwards(x), None, heights[::-1])
+    if turn in (90, 270):  # what lay at (x, y) comes to lie at (-y, x)
+        x, y, heights = _backwards(y), x, heights.T[::-1]
+    if turn in (180, 270):
+        x, y, heights = _backwards(x), _backwards(y), heights[::-1, ::-1]
+    if mirror:
+        y, heights = _backwards(y), heights[:, ::-1]
+    return Heights(x, y, heights)
+
+
+def _backwards(positions: FloatArray) -> FloatArray:
+    """Positions along the opposite axis, over the same range."""
+    return np.asarray(positions[0] + positions[-1] - positions[::-1])
+
+
+def _check_installed(path: Path, package: str) -> None:
+    """Raise unless a package of the extra is installed, and say how to install it."""
+    if find_spec(package) is None:
+        raise ContactStudyError(
+            f"reading {path} needs {package}, which the extra `measured` brings: "
+            'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
+        )
+
+
+def _refused(path: Path, allowed: str, hint: str = "") -> InvalidInputError:
+    return InvalidInputError("path", str(path), allowed, hint)
+
+
+def _x3p(path: Path) -> Heights:
+    """Profile or surface of an x3p file; its lengths are metres by the standard."""
+    import x3pio
+
+    try:
+        file = x3pio.read(path)
+    except (x3pio.X3pError, OSError) as error:
+        raise _refused(path, "an x3p file that can be read", str(error)) from None
+    if isinstance(file, x3pio.PointCloud):
+        raise _refused(path, "a profile or a surface", "it is a cloud of points: bring it onto a grid")
+    if len(file.layers) != 1:
+        raise _refused(path, "a file with one layer", f"it has {len(file.layers)}")
+    points = file.layers[0].points(coordinate_system=x3pio.CoordinateSystem.VIEW)
+    if isinstance(file, x3pio.Profile):
+        return Heights(points[:, 0], None, points[:, 2])
+    x, y = points[0, :, 0], points[:, 0, 1]
+    off = max(_off_lines(points[:, :, 0], x[None, :]), _off_lines(points[:, :, 1], y[:, None]))
+    if not off <= REGULAR:
+        raise _refused(path, "a surface whose points are the crossings of lines along x and y")
+    return Heights(x, y, points[:, :, 2].T)
+
+
+def _off_lines(positions: FloatArray, lines: FloatArray) -> float:
+    """How far points are off the lines they should be on, over the least step between these."""
+    steps = np.abs(np.diff(lines.ravel()))
+    return float(np.abs(positions - lines).max() / steps.min()) if steps.size and steps.min() > 0 else 0.0
+
+
+def _topography(path: Path) -> Heights:
+    """Line scan or topography in a format that SurfaceTopography knows."""
+    from SurfaceTopography import read_topography
+    from SurfaceTopography.Exceptions import CannotDetectFileFormat
+
+    try:
+        read: Any = read_topography(str(path))
+        unit, positions, heights = read.unit, read.positions(), np.ma.filled(read.heights(), np.nan)
+    except CannotDetectFileFormat:
+        raise _refused(path, "a file in a format that SurfaceTopography knows", "or columns, in a .csv file") from None
+    except Exception as error:  # what its forty readers raise on a damaged file can be anything
+        raise _refused(path, "a file that can be read", str(error)[:200]) from error
+    metres = _metres(path, unit)
+    if heights.ndim == 1:
+        return Heights(metres * np.asarray(positions), None, metres * heights)
+    return Heights(metres * positions[0][:, 0], metres * positions[1][0, :], metres * heights)
+
+
+def _metres(path: Path, unit: str | None) -> float:
+    """Metres per unit of a file; without one nothing is guessed."""
+    from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, is_length_unit
+
+    if unit is None or not is_length_unit(unit):
+        raise InvalidInputError(f"unit of {path}", unit, "a unit of length", "or columns with units, in a .csv file")
+    return float(get_unit_conversion_factor(unit, "m"))

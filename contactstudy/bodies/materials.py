@@ -1,0 +1,27 @@
+"""Elastic constants of materials that rolling contacts are made of, each with its source.
+
+Moduli of steels differ by one or two percent between sources, and pressures by half of that. What a test certificate or
+a supplier states for the steel at hand goes before these.
+"""
+
+from __future__ import annotations
+
+from contactstudy.bodies.material import Material
+
+__all__ = ["BEARING_STEEL", "DUCTILE_IRON", "GEAR_STEEL", "STRUCTURAL_STEEL"]
+
+BEARING_STEEL = Material(young=207e9, poisson=0.3)
+"""Hardened bearing steel such as 100Cr6 (AISI 52100): 207 GPa, 0.3.
+
+The values behind the constants for steel of T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th
+edition (2006), chapter 6: 0.0236 for the semi-axes of a point contact, 3.35e-3 for the half-width of a line contact.
+"""
+
+GEAR_STEEL = Material(young=206e9, poisson=0.3)
+"""Steel of gears: 206 GPa, 0.3. ISO 6336-2, elasticity factor of steel on steel, 189.8 (N/mm2)**0.5."""
+
+DUCTILE_IRON = Material(young=173e9, poisson=0.3)
+"""Cast iron with nodular graphite: 173 GPa, 0.3. ISO 6336-2, elasticity factor with steel, 181.4 (N/mm2)**0.5."""
+
+STRUCTURAL_STEEL = Material(young=210e9, poisson=0.3)
+"""Structural steel: 210 GPa, 0.3. EN 1993-1-1, 3.2.6."""

@@ -1,0 +1,133 @@
+"""Magnitudes that are mostly a mistake in the unit: questioned, not refused.
+
+The theory has no scale: with lengths in half-widths and a modulus of 1 it holds as well. So no magnitude is wrong by
+itself, and a warning asks where an error would forbid. Whoever means it silences the warning; whoever wants scripts to
+stop makes it an error.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from contactstudy.arrays.engineering import quantity
+from contactstudy.bodies.models import FiniteLengthSpace
+from contactstudy.errors import MagnitudeWarning
+
+if TYPE_CHECKING:
+    from contactstudy.bodies.material import Material
+    from contactstudy.case.case import Case
+
+SILENCE = "if it is meant: warnings.filterwarnings('ignore', category=contactstudy.MagnitudeWarning)"
+
+_QUESTIONED: ContextVar[bool] = ContextVar("questioned", default=True)
+
+
+class Usual(NamedTuple):
+    """Range of what is usual, its unit, and units that a number beyond it may be in: name and size in SI."""
+
+    least: float
+    most: float
+    unit: str
+    meant: tuple[tuple[str, float], ...] = ()
+
+
+LENGTH = Usual(1e-5, 3.0, "m", (("mm", 1e-3), ("µm", 1e-6)))
+"""From a pin of a watch to the roll of a mill."""
+
+USUAL = {
+    "young": Usual(1e6, 1.5e12, "Pa", (("GPa", 1e9), ("MPa", 1e6))),  # soft rubber to diamond
+    "radius": LENGTH._replace(most=1.5),
+    "length": LENGTH,
+    "friction": Usual(0.0, 1.5, "1", (("%", 0.01),)),  # clean metals reach about 1
+    "tilt": Usual(0.0, 0.01, "rad", (("deg", np.pi / 180), ("mrad", 1e-3))),  # bearings take a few mrad
+    # Over the roller's radius: half-widths of 1e-5 are 1 MPa on steel, those of 0.1 yield in every metal.
+    "half_width": Usual(1e-5, 0.1, "1"),
+}
+"""What is usual for a contact of engineering, by name."""
+
+
+def doubts(case: Case) -> tuple[str, ...]:
+    """Questions on a case: each names a value, what is usual, and what it may have been meant to be.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, HalfSpace, Material, Roller
+    >>> with unquestioned():
+    ...     case = Case(body=HalfSpace(material=Material(206e9, 0.3)), roller=Roller(radius=6, length=1.4), load=9e3)
+    >>> doubts(case)
+    ('roller.radius = 6 m, usual are 1e-05 to 1.5 m; 6 mm is 0.006 m',)
+    """
+    found = [
+        _doubt("radius", "roller.radius", case.roller.radius),
+        _doubt("length", "roller.length", case.roller.length),
+        _of_material("body.material", case.body.material),
+        _of_material("roller.material", case.roller.material),
+        _doubt("friction", "friction", _largest(case.friction)),
+        _doubt("tilt", "tilt", abs(case.tilt)),
+        _of_load(case),
+    ]
+    if isinstance(case.body, FiniteLengthSpace):
+        found.insert(2, _doubt("length", "body.length", case.body.length))
+    return tuple(question for question in found if question)
+
+
+def question(case: Case) -> None:
+    """Warn of doubtful magnitudes of a case, once for all of them; the warning points to where the case is made."""
+    if _QUESTIONED.get() and (found := doubts(case)):
+        warnings.warn(f"doubtful, for units are SI: {'; '.join(found)}; {SILENCE}", MagnitudeWarning, stacklevel=4)
+
+
+def changed(case: Case, **changes: Any) -> Case:
+    """Copy of a case with other values, made without questions."""
+    with unquestioned():
+        return replace(case, **changes)
+
+
+@contextmanager
+def unquestioned() -> Iterator[None]:
+    """Let cases be made without questions: they were asked before, or are asked elsewhere."""
+    token = _QUESTIONED.set(False)
+    try:
+        yield
+    finally:
+        _QUESTIONED.reset(token)
+
+
+def _doubt(kind: str, name: str, value: float) -> str:
+    """Return the question on a value; empty if it is usual."""
+    usual = USUAL[kind]
+    if usual.least <= value <= usual.most:
+        return ""
+    unit = "" if usual.unit == "1" else f" {usual.unit}"
+    text = f"{name} = {value:g}{unit}, usual are {usual.least:g} to {usual.most:g}{unit}"
+    fitting = [(other, size) for other, size in usual.meant if usual.least <= value * size <= usual.most]
+    return f"{text}; {value:g} {fitting[0][0]} is {value * fitting[0][1]:g}{unit}" if fitting else text
+
+
+def _of_material(name: str, material: Material | None) -> str:
+    """Return the question on a material; empty for a rigid body."""
+    return "" if material is None else _doubt("young", f"{name}.young", material.young)
+
+
+def _largest(friction: object) -> float:
+    """Largest coefficient of friction, a number or values along the axis."""
+    values = getattr(friction, "values", friction)
+    return float(np.max(np.abs(np.asarray(values, dtype=np.float64))))
+
+
+def _of_load(case: Case) -> str:
+    """Return the question on load or pressure: what it makes of the half-width."""
+    usual, over = USUAL["half_width"], case.hertz_half_width / case.roller.radius
+    if usual.least <= over <= usual.most:
+        return ""
+    given = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
+    word = "low" if over < usual.least else "high"
+    pressure = quantity(case.hertz_max_pressure, "Pa")
+    return f"{given} is very {word}: Hertz pressure {pressure}, half-width {over:.1g} of the roller's radius"

@@ -1,0 +1,116 @@
+"""Magnitudes that are mostly a mistake in the unit are questioned by name, and can be insisted on."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, MagnitudeWarning, Material, Roller, profiles, solve
+from contactstudy.case.doubts import doubts, unquestioned
+from contactstudy.case.stored import case_from, case_table
+from contactstudy.cli import main
+from contactstudy.study import Study, run_study
+from tests.small_study import BASE, as_toml, small_study
+from tests.stand_in_solver import solve_fake
+
+STEEL = Material(206e9, 0.3)
+USUAL = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
+
+
+def made(**changes) -> Case:
+    values = USUAL | changes
+    roller = Roller(radius=values.pop("radius"), length=values.pop("length"), material=values.pop("roller", None))
+    body = FiniteLengthSpace(length=values.pop("body"), material=values.pop("material"))
+    return Case(body=body, roller=roller, **values)
+
+
+def test_usual_cases_raise_no_question() -> None:
+    """From a wire to a rolling mill, rubber to diamond."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        made()
+        made(friction=0.3, tilt=1e-3, roller=STEEL)
+        made(radius=1e-3, length=1e-3, body=1e-3, load=20.0)
+        made(radius=0.7, length=2.0, body=2.5, load=2e7)
+        made(material=Material(2e6, 0.5), load=1.0)
+        made(material=Material(1.1e12, 0.1), load=None, max_pressure=8e9)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"radius": 6, "length": 14, "body": 16},
+            r"roller.radius = 6 m, usual are 1e-05 to 1.5 m; 6 mm is 0.006 m; roller.length = 14 m.*; "
+            r"body.length = 16 m, usual are 1e-05 to 3 m; 16 mm is 0.016 m; if it is meant: warnings.filterwarnings",
+        ),
+        ({"material": Material(206, 0.3), "load": 9e-6}, r"body.material.young = 206 Pa.*; 206 GPa is 2.06e\+11 Pa"),
+        ({"material": Material(206e3, 0.3), "load": 9e-3}, r"body.material.young = 206000 Pa.*; 206000 MPa is 2.06e"),
+        ({"roller": Material(1e13, 0.3)}, r"roller.material.young = 1e\+13 Pa, usual are 1e\+06 to 1.5e\+12 Pa"),
+        ({"friction": 5}, "friction = 5, usual are 0 to 1.5; 5 % is 0.05"),
+        ({"friction": xr.DataArray([0.1, -8.0], dims="x", coords={"x": [0.0, 1e-2]})}, "friction = 8"),
+        ({"tilt": 0.05}, "tilt = 0.05 rad, usual are 0 to 0.01 rad; 0.05 deg is 0.000872665 rad"),
+        ({"load": None, "max_pressure": 1500}, "max_pressure = 1500 Pa is very low: Hertz pressure 0.0015 MPa"),
+        ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
+    ],
+)
+def test_doubtful_magnitudes_are_questioned_by_name(changes, message: str) -> None:
+    with pytest.warns(MagnitudeWarning, match=message) as caught:
+        made(**changes)
+    assert len(caught) == 1
+    assert caught[0].filename == __file__
+
+
+def test_whoever_insists_is_not_asked() -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        warnings.filterwarnings("ignore", category=MagnitudeWarning)
+        made(friction=5)
+
+
+def test_a_case_is_asked_about_once() -> None:
+    """Not when it is solved, stored or read again."""
+    crown = profiles.FullCrown(0.5)
+    with unquestioned():
+        roller = Roller(radius=5e-3, length=0.3e-3, profile=crown)
+        case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9, friction=2.0, coupled=True)
+    assert doubts(case) == ("friction = 2, usual are 0 to 1.5; 2 % is 0.02",)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        solve(replace_quietly(case, friction=1.6, coupled=False), accuracy=0.1, stresses=False)
+        assert case_from(case_table(case)) == case
+
+
+def replace_quietly(case: Case, **changes) -> Case:
+    with unquestioned():
+        return replace(case, **changes)
+
+
+def test_a_study_asks_in_its_plan_and_when_it_runs(tmp_path: Path, capsys) -> None:
+    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
+    assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 cases)",)
+    (tmp_path / "small.toml").write_text(as_toml(study))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert main(["plan", str(tmp_path / "small.toml"), "--out", str(tmp_path / "results")]) == 0
+        assert "doubtful, for units are SI: friction = 5" in capsys.readouterr().out
+        report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
+    assert report.counts == {"ok": 4}
+    assert any("friction = 5" in remark for remark in report.remarks)
+    assert "friction = 5" in (tmp_path / "results" / "run.log").read_text()
+
+
+def test_a_study_in_millimetres(tmp_path: Path) -> None:
+    base = BASE | {"radius": 6.0, "roller_length": 14.0, "max_pressure": 1.5e9, "e_over_a": 0.0}
+    (only,) = Study(name="mm", base=base).plan().cases
+    assert [question.split(",")[0] for question in only.doubts] == [
+        "roller.radius = 6 m",
+        "roller.length = 14 m",
+        "body.length = 14 m",
+    ]
+    assert np.isfinite(only.cells)

@@ -1,0 +1,121 @@
+"""A table of parameters is a study, and so is a part of an opened one."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+from contactstudy import InvalidInputError, profiles
+from contactstudy.study import Study, collect, open_study, run_study
+from tests.small_study import BASE, small_study
+from tests.stand_in_solver import solve_fake
+
+
+def ids(study: Study) -> list[str]:
+    return [case.id for case in study.plan().cases]
+
+
+def test_a_grid_is_a_product() -> None:
+    table = xr.Dataset(coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
+    study = Study.from_dataset(table, "small", base=BASE)
+    assert study == small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]})
+
+
+def test_rows_are_listed_cases() -> None:
+    frame = pd.DataFrame({"e_over_a": [0.0, 1.0, 1.0], "friction": [0.0, 0.0, 0.1], "body": "half-space"})
+    study = Study.from_dataset(frame.rename_axis("case").to_xarray(), "rows", base=BASE)
+    columns = {"e_over_a": [0.0, 1.0, 1.0], "friction": [0.0, 0.0, 0.1], "body": 3 * ["half-space"]}
+    assert ids(study) == ids(small_study(sweep={}, zip=columns))
+    assert study.name == "rows"
+
+
+def test_shared_numbers_units_words_and_profiles() -> None:
+    crown = profiles.FullCrown(1.0)
+    table = xr.Dataset(
+        {
+            "profile": ("which", np.array([crown, {"kind": "cylinder", "name": "sharp"}], dtype=object)),
+            "coupled": ("which", [True, False]),
+            "tilt": ("tilt", [0.0, 0.2], {"units": "mrad"}),
+            "e_over_a": 1.0,
+        },
+    )
+    study = Study.from_dataset(table, base=BASE)
+    expected = small_study(
+        base=BASE | {"e_over_a": 1.0},
+        sweep={"tilt": [0.0, 0.2e-3]},
+        zip={"profile": [crown, {"kind": "cylinder", "name": "sharp"}], "coupled": [True, False]},
+    )
+    assert ids(study) == ids(expected)
+
+
+def test_values_along_two_dimensions_and_missing_ones_are_cases() -> None:
+    pressure = xr.DataArray([[1.0, 1.5], [np.nan, 2.0]], dims=("e_over_a", "friction"), attrs={"units": "GPa"})
+    load = xr.DataArray([[np.nan, np.nan], [40.0, np.nan]], dims=("e_over_a", "friction"), attrs={"units": "N"})
+    table = xr.Dataset(
+        {"max_pressure": pressure, "load": load}, coords={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1]}
+    )
+    study = Study.from_dataset(table, base={key: value for key, value in BASE.items() if key != "max_pressure"})
+    assert [case.get("max_pressure", case.get("load")) for case in study.cases] == [1e9, 1.5e9, 40.0, 2e9]
+    assert not study.plan().skipped
+
+
+@pytest.mark.parametrize(
+    ("table", "message"),
+    [
+        ({"frction": ("case", [0.1])}, "variable of the table = 'frction'.*did you mean 'friction'"),
+        ({"radius": ("case", [5.0], {"units": "inch"})}, r"radius.attrs\['units'\] = 'inch': must be one of m, mm"),
+        ({"body": ("case", ["half-space"], {"units": "m"})}, r"body.attrs\['units'\] = 'm': must be left out"),
+        ({"friction": ("case", ["much"])}, "friction = 'much'"),
+        ({"field_z_over_a": ("z", [0.0, 1.0])}, "a list in base"),
+        ({"young": ("case", [1e9])}, "base = 'young': must be a parameter that the table does not have"),
+    ],
+)
+def test_what_is_no_table_of_parameters(table: dict, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        Study.from_dataset(xr.Dataset(table), base=BASE)
+
+
+def test_other_things_than_datasets_are_refused() -> None:
+    with pytest.raises(InvalidInputError, match=r"an xarray.Dataset of parameters"):
+        Study.from_dataset({"friction": [0.1]})
+
+
+ROUND_TRIPS = {
+    "product": small_study(),
+    "zip": small_study(
+        sweep={"e_over_a": [0.0, 1.0]}, zip={"friction": [0.0, 0.1], "profile": ["cylinder", profiles.FullCrown(1.0)]}
+    ),
+    "excluded": small_study(exclude=[{"e_over_a": 1.0, "friction": 0.1}]),
+    "cases": small_study(sweep={}, cases=[{"e_over_a": 0.0}, {"e_over_a": 1.0, "friction": 0.1}]),
+    "one": small_study(sweep={}, base=BASE | {"e_over_a": 1.0}),
+}
+
+
+@pytest.mark.parametrize("study", ROUND_TRIPS.values(), ids=ROUND_TRIPS)
+def test_an_opened_study_is_the_study(study: Study, tmp_path) -> None:
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    again = Study.from_dataset(open_study(tmp_path))
+    assert again.to_json() == study.to_json()
+    assert Study.from_dataset(collect(tmp_path), "other", level="summary").level == "summary"
+
+
+def test_a_selection_of_an_opened_study(tmp_path) -> None:
+    study = small_study(
+        sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]},
+        zip={"profile": [{"kind": "cylinder", "name": "sharp"}, "ellipsoid"], "tilt": [0.0, 1e-4]},
+    )
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    opened = collect(tmp_path)
+    part = opened.sel(e_over_a=[0, 2], friction=0.1)
+    again = Study.from_dataset(part, "finer", base={"cells_x": 8})
+    assert again.sweep == {"e_over_a": [0.0, 2.0], "friction": [0.1]}
+    assert again.zip[0]["profile"][0]["name"] == "sharp"
+    assert again.base["cells_x"] == 8.0
+    same = Study.from_dataset(part)
+    assert set(ids(same)) == set(part["case_id"].values.ravel())
+    some = opened.stack(all=opened["case_id"].dims).isel(all=[0, 3, 7])
+    assert set(ids(Study.from_dataset(some))) == set(some["case_id"].values)
+    with pytest.raises(InvalidInputError, match="base = 'tilt': must be a parameter that is not swept"):
+        Study.from_dataset(part, base={"tilt": 0.0})
