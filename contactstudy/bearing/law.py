@@ -95,7 +95,7 @@ class ContactLaw:
         return (
             f"ContactLaw(approach {low:.3g} to {high:.3g} um, tilt {least:.3g} to {most:.3g} mrad, "
             f"load {float(loads.min()):.3g} to {float(loads.max()):.3g} N, "
-            f"error of the load {float(self.table['relative_load_error']):.1%})"
+            f"error of the load {100 * float(self.table['relative_load_error']):.1g} %)"
         )
 
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
@@ -253,8 +253,8 @@ def contact_law(
 
     Notes
     -----
-    Each contact has columns of its own. The error of the interpolation is the largest one at the nodes, or a quarter
-    of the largest one at lines of nodes that a second interpolation leaves out. Friction that is not coupled changes
+    Each contact has columns of its own. The error of the interpolation is the largest one at the nodes, or what splines
+    of another degree change between them, whichever is larger. Friction that is not coupled changes
     nothing, as its shear does not move the surfaces normally.
 
     Examples

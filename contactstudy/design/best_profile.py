@@ -65,8 +65,8 @@ def best_profile(
     -------
     Dataset
         Along `parameter`: `optimum`; `flat_from` and `flat_to`, between which that parameter, alone, changes the
-        measure by less than the errors of both values, with `lower_bound` and `upper_bound`. `measure` of the optimum in its
-        worst case and `measure_error`. Along `evaluation` everything that was looked at: `design` (evaluation,
+        measure by less than the errors of both values; `lower_bound` and `upper_bound`. `measure` of the optimum in
+        its worst case and `measure_error`. Along `evaluation` everything that was looked at: `design` (evaluation,
         parameter), `design_measure`, `design_measure_error`, and `case_measure` (evaluation, case) with the
         coordinates `case_load` (N) and `case_tilt` (rad). ``profile(**found.optimum.to_series())`` is the profile.
 
