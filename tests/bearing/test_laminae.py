@@ -41,15 +41,21 @@ def test_a_uniform_pressure_has_the_load_of_its_line_contact(uniform: xr.Dataset
     assert 0 < float(found.stress_riser_error[10]) < 0.05
 
 
-def test_slices_are_right_in_the_middle_of_a_long_straight_roller() -> None:
-    """Slices that do not know of each other are the limit of a contact that is long against its width."""
-    middles = []
-    for length in (1e-3, 4e-3, 16e-3):
-        case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=length), max_pressure=1.5e9)
-        factors = lamina_factors(solve(case, stresses=False, accuracy=0.02), laminae=31)
-        middles.append(abs(float(factors.stress_riser[15]) - 1))
-    assert middles[0] > middles[1] > middles[2]
-    assert middles[2] < 0.03
+def test_half_space_and_flush_ends_approach_the_slices_from_either_side() -> None:
+    """Slices that do not know of each other are the limit of a straight roller that is long against its contact's width.
+
+    The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
+    """
+    middles: dict[str, list[float]] = {"half-space": [], "flush": []}
+    for length in (0.5e-3, 2e-3, 8e-3):
+        bodies = {"half-space": HalfSpace(material=STEEL), "flush": FiniteLengthSpace(length=length, material=STEEL)}
+        for name, body in bodies.items():
+            case = Case(body=body, roller=Roller(radius=5e-3, length=length), max_pressure=1.5e9)
+            factors = lamina_factors(solve(case, stresses=False, accuracy=0.02), laminae=31)
+            middles[name].append(float(factors.stress_riser[15]))
+    assert middles["half-space"][0] < middles["half-space"][1] < middles["half-space"][2] < 1
+    assert middles["flush"][0] > middles["flush"][1] > middles["flush"][2] > 1
+    assert middles["flush"][2] - middles["half-space"][2] < 0.12
 
 
 def test_the_number_of_laminae_is_no_part_of_the_life(uniform: xr.Dataset) -> None:
