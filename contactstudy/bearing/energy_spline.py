@@ -1,9 +1,9 @@
 """Strain energy of a contact over approach and tilt as one smooth function: load, moment and stiffness derive from it.
 
 Load and moment are the derivatives of the energy with respect to approach and tilt, so the stiffness matrix is its
-matrix of second derivatives and symmetric by construction. The logarithm of the energy is a tensor product of B-splines
-in the logarithm of the approach and in the tilt, fitted to energy, load and moment together by least squares: contacts
-follow powers of the approach, which are straight lines there.
+matrix of second derivatives and symmetric by construction. The energy without tilt follows powers of the approach: its
+logarithm is a spline in the logarithm of the approach. What a tilt adds is a tensor product of splines in that
+logarithm and in the tilt, fitted to energy, load and moment together by least squares.
 """
 
 from __future__ import annotations
@@ -19,9 +19,13 @@ from contactstudy.checks import FloatArray
 DEGREE = 4
 """Of the splines: the stiffness, a second derivative, then has two continuous derivatives itself. Accuracy."""
 
-LOWER, SAFETY, BETWEEN = 3, 1.5, 4
-"""Degree of the splines whose difference tells the error, a factor on that, and steps from node to node in which it is
-looked for. Accuracy: so it covered the error of springs of power 3/2, which leave the surface, on 5 to 9 nodes."""
+LOWER, SAFETY, BETWEEN = 3, 3.0, 4
+"""Degree of other splines whose difference tells the error, a factor on that and on what a spline without one approach
+misses there, and steps from node to node in which differences are looked for. Accuracy: so the error of springs of
+power 3/2, which leave the surface, was covered on 5 to 9 nodes."""
+
+ENERGY_COUNTS = 0.1
+"""Weight of the energies themselves, which their derivatives all but determine. Accuracy."""
 
 
 class Nodes(NamedTuple):
@@ -40,6 +44,10 @@ class Nodes(NamedTuple):
     energy: FloatArray
     load: FloatArray
     moment: FloatArray
+
+    def approached(self, lines: FloatArray) -> Nodes:
+        """Return some of the approaches."""
+        return Nodes(self.approaches[lines], self.tilts, self.energy[lines], self.load[lines], self.moment[lines])
 
 
 class Motion(NamedTuple):
@@ -76,17 +84,12 @@ class Axis:
     degree: int
 
     @classmethod
-    def averaged(cls, places: FloatArray, degree: int) -> Axis:
-        """As many splines as places: knots are the means of as many places as the degree (de Boor)."""
+    def through(cls, places: FloatArray, degree: int) -> Axis:
+        """One spline more than places: the integrals of those that pass through values there (de Boor's means)."""
         degree = min(degree, places.size - 1)
-        inner = [places[first : first + degree].mean() for first in range(1, places.size - degree)]
-        return cls(_with_ends(places, inner, degree), degree)
-
-    @classmethod
-    def at(cls, places: FloatArray, degree: int) -> Axis:
-        """Knots at the places, whose slopes are known as well as the values."""
-        degree = min(degree, places.size - 1)
-        return cls(_with_ends(places, list(places[1:-1]), degree), degree)
+        inner = [places[first : first + degree - 1].mean() for first in range(1, places.size - degree + 1)]
+        ends = (np.repeat(place, degree + 1) for place in (places[0], places[-1]))
+        return cls(np.concatenate([next(ends), inner, next(ends)]), degree)
 
     def __call__(self, places: FloatArray, derivative: int = 0) -> FloatArray:
         """Every spline at every place: array (place, spline)."""
@@ -94,14 +97,9 @@ class Axis:
         return np.asarray(BSpline(self.knots, np.eye(count), self.degree)(places, nu=derivative))
 
 
-def _with_ends(places: FloatArray, inner: list[float], degree: int) -> FloatArray:
-    """Knots with the ends of the places repeated."""
-    return np.concatenate([np.repeat(places[0], degree + 1), inner, np.repeat(places[-1], degree + 1)])
-
-
 @dataclass(frozen=True, eq=False)
 class EnergySpline:
-    """Logarithm of the strain energy as a tensor product of splines.
+    """Strain energy: the exponential of a spline for no tilt, and a product of splines for what a tilt adds.
 
     Attributes
     ----------
@@ -109,53 +107,72 @@ class EnergySpline:
         Splines in the logarithm of the approach, and in the tilt over the largest.
     largest_tilt : float
         Radians.
-    coefficients : array
-        One per pair of splines.
+    level : array
+        Coefficients of the logarithm of the energy without tilt.
+    added : array
+        Coefficients of what a tilt adds, one per pair of splines, J.
     """
 
     along_approach: Axis
     along_tilt: Axis
     largest_tilt: float
-    coefficients: FloatArray
+    level: FloatArray
+    added: FloatArray
 
     @classmethod
     def fitted(cls, nodes: Nodes, degree: int = DEGREE) -> EnergySpline:
         """Fit energy, load and moment at once."""
         u, scale = np.log(nodes.approaches), float(np.abs(nodes.tilts).max())
         t = nodes.tilts / scale
-        first, second = Axis.averaged(u, degree), Axis.at(t, degree)
-        rows = [np.kron(first(u, i), second(t, j)) for i, j in ((0, 0), (1, 0), (0, 1))]
-        # d ln U / d ln delta = delta Q / U, and d ln U / d theta = M / U.
-        known = [
-            np.log(nodes.energy),
-            nodes.approaches[:, None] * nodes.load / nodes.energy,
-            scale * nodes.moment / nodes.energy,
+        first, second = Axis.through(u, degree), Axis.through(t, degree)
+        # dU / d ln delta = delta Q, and dU / d(theta / scale) = scale M.
+        load, moment = nodes.approaches[:, None] * nodes.load, scale * nodes.moment
+        straight = int(np.abs(t).argmin())
+        energy, sunk = nodes.energy[:, straight], load[:, straight]
+        level = _solved([(first(u), np.log(energy)), (first(u, 1), sunk / energy)])
+        along = np.exp(first(u) @ level)
+        # The loads, and the moments of each approach, count alike.
+        turning = np.abs(moment).max(axis=1, keepdims=True) + np.zeros_like(moment)
+        known = (
+            ((0, 0), nodes.energy - along[:, None], nodes.energy / ENERGY_COUNTS),
+            ((1, 0), load - (along * (first(u, 1) @ level))[:, None], load),
+            ((0, 1), moment, np.where(turning > 0, turning, scale * load)),
+        )
+        rows = [
+            (np.kron(first(u, i), second(t, j)) / size.reshape(-1, 1), (value / size).ravel())
+            for (i, j), value, size in known
         ]
-        found = np.linalg.lstsq(np.concatenate(rows), np.concatenate([each.ravel() for each in known]), rcond=None)[0]
-        return cls(first, second, scale, found.reshape(first(u).shape[1], -1))
+        return cls(first, second, scale, level, _solved(rows).reshape(first(u).shape[1], -1))
 
     def __call__(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""
         shape = np.shape(approach)
         delta, theta = np.ravel(approach), np.ravel(tilt)
-        u, t = np.log(delta), theta / self.largest_tilt
+        u, t, scale = np.log(delta), theta / self.largest_tilt, self.largest_tilt
         first = [self.along_approach(u, order) for order in range(3)]
         second = [self.along_tilt(t, order) for order in range(3)]
 
         def derived(i: int, j: int) -> FloatArray:
-            return np.asarray(np.einsum("pi,ij,pj->p", first[i], self.coefficients, second[j]))
+            return np.asarray(np.einsum("pi,ij,pj->p", first[i], self.added, second[j]))
 
-        energy = np.exp(derived(0, 0))
-        v_u, v_t, v_uu, v_ut, v_tt = (derived(*order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2)))
-        scale = self.largest_tilt
+        along, slope, bend = np.exp(first[0] @ self.level), first[1] @ self.level, first[2] @ self.level
+        by_u = along * slope + derived(1, 0)
+        by_uu = along * (bend + slope**2) + derived(2, 0)
         values = (
-            energy * v_u / delta,
-            energy * v_t / scale,
-            energy * (v_uu + v_u**2 - v_u) / delta**2,
-            energy * (v_ut + v_u * v_t) / (delta * scale),
-            energy * (v_tt + v_t**2) / scale**2,
+            by_u / delta,
+            derived(0, 1) / scale,
+            (by_uu - by_u) / delta**2,
+            derived(1, 1) / (delta * scale),
+            derived(0, 2) / scale**2,
         )
         return Motion(*(each.reshape(shape) for each in values))
+
+
+def _solved(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
+    """Least squares of several blocks of equations, whose unknowns may differ much in size."""
+    matrix, known = (np.concatenate(each) for each in zip(*rows, strict=True))
+    size = np.linalg.norm(matrix, axis=0)
+    return np.asarray(np.linalg.lstsq(matrix / size, known, rcond=None)[0] / size)
 
 
 class FitErrors(NamedTuple):
@@ -164,19 +181,31 @@ class FitErrors(NamedTuple):
     load: float
     moment: float
 
+    def plus(self, other: FitErrors) -> FitErrors:
+        """Return the sum of both."""
+        return FitErrors(self.load + other.load, self.moment + other.moment)
+
     def larger(self, other: FitErrors) -> FitErrors:
         """Return the larger of either error."""
         return FitErrors(max(self.load, other.load), max(self.moment, other.moment))
 
 
 def fit_errors(nodes: Nodes, length: float) -> FitErrors:
-    """Errors of the interpolation: what it misses at the nodes, and what another degree changes between them."""
+    """Errors of the interpolation: what it misses at the nodes, and what another degree and fewer nodes tell."""
     spline, lower = EnergySpline.fitted(nodes), EnergySpline.fitted(nodes, LOWER)
-    missed = _differences(spline(*_pairs(nodes.approaches, nodes.tilts)), nodes.load, nodes.moment, length)
+    at_nodes = _pairs(nodes.approaches, nodes.tilts)
+    missed = _differences(spline(*at_nodes), nodes.load, nodes.moment, length)
     pairs = _pairs(np.exp(_finer(np.log(nodes.approaches))), _finer(nodes.tilts))
     other = lower(*pairs)
-    load, moment = _differences(spline(*pairs), other.load, other.moment, length)
-    return missed.larger(FitErrors(SAFETY * load, SAFETY * moment))
+    degree = _differences(spline(*pairs), other.load, other.moment, length)
+    fewer = FitErrors(0.0, 0.0)
+    lines = np.arange(nodes.approaches.size)
+    for line in lines[1:-1]:
+        without, alone = nodes.approached(lines != line), nodes.approached(lines == line)
+        found = EnergySpline.fitted(without)(*_pairs(alone.approaches, alone.tilts))
+        fewer = fewer.larger(_differences(found, alone.load, alone.moment, length))
+    told = degree.plus(fewer)
+    return missed.larger(FitErrors(SAFETY * told.load, SAFETY * told.moment))
 
 
 def _pairs(approaches: FloatArray, tilts: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -51,7 +51,7 @@ class ContactLaw:
 
     Notes
     -----
-    The interpolated quantity is the strain energy U, of which the load ``Q = dU/d delta`` and the moment
+    What is interpolated is the strain energy U, of which the load ``Q = dU/d delta`` and the moment
     ``M = dU/d theta`` are derivatives, so that the stiffness matrix is symmetric and is the exact derivative of the
     load and moment that are returned: what Newton's method for a bearing's equilibrium needs.
 
@@ -253,8 +253,8 @@ def contact_law(
 
     Notes
     -----
-    Each contact has columns of its own. The error of the interpolation is the largest one at the nodes, or what splines
-    of another degree change between them, whichever is larger. Friction that is not coupled changes
+    Each contact has columns of its own. The error of the interpolation follows from what it misses at the nodes, from
+    splines of another degree, and from those without one of the approaches. Friction that is not coupled changes
     nothing, as its shear does not move the surfaces normally.
 
     Examples
@@ -283,7 +283,7 @@ def contact_law(
     nodes = solved_nodes(presser, lowered, turned)
     length = case.contact_length
     fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
-    return ContactLaw(_table(presser, nodes, FitErrors(fit.load + cells.load, fit.moment + cells.moment)))
+    return ContactLaw(_table(presser, nodes, fit.plus(cells)))
 
 
 def _check_case(case: Case) -> None:

@@ -42,7 +42,7 @@ def test_a_uniform_pressure_has_the_load_of_its_line_contact(uniform: xr.Dataset
 
 
 def test_half_space_and_flush_ends_approach_the_slices_from_either_side() -> None:
-    """Slices that do not know of each other are the limit of a straight roller that is long against its contact's width.
+    """Slices that do not know of each other are the limit of a straight roller that is long against its contact.
 
     The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
     """
