@@ -300,7 +300,9 @@ BEARING = {
     "hertz_load_per_length": Variable(
         SLICE, "N/m", "", "load per length of the line contact that has the solved pressure"
     ),
-    "stress_riser": Variable(SLICE, "1", "f_k", "factor on the load of a lamina, from solved pressures"),
+    "stress_riser": Variable(
+        ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
+    ),
     "lamina_equivalent_load": Variable(
         ("model", "raceway", "slice"), "N", "q_{ke}", "dynamic equivalent load of a lamina"
     ),

@@ -128,7 +128,7 @@ class ContactLaw:
             outside = values.values[(values.values < low - room) | (values.values > high + room)]
             if outside.size:
                 raise InvalidInputError(name, float(outside[0]), f"in the table, from {low:g} to {high:g}")
-        return self._with_errors(dataset(delta, theta, self.motion(delta.values, theta.values)))
+        return dataset(delta, theta, self.motion(delta.values, theta.values), self.errors)
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
         """Approach and tilt under a load and a moment, with the stiffness there.
@@ -150,7 +150,7 @@ class ContactLaw:
         """
         load, turn = broadcast(normal_load=normal_load, moment=moment)
         delta, theta = each_pair(load, turn, self.position)
-        return self._with_errors(dataset(delta, theta, self.motion(delta.values, theta.values)))
+        return dataset(delta, theta, self.motion(delta.values, theta.values), self.errors)
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness as plain arrays, at pairs inside the table: for loops of one's own."""
@@ -204,14 +204,11 @@ class ContactLaw:
             Nodes(self.table["approach"].values, self.table["tilt"].values, values[0], values[1], moment)
         )
 
-    def _with_errors(self, found: xr.Dataset) -> xr.Dataset:
-        """Add the errors of load and moment."""
-        load, length = found["normal_load"], self.table["contact_length"]
-        errors = {
-            "normal_load_error": load * self.table["relative_load_error"],
-            "moment_error": load * length * self.table["relative_moment_error"],
-        }
-        return describe(found.assign({name: error.variable for name, error in errors.items()}))
+    @property
+    def errors(self) -> tuple[float, float]:
+        """Errors of the load and of the moment, over the load."""
+        length = float(self.table["contact_length"])
+        return float(self.table["relative_load_error"]), length * float(self.table["relative_moment_error"])
 
 
 def contact_law(
@@ -283,7 +280,7 @@ def contact_law(
     nodes = solved_nodes(presser, lowered, turned)
     length = case.contact_length
     fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
-    return ContactLaw(_table(presser, nodes, fit.plus(cells)))
+    return ContactLaw(law_table(presser, nodes, fit.plus(cells)))
 
 
 def _check_case(case: Case) -> None:
@@ -304,7 +301,7 @@ def _increasing(name: str, values: object, unit: str) -> FloatArray:
     return numbers
 
 
-def _table(presser: Presser, nodes: Nodes, errors: FitErrors) -> xr.Dataset:
+def law_table(presser: Presser, nodes: Nodes, errors: FitErrors) -> xr.Dataset:
     """Label the nodes, with the stiffness of their interpolation."""
     delta, theta = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
     motion = EnergySpline.fitted(nodes)(delta, theta)

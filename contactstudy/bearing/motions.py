@@ -44,8 +44,8 @@ def each_pair(
     return first.copy(data=one.reshape(first.shape)), second.copy(data=other.reshape(second.shape))
 
 
-def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion) -> xr.Dataset:
-    """Label loads and stiffness at pairs of approach and tilt."""
+def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[float, float]) -> xr.Dataset:
+    """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
     values = {
         "approach": approach.values,
         "tilt": tilt.values,
@@ -54,6 +54,8 @@ def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion) -> xr.Da
         "normal_stiffness": motion.normal,
         "coupling_stiffness": motion.coupling,
         "tilting_stiffness": motion.tilting,
+        "normal_load_error": errors[0] * motion.load,
+        "moment_error": errors[1] * motion.load,
     }
     coords = {str(name): coordinate for name, coordinate in approach.coords.items()}
     data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}

@@ -111,20 +111,13 @@ class Raceways:
         stiffness = np.linalg.inv(sum(np.linalg.inv(_matrix(motion)) for motion in contacts))
         first = contacts[0]
         motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
-        found = dataset(inner[0] + outer[0], inner[1] + outer[1], motion)
-        errors = [law.at(*shares)[["normal_load_error", "moment_error"]] for law, shares in self._laws(inner, outer)]
-        for name in ("normal_load_error", "moment_error"):
-            # A softer contact decides; the larger error is a bound for either.
-            found[name] = (inner[0].dims, np.maximum(errors[0][name].values, errors[1][name].values))
+        # A softer contact decides; the larger error is a bound for either.
+        errors = [max(each) for each in zip(self.inner.errors, self.outer.errors, strict=True)]
+        found = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, (errors[0], errors[1]))
         for name, shares in (("inner", inner), ("outer", outer)):
             for kind, share in zip(("approach", "tilt"), shares, strict=True):
                 found[f"{name}_{kind}"] = (share.dims, share.values)
         return describe(found)
-
-    def _laws(
-        self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]
-    ) -> tuple[tuple[ContactLaw, tuple[xr.DataArray, xr.DataArray]], ...]:
-        return (self.inner, inner), (self.outer, outer)
 
     def _inner_share(self, approach: float, tilt: float) -> tuple[float, float]:
         """Approach and tilt of the inner contact at which both carry the same."""

@@ -134,16 +134,25 @@ class Evaluations:
         """Solve every case of a design."""
         pairs = np.full((len(self.cases), 2), np.inf)
         try:
-            profile = self.profile(**self.parameters(parts))
+            profile = self._made(self.parameters(parts))
             for index, case in enumerate(self.cases):
                 roller = replace(case.roller, profile=profile)
                 pairs[index] = self._measured(replace(case, roller=roller))
         except InvalidInputError as error:
-            if error.parameter == "measure":
+            if error.parameter in ("measure", "bounds"):
                 raise
             # Within the bounds there may be profiles that do not exist, or do not carry the load.
             self.refused = error
         return Design(parts, pairs[:, 0], pairs[:, 1])
+
+    def _made(self, parameters: dict[str, float]) -> Profile:
+        """Make a profile."""
+        try:
+            return self.profile(**parameters)
+        except TypeError as error:
+            raise InvalidInputError(
+                "bounds", list(parameters), "of the keywords that profile takes", str(error)
+            ) from None
 
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""

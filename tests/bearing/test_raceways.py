@@ -58,6 +58,10 @@ def test_arguments_broadcast(short_law: ContactLaw) -> None:
     found = Raceways(short_law, short_law).at([2.5e-6, 4e-6], [0.0, 1e-4, 2e-4])
     assert dict(found.sizes) == {"approach": 2, "tilt": 3}
     assert bool((found.normal_load.diff("approach") > 0).all())
+    under = Raceways(short_law, short_law).under([40.0, 60.0], [0.0, 4e-4, 8e-4])
+    assert dict(under.approach.sizes) == {"normal_load": 2, "moment": 3}
+    assert dict(under.normal_load_error.sizes) == {"normal_load": 2, "moment": 3}
+    assert bool((under.tilt.diff("moment") > 0).all())
 
 
 def test_stiffness_of_two_raceways_is_the_derivative_of_their_load(short_law: ContactLaw) -> None:

@@ -135,6 +135,7 @@ def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) ->
         ({"profile": "Lundberg"}, "profile = 'Lundberg'"),
         ({"bounds": {}}, "bounds = {}"),
         ({"bounds": {"edge_drop": (1e-4, 1e-6)}}, r"bounds\['edge_drop'\]"),
+        ({"bounds": {"edge_dorp": (1e-6, 1e-4)}}, r"bounds = \['edge_dorp'\]: must be of the keywords.*edge_dorp"),
         ({"bounds": {"edge_drop": 1e-6}}, r"bounds\['edge_drop'\]"),
         ({"loads": [1.0], "max_pressures": [1e9]}, "loads, max_pressures"),
         ({"tilts": [1.0]}, "tilt = 1.0: must be a small angle"),
