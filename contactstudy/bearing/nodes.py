@@ -75,8 +75,8 @@ class Presser:
 
     def loaded(self, load: float, tilt: float) -> Contact:
         """Return the contact under a load."""
-        case = replace(self.case, load=load, max_pressure=None, tilt=tilt)
         try:
+            case = replace(self.case, load=load, max_pressure=None, tilt=tilt)
             return settled_contact(case, self.accuracy, self.tolerance).contact
         except (InvalidInputError, WindowError) as error:
             raise InvalidInputError(
