@@ -290,8 +290,8 @@ BEARING = {
     "tilting_stiffness": Variable(
         LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with the tilt"
     ),
-    "relative_load_error": Variable(SCALAR, "1", "", "error of the contact law's load, over the load"),
-    "relative_moment_error": Variable(SCALAR, "1", "", "error of the contact law's moment, over load times length"),
+    "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
+    "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
     "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
     "inner_approach": Variable(SCALAR, "m", "", "approach of the contact with the inner raceway"),
     "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),

@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.interpolate import BSpline
+from scipy.ndimage import maximum_filter
 
 from contactstudy.checks import FloatArray
 
@@ -176,10 +177,10 @@ def _solved(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
 
 
 class FitErrors(NamedTuple):
-    """Errors of load over the load, and of the moment over load and length."""
+    """Errors of load over the load, and of the moment over load and length; arrays (approach, tilt) or numbers."""
 
-    load: float
-    moment: float
+    load: FloatArray | float
+    moment: FloatArray | float
 
     def plus(self, other: FitErrors) -> FitErrors:
         """Return the sum of both."""
@@ -187,25 +188,38 @@ class FitErrors(NamedTuple):
 
     def larger(self, other: FitErrors) -> FitErrors:
         """Return the larger of either error."""
-        return FitErrors(max(self.load, other.load), max(self.moment, other.moment))
+        return FitErrors(np.maximum(self.load, other.load), np.maximum(self.moment, other.moment))
+
+    def times(self, factor: float) -> FitErrors:
+        """Return a multiple of both."""
+        return FitErrors(factor * self.load, factor * self.moment)
 
 
 def fit_errors(nodes: Nodes, length: float) -> FitErrors:
-    """Errors of the interpolation: what it misses at the nodes, and what another degree and fewer nodes tell."""
+    """Errors at and about every node: what is missed there, and what another degree and fewer nodes tell."""
     spline, lower = EnergySpline.fitted(nodes), EnergySpline.fitted(nodes, LOWER)
-    at_nodes = _pairs(nodes.approaches, nodes.tilts)
-    missed = _differences(spline(*at_nodes), nodes.load, nodes.moment, length)
+    missed = _differences(spline(*_pairs(nodes.approaches, nodes.tilts)), nodes.load, nodes.moment, length)
     pairs = _pairs(np.exp(_finer(np.log(nodes.approaches))), _finer(nodes.tilts))
     other = lower(*pairs)
     degree = _differences(spline(*pairs), other.load, other.moment, length)
-    fewer = FitErrors(0.0, 0.0)
-    lines = np.arange(nodes.approaches.size)
+    told = FitErrors(_about_nodes(degree.load), _about_nodes(degree.moment)).plus(_with_fewer(nodes, length))
+    return missed.larger(told.times(SAFETY))
+
+
+def _with_fewer(nodes: Nodes, length: float) -> FitErrors:
+    """Return what splines without one of the approaches miss there; at the first and the last, as beside them."""
+    lines, found = np.arange(nodes.approaches.size), []
     for line in lines[1:-1]:
         without, alone = nodes.approached(lines != line), nodes.approached(lines == line)
-        found = EnergySpline.fitted(without)(*_pairs(alone.approaches, alone.tilts))
-        fewer = fewer.larger(_differences(found, alone.load, alone.moment, length))
-    told = degree.plus(fewer)
-    return missed.larger(FitErrors(SAFETY * told.load, SAFETY * told.moment))
+        there = EnergySpline.fitted(without)(*_pairs(alone.approaches, alone.tilts))
+        found.append(_differences(there, alone.load, alone.moment, length))
+    load, moment = (np.concatenate([each[0], *each, each[-1]]) for each in zip(*found, strict=True))
+    return FitErrors(load, moment)
+
+
+def _about_nodes(fine: FloatArray | float) -> FloatArray:
+    """Largest value from each node to its neighbours, of values on finer steps."""
+    return np.asarray(maximum_filter(fine, 2 * BETWEEN + 1, mode="nearest")[::BETWEEN, ::BETWEEN])
 
 
 def _pairs(approaches: FloatArray, tilts: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -221,6 +235,5 @@ def _finer(places: FloatArray) -> FloatArray:
 
 
 def _differences(found: Motion, load: FloatArray, moment: FloatArray, length: float) -> FitErrors:
-    """Largest differences of load and moment."""
-    turned = np.abs(found.moment - moment) / (load * length)
-    return FitErrors(float(np.abs(found.load / load - 1).max()), float(turned.max()))
+    """Differences of load and moment."""
+    return FitErrors(np.abs(found.load / load - 1), np.abs(found.moment - moment) / (load * length))

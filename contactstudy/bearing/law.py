@@ -95,7 +95,7 @@ class ContactLaw:
         return (
             f"ContactLaw(approach {low:.3g} to {high:.3g} um, tilt {least:.3g} to {most:.3g} mrad, "
             f"load {float(loads.min()):.3g} to {float(loads.max()):.3g} N, "
-            f"error of the load {100 * float(self.table['relative_load_error']):.1g} %)"
+            f"error of the load up to {100 * float(self.table['relative_load_error'].max()):.1g} %)"
         )
 
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
@@ -128,7 +128,8 @@ class ContactLaw:
             outside = values.values[(values.values < low - room) | (values.values > high + room)]
             if outside.size:
                 raise InvalidInputError(name, float(outside[0]), f"in the table, from {low:g} to {high:g}")
-        return dataset(delta, theta, self.motion(delta.values, theta.values), self.errors)
+        pairs = delta.values, theta.values
+        return dataset(delta, theta, self.motion(*pairs), self.errors(*pairs))
 
     def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
         """Approach and tilt under a load and a moment, with the stiffness there.
@@ -150,7 +151,8 @@ class ContactLaw:
         """
         load, turn = broadcast(normal_load=normal_load, moment=moment)
         delta, theta = each_pair(load, turn, self.position)
-        return dataset(delta, theta, self.motion(delta.values, theta.values), self.errors)
+        pairs = delta.values, theta.values
+        return dataset(delta, theta, self.motion(*pairs), self.errors(*pairs))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness as plain arrays, at pairs inside the table: for loops of one's own."""
@@ -204,11 +206,18 @@ class ContactLaw:
             Nodes(self.table["approach"].values, self.table["tilt"].values, values[0], values[1], moment)
         )
 
-    @property
-    def errors(self) -> tuple[float, float]:
-        """Errors of the load and of the moment, over the load."""
-        length = float(self.table["contact_length"])
-        return float(self.table["relative_load_error"]), length * float(self.table["relative_moment_error"])
+    def errors(self, approach: FloatArray, tilt: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Errors of load and moment over the load, at pairs inside the table: the largest of the nodes around each."""
+        sides = []
+        for name, places in (("approach", approach), ("tilt", tilt)):
+            lines = self.table[name].values
+            right = np.clip(np.searchsorted(lines, places), 1, lines.size - 1)
+            sides.append((right - 1, right))
+        found = []
+        for name in ("relative_load_error", "relative_moment_error"):
+            known = self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
+            found.append(np.max([known[i, j] for i in sides[0] for j in sides[1]], axis=0))
+        return found[0], float(self.table["contact_length"]) * found[1]
 
 
 def contact_law(
@@ -240,7 +249,8 @@ def contact_law(
     ContactLaw
         Its `table` is a Dataset along `approach` and `tilt`: `normal_load`, `moment`, `strain_energy`,
         `normal_stiffness`, `coupling_stiffness`, `tilting_stiffness`; and `relative_load_error` (over the load) and
-        `relative_moment_error` (over load times length), the sum of the errors of interpolation and discretisation.
+        `relative_moment_error` (over load times length), the sum of the errors of interpolation, there and up to the
+        next nodes, and of discretisation.
 
     Raises
     ------
@@ -313,10 +323,10 @@ def law_table(presser: Presser, nodes: Nodes, errors: FitErrors) -> xr.Dataset:
         "normal_stiffness": motion.normal,
         "coupling_stiffness": motion.coupling,
         "tilting_stiffness": motion.tilting,
+        "relative_load_error": errors.load + np.zeros_like(nodes.load),
+        "relative_moment_error": errors.moment + np.zeros_like(nodes.load),
     }
     scalars = {
-        "relative_load_error": errors.load,
-        "relative_moment_error": errors.moment,
         "contact_length": presser.case.contact_length,
         "accuracy": presser.accuracy,
     }

@@ -44,7 +44,9 @@ def each_pair(
     return first.copy(data=one.reshape(first.shape)), second.copy(data=other.reshape(second.shape))
 
 
-def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[float, float]) -> xr.Dataset:
+def dataset(
+    approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[FloatArray, FloatArray]
+) -> xr.Dataset:
     """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
     values = {
         "approach": approach.values,

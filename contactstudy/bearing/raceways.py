@@ -112,7 +112,10 @@ class Raceways:
         first = contacts[0]
         motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
         # A softer contact decides; the larger error is a bound for either.
-        errors = [max(each) for each in zip(self.inner.errors, self.outer.errors, strict=True)]
+        own = [
+            law.errors(shares[0].values, shares[1].values) for law, shares in ((self.inner, inner), (self.outer, outer))
+        ]
+        errors = [np.maximum(*each) for each in zip(*own, strict=True)]
         found = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, (errors[0], errors[1]))
         for name, shares in (("inner", inner), ("outer", outer)):
             for kind, share in zip(("approach", "tilt"), shares, strict=True):
