@@ -1,5 +1,7 @@
 from . import analysis as analysis
+from . import bearing as bearing
 from . import cache as cache
+from . import design as design
 from . import export as export
 from . import fatigue as fatigue
 from . import passes as passes

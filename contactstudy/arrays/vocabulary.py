@@ -43,6 +43,7 @@ class Variable(NamedTuple):
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
 SLICE, CHECK, ENTRY = ("slice",), ("check",), ("entry",)
+EVALUATION, PARAMETER = ("evaluation",), ("parameter",)
 """Dimensions, for short."""
 
 AXES = ("x", "y", "z")
@@ -64,6 +65,19 @@ COORDINATES = {
     "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
+    "model": Variable(("model",), "", "", "model of the contacts"),
+    "evaluation": Variable(EVALUATION, "1", "", "number of the design that was looked at"),
+    "case_load": Variable(("case",), "N", "W", "normal load of the case"),
+    "case_tilt": Variable(("case",), "rad", r"\vartheta", "tilt of the case"),
+    "parameter": Variable(PARAMETER, "", "", "parameter of the profile"),
+    "raceway": Variable(("raceway",), "", "", "raceway"),
+    "roller": Variable(("roller",), "1", "j", "number of the roller"),
+    "approach": Variable(("approach",), "m", r"\delta", "approach of roller and body, relative to its reference"),
+    "tilt": Variable(
+        ("tilt",), "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
+    ),
+    "normal_load": Variable(("normal_load",), "N", "W", "normal load"),
+    "moment": Variable(("moment",), "N m", "M", "moment of the pressure, positive for a load at larger x"),
     "pass_number": Variable(("pass_number",), "1", "N", "number of the pass of the contact"),
 }
 """Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
@@ -263,6 +277,54 @@ HEAT = {
 }
 """What :func:`contactstudy.flash_temperature` returns."""
 
+LAW = ("approach", "tilt")
+
+BEARING = {
+    "strain_energy": Variable(LAW, "J", "U", "strain energy of the contact"),
+    "normal_stiffness": Variable(LAW, "N/m", r"\partial Q/\partial\delta", "change of the load with the approach"),
+    "coupling_stiffness": Variable(
+        LAW,
+        "N/rad",
+        r"\partial Q/\partial\vartheta",
+        "change of the load with the tilt, and of the moment with approach",
+    ),
+    "tilting_stiffness": Variable(
+        LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with the tilt"
+    ),
+    "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
+    "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
+    "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
+    "inner_approach": Variable(SCALAR, "m", "", "approach of the contact with the inner raceway"),
+    "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
+    "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
+    "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
+    "hertz_load_per_length": Variable(
+        SLICE, "N/m", "", "load per length of the line contact that has the solved pressure"
+    ),
+    "stress_riser": Variable(
+        ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
+    ),
+    "lamina_equivalent_load": Variable(
+        ("model", "raceway", "slice"), "N", "q_{ke}", "dynamic equivalent load of a lamina"
+    ),
+    "reference_life": Variable(("model",), "1", "L_{10r}", "basic reference rating life, revolutions"),
+    "raceway_life": Variable(("model", "raceway"), "1", "", "revolutions that 9 of 10 raceways survive"),
+}
+"""What :mod:`contactstudy.bearing` returns."""
+
+DESIGN = {
+    "optimum": Variable(PARAMETER, "", "", "best value of the parameter"),
+    "flat_from": Variable(PARAMETER, "", "", "least value of the parameter that is as good within the errors"),
+    "flat_to": Variable(PARAMETER, "", "", "largest value of the parameter that is as good within the errors"),
+    "lower_bound": Variable(PARAMETER, "", "", "least value of the parameter that is looked at"),
+    "upper_bound": Variable(PARAMETER, "", "", "largest value of the parameter that is looked at"),
+    "measure": Variable(SCALAR, "", "", "measure of the best design in its worst case"),
+    "design": Variable(("evaluation", "parameter"), "", "", "parameters of a design that was looked at"),
+    "design_measure": Variable(EVALUATION, "", "", "measure of a design in its worst case"),
+    "case_measure": Variable(("evaluation", "case"), "", "", "measure of a design in one case"),
+}
+"""What :mod:`contactstudy.design` returns. Units are those of the measure."""
+
 DISTANCE_X = ("distance", "x")
 
 WEAR = {
@@ -318,7 +380,19 @@ VERIFICATION = {
 """What :func:`contactstudy.verification.verify` returns."""
 
 VARIABLES = (
-    CONTACT | SLICE_MODEL | FIELDS | MEASURES | ANALYSIS | FATIGUE | HEAT | WEAR | PASSES | STUDIES | VERIFICATION
+    CONTACT
+    | SLICE_MODEL
+    | FIELDS
+    | MEASURES
+    | ANALYSIS
+    | FATIGUE
+    | HEAT
+    | BEARING
+    | DESIGN
+    | WEAR
+    | PASSES
+    | STUDIES
+    | VERIFICATION
 )
 """Every variable of the package but those that are named by a rule."""
 

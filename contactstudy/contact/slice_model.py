@@ -43,8 +43,10 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         Angle of the roller's axis about its mid-length, radians; positive presses the end at larger `x` deeper.
         Default: the case's.
     edge_riser : bool
-        Whether the pressure contains the standard's stress riser for rollers without profile: the load of slice
-        ``k`` times ``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, 2.33 at the ends and 1 in the middle.
+        Whether the pressure contains the standard's approximate stress riser: the load of slice ``k`` times
+        ``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, 2.33 at the ends and 1 in the middle. It is said to hold
+        for the standard's own profiles (`IsoCylindrical`, `IsoTapered`), medium loads and tilts below 4 minutes of arc,
+        1.2 mrad; not for rollers without a profile. `contactstudy.bearing.lamina_factors` has it from solved contacts.
 
     Returns
     -------
@@ -63,7 +65,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     contact, so the deflection is half of that and the profile counts once. Its constant holds for steel; Palmgren's
     relation behind it depends on the load over the contact modulus, so that the constant is proportional to the
     modulus. The riser is applied by the standard to the loads from which it calculates the life; it does not enter
-    the equilibrium.
+    the equilibrium. The standard's text was not available: formulas and their range are what public programs quote.
 
     References
     ----------

@@ -223,11 +223,11 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
     )
     result["displacement_z"].attrs |= displacement_reference(contact.reference)
     for name in ("approach", "tilt"):
-        result[name].attrs["reference"] = _reference(shape.body, shape.counterbody)
+        result[name].attrs["reference"] = motion_reference(shape.body, shape.counterbody)
     return describe(result, "contact of a shape with an elastic body")
 
 
-def _reference(body: Body, counterbody: Counterbody | None) -> str:
+def motion_reference(body: Body, counterbody: Counterbody | None) -> str:
     """Say what approach and tilt are relative to."""
     tops = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
     places = [

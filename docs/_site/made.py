@@ -33,7 +33,20 @@ from contactstudy.study.profile_kinds import DESIGN, PROFILES, MeasuredPoints, N
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
-WHOLE = ("analysis", "export", "fatigue", "passes", "plots", "profiles", "report", "study", "verification", "wear")
+WHOLE = (
+    "analysis",
+    "bearing",
+    "design",
+    "export",
+    "fatigue",
+    "passes",
+    "plots",
+    "profiles",
+    "report",
+    "study",
+    "verification",
+    "wear",
+)
 """Packages of which everything in ``__all__`` is shown, also what ``contactstudy`` itself does not hand on."""
 
 FIRST = (
@@ -48,6 +61,8 @@ FIRST = (
     "heat",
     "passes",
     "wear",
+    "bearing",
+    "design",
     "plots",
     "export",
     "report",

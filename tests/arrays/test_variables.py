@@ -12,7 +12,7 @@ import pytest
 import xarray as xr
 
 import contactstudy as cs
-from contactstudy import analysis, fatigue, passes, study, verification, wear
+from contactstudy import analysis, bearing, design, fatigue, passes, study, verification, wear
 from contactstudy.arrays.variables import (
     COORDINATES,
     RULES,
@@ -22,10 +22,14 @@ from contactstudy.arrays.variables import (
     specification,
     variable_of,
 )
+from contactstudy.bearing.energy_spline import FitErrors
+from contactstudy.bearing.law import law_table
+from contactstudy.bearing.nodes import Presser
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
 from contactstudy.verification.check import compare
 from contactstudy.verification.convergence import Table
+from tests.bearing.test_energy_spline import NODES
 
 Returned = dict[str, xr.Dataset]
 
@@ -35,7 +39,7 @@ KEEPS_WHAT_IT_GETS = {"normalized", "single_case", "measure", "positions", "alon
 
 def functions() -> dict[str, Callable[..., object]]:
     """Public functions that return labelled data, by name."""
-    packages: list[ModuleType] = [cs, analysis, fatigue, passes, study, verification, wear]
+    packages: list[ModuleType] = [cs, analysis, bearing, design, fatigue, passes, study, verification, wear]
     values = {name: getattr(package, name) for package in packages for name in package.__all__}
     for module in (cs.roughness, cs.slices):
         own = vars(module).items()
@@ -94,6 +98,9 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     errors = {"stress": (0.1, 0.01)}
     table = Table(title="orders", setting="order", source="the finest", values=(1.0, 2.0), errors=errors, used=2.0)
     checked = suite.Verification("full", {"one": [check]}, [table])
+    law = bearing.ContactLaw(law_table(Presser(case, 0.01, 1e-6), NODES, FitErrors(0.01, 0.01)))
+    smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
+    crowned = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
     values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": solved,
         "solve on refined columns": cs.solve(sharp, z=depths, accuracy=0.05),
@@ -107,6 +114,19 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
         "wear_in": wear.wear_in(case, 1e-17, [0.0, 10.0], grid=grid.coarsened()),
+        "contact_law": law.table,
+        "at": law.at([2e-6, 3e-6], [0.0, 1e-4]),
+        "under": bearing.Raceways(law, law).under([1e4, 2e4], [0.0, 1.0]),
+        "lamina_factors": bearing.lamina_factors(cs.solve(crowned, grid, stresses=False), laminae=4),
+        "reference_life": bearing.reference_life(crowned, crowned, (1e3, 1e3), laminae=4, accuracy=0.1),
+        "best_profile": design.best_profile(
+            crowned,
+            cs.profiles.Lundberg,
+            {"amplitude": (1e-7, 4e-7)},
+            lambda result: (1.0, 1.0),
+            accuracy=0.1,
+            evaluations=2,
+        ),
         "flash_temperature": cs.flash_temperature(
             case, solved, body=metal, roller=metal, body_speed=-1.0, roller_speed=1.0, z=depths
         ),
@@ -182,7 +202,7 @@ def test_every_coordinate_stands_in_a_table(returned: Returned) -> None:
 
 
 def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
-    """But for those of a study and of slices; of a field that was cut, fewer."""
+    """But for those of a study, of slices and of a contact law; of a field that was cut, fewer."""
     unlike = []
     for function, dataset in returned.items():
         for name, array in dataset.data_vars.items():
@@ -190,7 +210,8 @@ def test_dimensions_are_those_of_the_table(returned: Returned) -> None:
                 continue
             dims = {re.sub(r"^([xyz])(_field)?(_index|_over_a)?$", r"\1", str(dim)) for dim in array.dims}
             own = {"distance"} if function in ("along_line", "wear_in") else set()
-            further = {*PARAMETERS, "case", "slice", "pass_number", *own}
+            of_a_law = {"approach", "normal_load", "moment"}
+            further = {*PARAMETERS, "case", "slice", "pass_number", *of_a_law, *own}
             if not dims - further <= {*VARIABLES[str(name)].dims}:
                 unlike.append((function, name, array.dims))
     assert unlike == []

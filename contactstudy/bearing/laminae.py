@@ -1,0 +1,144 @@
+"""Edge factors per lamina from real pressures: what ISO/TS 16281 calls stress riser functions."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis.axes import cell_size, dimension_along, single_case
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import describe
+from contactstudy.bodies import hertz
+from contactstudy.case.case import Case
+from contactstudy.checks import FloatArray
+from contactstudy.contact.slice_model import slice_model
+from contactstudy.profiles.base import local_radius
+
+LIFE_POWER = 9 / 2
+"""Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
+of Weibull's distribution."""
+
+
+def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
+    """Factors on the loads of the lamina model that make their Hertz pressures those of a solved contact.
+
+    Parameters
+    ----------
+    result : Dataset
+        A result of :func:`contactstudy.solve` for the roller on the inner raceway, or on the outer one.
+    laminae : int
+        Number of laminae; the standard asks for at least 30.
+
+    Returns
+    -------
+    Dataset
+        Along `slice`: `position` (m, middle, from end I of the body), `width` (m); `load_per_length` (N/m) of the
+        lamina model under the same load and tilt; `hertz_load_per_length` (N/m), the one whose line contact has the
+        solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` from the inner raceway, ``f_e[k]`` from
+        the outer one; with `hertz_load_per_length_error` and `stress_riser_error`, which follow from the stated errors
+        of the peak pressures; and `edge_factor`, the standard's approximation.
+
+    Raises
+    ------
+    InvalidInputError
+        If the result does not say its case, or `laminae` is no whole number above 1.
+
+    Notes
+    -----
+    Within a lamina the pressure varies. Its load is the mean that gives the same life,
+    ``(mean of (pi p**2 R / E*)**(9/2))**(2/9)`` with the largest pressure p of each cross-section, so the life does not
+    depend on the number of laminae. At a sharp end, where the pressure is singular, the outermost factor is
+    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` still counts there.
+
+    The standard defines its functions by the Hertz pressures of the laminae (equations 58 and 59), and recommends
+    contact calculations for them in general. Its text was not available: that, and everything else of it here, is
+    second-hand, from what public programs quote of it.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, profiles, solve
+    >>> body = FiniteLengthSpace(length=0.6e-3, material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.Lundberg(0.2e-6))
+    >>> factors = lamina_factors(solve(Case(body=body, roller=roller, max_pressure=1.5e9), stresses=False))
+    >>> factors.edge_factor[:2].values.round(2).tolist()
+    [2.33, 1.13]
+    >>> bool(factors.stress_riser[0] < 1 < factors.stress_riser[1])  # between free ends the ends carry less
+    True
+    """
+    require(result, "pressure", "tilt")
+    one = single_case(result)
+    case, count = solved_case(one), checks.count("laminae", laminae, least=2)
+    sliced = slice_model(replace(case, load_position=None, tilt=float(one["tilt"])), slices=count)
+    start, stop = case.contact_range
+    borders = np.linspace(start, stop, count + 1)
+    load, error = hertz_loads(one, case, borders)
+    carried = sliced["load_per_length"].values
+    with np.errstate(divide="ignore", invalid="ignore"):
+        riser = np.where(carried > 0, load / carried, np.nan)
+        riser_error = np.where(carried > 0, error / carried, np.nan)
+    values = {
+        "position": 0.5 * (borders[1:] + borders[:-1]),
+        "width": np.full(count, (stop - start) / count),
+        "load_per_length": carried,
+        "hertz_load_per_length": load,
+        "hertz_load_per_length_error": error,
+        "stress_riser": riser,
+        "stress_riser_error": riser_error,
+        "edge_factor": sliced["edge_factor"].values,
+    }
+    found = xr.Dataset(
+        {name: ("slice", array) for name, array in values.items()}, coords={"slice": np.arange(1, count + 1)}
+    )
+    return describe(found, "stress riser of every lamina from solved pressures")
+
+
+def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Load per length of every lamina whose line contact has the solved pressure, and its error, N/m."""
+    pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
+    x = dimension_along(pressure, "x")
+    place, top = result[x].values, _top(pressure.values)
+    half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, place.shape)
+    middle = case.roller_start + 0.5 * case.roller.length
+    under = np.abs(place - middle) <= 0.5 * case.roller.length
+    radius = np.full(place.size, case.roller.radius)
+    radius[under] = local_radius(case.roller.profile, place[under] - middle, case.roller.length, case.roller.radius)
+    line = hertz.line_load(1.0, 1.0, case.modulus) * top**2 * radius
+    share = np.minimum(borders[1:, None], place + half) - np.maximum(borders[:-1, None], place - half)
+    weights = np.clip(share, 0.0, None)
+    scale = float(line.max())
+    mean = weights @ (line / scale) ** LIFE_POWER / np.diff(borders)
+    load = scale * mean ** (1 / LIFE_POWER)
+    first, last = _pressure_errors(result)
+    centres = 0.5 * (borders[1:] + borders[:-1])
+    error = 2 * np.where(centres < 0.5 * (borders[0] + borders[-1]), first, last) * load
+    for end, side in ((0, "first"), (-1, "last")):
+        if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
+            load[end] = error[end] = np.inf
+    return load, error
+
+
+def _top(pressure: FloatArray) -> FloatArray:
+    """Largest pressure of each cross-section (x, y), between its cells: its square is a parabola across a contact."""
+    squared = pressure**2
+    at = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
+    before, here, after = (squared[np.arange(at.size), at + step] for step in (-1, 0, 1))
+    bend = np.minimum(before - 2 * here + after, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        lift = np.where(bend < 0, -((after - before) ** 2) / (8 * bend), 0.0)
+    largest = squared.max(axis=1)
+    # A contact of a cell or two has no parabola.
+    return np.sqrt(np.where(largest > 0, np.maximum(here + np.minimum(lift, 0.25 * here), largest), 0.0))
+
+
+def _pressure_errors(result: xr.Dataset) -> tuple[float, float]:
+    """Errors of the pressure over itself on either half, by the stated ones; NaN on cells of one's own."""
+    settled = float(attribute(result, INPUTS_ATTRIBUTE).get("settings", {}).get("accuracy", np.nan))
+    errors = []
+    for side in ("first", "last"):
+        peak, error = (float(result.get(f"peak_pressure_{side}{kind}", np.nan)) for kind in ("", "_error"))
+        errors.append(error / peak if np.isfinite(error) and np.isfinite(peak) and peak > 0 else settled)
+    return errors[0], errors[1]

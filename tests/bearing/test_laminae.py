@@ -1,0 +1,106 @@
+"""Edge factors of laminae against closed forms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    choose_grid,
+    profiles,
+    solve,
+)
+from contactstudy.bearing import lamina_factors
+
+STEEL = Material(210e9, 0.3)
+DESIGN = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
+
+
+@pytest.fixture(scope="module")
+def uniform() -> xr.Dataset:
+    """Lundberg's profile at its design load on a half-space: the pressure is uniform along the roller."""
+    roller = Roller(radius=5e-3, length=4e-3, profile=DESIGN)
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9)
+    return solve(case, stresses=False, accuracy=0.02)
+
+
+def test_a_uniform_pressure_has_the_load_of_its_line_contact(uniform: xr.Dataset) -> None:
+    found = lamina_factors(uniform)
+    load = float(uniform.normal_load) / 4e-3
+    np.testing.assert_allclose(found.hertz_load_per_length[3:-3], load, rtol=0.03)
+    np.testing.assert_allclose(found.stress_riser * found.load_per_length, found.hertz_load_per_length, rtol=1e-12)
+    assert float(found.width.sum()) == pytest.approx(4e-3)
+    assert float(found.position[0]) == pytest.approx(4e-3 / 60)
+    assert 0 < float(found.stress_riser_error[10]) < 0.05
+
+
+def test_half_space_and_flush_ends_approach_the_slices_from_either_side() -> None:
+    """Slices that do not know of each other are the limit of a straight roller that is long against its contact.
+
+    The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
+    """
+    middles: dict[str, list[float]] = {"half-space": [], "flush": []}
+    for length in (0.5e-3, 2e-3, 8e-3):
+        bodies = {"half-space": HalfSpace(material=STEEL), "flush": FiniteLengthSpace(length=length, material=STEEL)}
+        for name, body in bodies.items():
+            case = Case(body=body, roller=Roller(radius=5e-3, length=length), max_pressure=1.5e9)
+            factors = lamina_factors(solve(case, stresses=False, accuracy=0.02), laminae=31)
+            middles[name].append(float(factors.stress_riser[15]))
+    assert middles["half-space"][0] < middles["half-space"][1] < middles["half-space"][2] < 1
+    assert middles["flush"][0] > middles["flush"][1] > middles["flush"][2] > 1
+    assert middles["flush"][2] - middles["half-space"][2] < 0.12
+
+
+def test_the_number_of_laminae_is_no_part_of_the_life(uniform: xr.Dataset) -> None:
+    few, many = (lamina_factors(uniform, laminae=count) for count in (30, 90))
+    risks = [float((each.hertz_load_per_length**4.5 * each.width).sum()) for each in (few, many)]
+    assert risks[0] == pytest.approx(risks[1], rel=1e-9)
+
+
+def test_free_ends_relieve_the_outermost_lamina() -> None:
+    roller = Roller(radius=5e-3, length=0.5e-3, profile=DESIGN)
+    flush = FiniteLengthSpace(length=0.5e-3, material=STEEL)
+    ends = [
+        float(
+            lamina_factors(solve(Case(body=body, roller=roller, load=70.0, tilt=2e-4), stresses=False)).stress_riser[-1]
+        )
+        for body in (HalfSpace(material=STEEL), flush)
+    ]
+    assert ends[1] < 0.8 * ends[0]
+
+
+def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
+    roller, body = Roller(radius=5e-3, length=0.5e-3), FiniteLengthSpace(length=0.7e-3, material=STEEL)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9)
+    sharp = lamina_factors(solve(case, stresses=False, accuracy=0.05))
+    assert np.isinf(sharp.stress_riser[[0, -1]]).all()
+    assert np.isfinite(sharp.stress_riser[1:-1]).all()
+    given = lamina_factors(solve(case, choose_grid(case), stresses=False))
+    assert np.isfinite(given.stress_riser).all()
+    assert np.isnan(given.stress_riser_error).all()
+
+
+def test_laminae_that_the_slice_model_does_not_load_have_no_factor() -> None:
+    roller = Roller(radius=5e-3, length=2e-3, profile=profiles.FullCrown(crown_radius=0.3))
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, load=60.0)
+    found = lamina_factors(solve(case, stresses=False, accuracy=0.05))
+    unloaded = found.load_per_length == 0
+    assert bool(unloaded.any())
+    assert np.isnan(found.stress_riser.where(unloaded, drop=True)).all()
+    assert np.isfinite(found.hertz_load_per_length).all()
+
+
+def test_a_result_must_say_its_case(uniform: xr.Dataset) -> None:
+    with pytest.raises(InvalidInputError, match="contactstudy_inputs"):
+        lamina_factors(uniform.drop_attrs())
+    with pytest.raises(InvalidInputError, match="laminae = 1"):
+        lamina_factors(uniform, laminae=1)
+    with pytest.raises(InvalidInputError, match="pressure"):
+        lamina_factors(uniform.drop_vars("pressure"))

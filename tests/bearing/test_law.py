@@ -1,0 +1,158 @@
+"""The contact law against Hertz' point contact, against direct solutions, and its inverse."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, profiles, solve
+from contactstudy.bearing import ContactLaw, contact_law
+from contactstudy.bearing.nodes import Presser
+
+STEEL = Material(210e9, 0.3)
+RADIUS = 5e-3
+
+
+@pytest.fixture(scope="module")
+def ball() -> ContactLaw:
+    """A roller whose crown is as curved as its circumference, on a half-space."""
+    roller = Roller(radius=RADIUS, length=0.8e-3, profile=profiles.FullCrown(crown_radius=RADIUS))
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, load=60.0)
+    return contact_law(case, 1e-2 * np.linspace(-1, 1, 5), 1e-6 * np.geomspace(0.5, 4, 6), accuracy=0.05)
+
+
+@pytest.mark.parametrize("tilt", [0.0, 3e-3, -9e-3])
+@pytest.mark.parametrize("approach", [0.7e-6, 3e-6])
+def test_hertz_ball_pressed_and_tilted(ball: ContactLaw, approach: float, tilt: float) -> None:
+    """Tilted, a ball of radius R touches at R theta, and is deeper there by R theta**2 / 2."""
+    depth = approach + 0.5 * RADIUS * tilt**2
+    modulus = STEEL.plane_strain_modulus
+    load, slope = 4 / 3 * modulus * np.sqrt(RADIUS) * depth**1.5, 2 * modulus * np.sqrt(RADIUS * depth)
+    found = ball.at(approach, tilt)
+    assert float(found.normal_load) == pytest.approx(load, rel=5e-3)
+    assert float(found.moment) == pytest.approx(load * RADIUS * tilt, rel=5e-3, abs=2e-3 * load * 0.1e-3)
+    assert float(found.normal_stiffness) == pytest.approx(slope, rel=0.01)
+    assert float(found.coupling_stiffness) == pytest.approx(slope * RADIUS * tilt, rel=0.03, abs=0.01 * slope * 0.1e-3)
+    assert float(found.tilting_stiffness) == pytest.approx(load * RADIUS + slope * (RADIUS * tilt) ** 2, rel=0.03)
+
+
+def test_a_balls_load_follows_the_power_three_halves(ball: ContactLaw) -> None:
+    loads = ball.at([1e-6, 2e-6]).normal_load.values
+    assert np.log2(loads[1] / loads[0]) == pytest.approx(1.5, abs=0.01)
+
+
+@pytest.mark.parametrize(("load", "tilt"), [(45.0, 6e-4), (65.0, -1.3e-3), (90.0, 2e-4)])
+def test_direct_solutions_lie_within_the_stated_errors(
+    short_case: Case, short_law: ContactLaw, load: float, tilt: float
+) -> None:
+    direct = solve(replace(short_case, load=load, tilt=tilt), stresses=False, accuracy=0.02)
+    found = short_law.at(float(direct.approach), tilt)
+    moment = load * (float(direct.load_position) - 0.3e-3)
+    assert abs(float(found.normal_load) - load) < float(found.normal_load_error) < 0.02 * load
+    assert abs(float(found.moment) - moment) < float(found.moment_error) < 0.02 * load * 0.5e-3
+
+
+def test_stiffness_against_finite_differences_of_direct_solutions(short_case: Case, short_law: ContactLaw) -> None:
+    """The direct solutions know nothing of an energy: that their matrix is symmetric is a property of the bodies."""
+    presser, delta, theta = Presser(short_case, 0.05, 1e-7), 1.6e-6, 6e-4
+    load = float(short_law.at(delta, theta).normal_load)
+    step, turn = 0.03 * delta, 6e-5
+    deeper, higher = (presser.pressed(delta + side * step, theta, load) for side in (1, -1))
+    more, less = (presser.pressed(delta, theta + side * turn, load) for side in (1, -1))
+    normal, upper = (deeper.load - higher.load) / (2 * step), (deeper.moment - higher.moment) / (2 * step)
+    lower, tilting = (more.load - less.load) / (2 * turn), (more.moment - less.moment) / (2 * turn)
+    assert upper == pytest.approx(lower, rel=0.03)
+    found = short_law.at(delta, theta)
+    assert float(found.normal_stiffness) == pytest.approx(normal, rel=0.02)
+    assert float(found.coupling_stiffness) == pytest.approx(0.5 * (upper + lower), rel=0.05)
+    assert float(found.tilting_stiffness) == pytest.approx(tilting, rel=0.04)
+
+
+def test_the_inverse_finds_what_was_pressed(short_law: ContactLaw) -> None:
+    approach, tilt = 1e-6 * np.array([1.1, 2.0, 2.9]), 1e-3 * np.array([-1.4, 0.0, 0.7])
+    pressed = short_law.at(approach, tilt)
+    assert dict(pressed.sizes) == {"approach": 3, "tilt": 3}
+    found = short_law.under(pressed.normal_load, pressed.moment)
+    np.testing.assert_allclose(found["normal_load"], pressed["normal_load"], rtol=1e-6)
+    np.testing.assert_allclose(found["normal_stiffness"], pressed["normal_stiffness"], rtol=1e-4)
+    alone = short_law.under(float(pressed.normal_load[1, 2]), float(pressed.moment[1, 2]))
+    assert float(alone.approach) == pytest.approx(2.0e-6, rel=1e-5)
+    assert float(alone.tilt) == pytest.approx(0.7e-3, rel=1e-4)
+
+
+def test_half_of_a_symmetric_law_is_the_mirror_image(short_law: ContactLaw) -> None:
+    one, other = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
+    np.testing.assert_allclose(one.normal_load, other.normal_load, rtol=1e-9)
+    np.testing.assert_allclose(one.moment, -other.moment, rtol=1e-9)
+
+
+def test_a_law_from_a_file_is_the_same(short_law: ContactLaw, tmp_path) -> None:
+    short_law.table.to_netcdf(tmp_path / "law.nc")
+    with xr.open_dataset(tmp_path / "law.nc") as table:
+        again = ContactLaw(table.load())
+    assert again.at(1.7e-6, 3e-4).equals(short_law.at(1.7e-6, 3e-4))
+    assert "10 lengths" not in table.approach.attrs["reference"]
+    assert "undeformed top" in table.approach.attrs["reference"]
+    assert repr(again) == repr(short_law)
+    assert "mrad" in repr(again)
+
+
+def test_every_number_has_its_unit(short_law: ContactLaw) -> None:
+    for found in (short_law.table, short_law.at(2e-6, 1e-4), short_law.under(80.0)):
+        assert all(variable.attrs["units"] for variable in found.variables.values())
+
+
+def test_default_approaches_are_those_of_the_cases_load(short_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+    seen = {}
+
+    def solved(presser, approaches, tilts):
+        seen["approaches"] = approaches
+        raise InvalidInputError("stop", 0, "here")
+
+    monkeypatch.setattr("contactstudy.bearing.law.solved_nodes", solved)
+    with pytest.raises(InvalidInputError, match="stop"):
+        contact_law(short_case, np.linspace(-1e-3, 1e-3, 5), accuracy=0.1)
+    at_load = float(solve(short_case, stresses=False, accuracy=0.1).approach)
+    assert seen["approaches"][0] < 0.1 * at_load
+    assert at_load < seen["approaches"][-1] < 1.6 * at_load
+    assert seen["approaches"].size == 8
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda law: law.at(0.5e-6), "approach = 5e-07: must be in the table, from 1e-06"),
+        (lambda law: law.at(2e-6, 2e-3), r"tilt = 0.002: must be in the table, from -0.0015 to 0.0015"),
+        (lambda law: law.at("deep"), "approach = 'deep'"),
+        (lambda law: law.under(1e4), "normal_load, moment = .*larger approaches or tilts"),
+        (lambda law: law.under(100.0, 0.05), "normal_load, moment = "),
+        (lambda law: ContactLaw(law.table.drop_vars("strain_energy")), "strain_energy"),
+        (lambda law: ContactLaw(law.table.isel(tilt=slice(3))), "5 or more along tilt"),
+    ],
+)
+def test_what_is_not_in_the_table_is_named(short_law: ContactLaw, call, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        call(short_law)
+
+
+TILTS = [-1e-3, -5e-4, 0.0, 5e-4, 1e-3]
+
+
+@pytest.mark.parametrize(
+    ("changes", "tilts", "approaches", "message"),
+    [
+        ({"tilt": 1e-3}, TILTS, None, "case.tilt"),
+        ({"load_position": 3e-4}, TILTS, None, "case.load_position"),
+        ({"friction": 0.1, "coupled": True}, TILTS, None, "case.coupled"),
+        ({}, [-1e-3, 0.0, 1e-3], None, "tilts = .*5 or more increasing"),
+        ({}, [0.0, -1.0, 2.0, 3.0, 4.0], None, "tilts"),
+        ({}, [-2.0, -1.0, 0.0, 1.0, 2.0], None, "small angles"),
+        ({}, TILTS, [-1e-6, 1e-6, 2e-6, 3e-6, 4e-6], "approaches"),
+    ],
+)
+def test_bad_arguments_are_named(short_case: Case, changes, tilts, approaches, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        contact_law(replace(short_case, **changes), tilts, approaches)

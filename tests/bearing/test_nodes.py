@@ -1,0 +1,61 @@
+"""Contacts at given approaches and tilts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, QuarterSpace, Roller, profiles
+from contactstudy.bearing.nodes import Node, Presser, solved_nodes
+
+STEEL = Material(210e9, 0.3)
+BALL = Roller(radius=5e-3, length=0.8e-3, profile=profiles.FullCrown(crown_radius=5e-3))
+CASE = Case(body=HalfSpace(material=STEEL), roller=BALL, load=60.0)
+
+
+def test_the_energy_of_a_ball_is_two_fifths_of_load_times_approach() -> None:
+    approach = 2e-6
+    load, moment, energy = Presser(CASE, 0.05, 1e-6).pressed(approach, 0.0, 20.0)
+    assert energy == pytest.approx(0.4 * load * approach, rel=2e-3)
+    assert abs(moment) < 1e-6 * load * BALL.radius
+
+
+class StandIn(Presser):
+    """Two springs of 10 N/um, 0.1 mm to either side of the middle; notes what it presses."""
+
+    pressed_to: list[tuple[float, float]]
+
+    def pressed(self, approach: float, tilt: float, load: float) -> Node:
+        assert load > 0
+        self.pressed_to.append((approach, tilt))
+        return Node(2e7 * approach, 0.2 * tilt, 1e7 * approach**2 + 0.1 * tilt**2)
+
+
+@pytest.mark.parametrize(
+    ("changes", "tilts", "solved"),
+    [
+        ({}, [-1.0, -0.5, 0.0, 0.5, 1.0], 3),
+        ({}, [-1.0, -0.5, 0.0, 0.5, 1.1], 5),
+        ({}, [-1.5, -0.5, 0.5, 1.5], 2),
+        ({"body": FiniteLengthSpace(length=1e-3, material=STEEL)}, [-1.0, 0.0, 1.0], 2),
+        ({"body": FiniteLengthSpace(length=1e-3, material=STEEL), "end_distance": 0.0}, [-1.0, 0.0, 1.0], 3),
+        ({"body": QuarterSpace(material=STEEL)}, [-1.0, 0.0, 1.0], 3),
+        ({"roller": replace(BALL, profile=profiles.Tapered(0.05))}, [-1.0, 0.0, 1.0], 3),
+    ],
+)
+def test_half_of_the_tilts_are_solved_where_halves_are_mirror_images(changes, tilts, solved: int) -> None:
+    presser = StandIn(replace(CASE, **changes), 0.05, 1e-6)
+    object.__setattr__(presser, "pressed_to", [])
+    approaches, turned = 1e-6 * np.array([1.0, 2.0, 4.0]), 1e-3 * np.array(tilts)
+    nodes = solved_nodes(presser, approaches, turned)
+    assert len(presser.pressed_to) == 3 * solved
+    np.testing.assert_allclose(nodes.load, 2e7 * approaches[:, None] + 0 * turned)
+    np.testing.assert_allclose(nodes.moment, 0.2 * turned + 0 * approaches[:, None])
+    assert np.isfinite(nodes.energy).all()
+
+
+def test_a_tilt_that_no_contact_takes_is_named() -> None:
+    with pytest.raises(InvalidInputError, match=r"tilts, approaches = 'a tilt of 0.09 rad under 1e\+07 N'.*smaller"):
+        Presser(CASE, 0.05, 1e-6).loaded(1e7, 0.09)

@@ -1,0 +1,29 @@
+"""The best profile of a real roller against a scan."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from contactstudy import Case, FiniteLengthSpace, Material, Roller, profiles, solve
+from contactstudy.design import best_profile
+
+
+def test_the_best_crown_against_a_scan() -> None:
+    body = FiniteLengthSpace(length=0.4e-3, material=Material(210e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
+    found = best_profile(case, profiles.Lundberg, {"amplitude": (0.05e-6, 1e-6)}, accuracy=0.02, evaluations=16)
+    assert found.measure.attrs["units"] == "Pa"
+
+    def peak(amplitude: float) -> float:
+        roller = replace(case.roller, profile=profiles.Lundberg(amplitude))
+        return float(solve(replace(case, roller=roller), stresses=False, accuracy=0.02).peak_pressure)
+
+    least, room = float(found.measure), 2 * float(found.measure_error)
+    low, high = float(found.flat_from[0]), float(found.flat_to[0])
+    scan = {amplitude: peak(amplitude) for amplitude in np.geomspace(0.05e-6, 1e-6, 10)}
+    assert least < min(scan.values()) + room
+    outside = [value for amplitude, value in scan.items() if not 0.9 * low < amplitude < 1.1 * high]
+    assert min(outside) > least
+    assert max(peak(low), peak(high)) < least + 1.2 * room
