@@ -8,7 +8,7 @@ import warnings
 from dataclasses import dataclass
 from random import Random
 
-from contactstudy import ContactStudyError
+from contactstudy import ContactStudyError, MagnitudeWarning
 from tests.fuzz import properties
 from tests.fuzz.drawn import Drawn, random_drawn
 from tests.fuzz.properties import Solved, ViolationError
@@ -47,6 +47,7 @@ def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
+            warnings.simplefilter("ignore", MagnitudeWarning)  # scaled cases are of any size
             drawn = random_drawn(chance, refined=refined)
             now = "solve"
             kind, said = _checked(drawn, chance, checked)
