@@ -22,6 +22,7 @@ from contactstudy import (
     FiniteLengthSpace,
     Grid,
     HalfSpace,
+    MagnitudeWarning,
     solve,
     solve_contact,
     stress_field,
