@@ -285,7 +285,6 @@ PASSES = {
     "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
     "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
     "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
-    "flow_contained": Variable(SCALAR, "1", "", "whether the elastic body contains the flow of every instant"),
 }
 """What :mod:`contactstudy.passes` returns."""
 
