@@ -126,7 +126,7 @@ class PlasticStrip:
     @cached_property
     def order(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         """Elements and points sorted into rows of equal depth: arrays (depth, along y) of both numbers."""
-        y, z = np.round(self.basis.global_coordinates().value, 9)
+        y, z = np.round(np.asarray(self.basis.global_coordinates()), 9)
         sorted_points = np.lexsort((y.ravel(), z.ravel())).reshape(np.unique(z).size, -1)
         elements, points = np.unravel_index(sorted_points, y.shape)
         return elements, points
@@ -135,11 +135,11 @@ class PlasticStrip:
     def z(self) -> Array:
         """Depths of the points of integration."""
         elements, points = self.order
-        return np.asarray(self.basis.global_coordinates().value[1][elements[:, 0], points[:, 0]])
+        return np.asarray(np.asarray(self.basis.global_coordinates())[1][elements[:, 0], points[:, 0]])
 
     def elastic(self, place: float) -> Array:
         """Stress (4, element, point) of the elastic contact at this place along y."""
-        y, z = self.basis.global_coordinates().value
+        y, z = np.asarray(self.basis.global_coordinates())
         away = (y - place + 0.5 * self.strip.length) % self.strip.length - 0.5 * self.strip.length
         found = hertz_strip(away, z, 1.0, 1.0, self.case.poisson, self.case.friction)
         return np.stack([found["sigma_xx"], found["sigma_yy"], found["sigma_zz"], found["tau_yz"]])
@@ -183,7 +183,7 @@ class PlasticStrip:
         """Forces on the unknowns of stresses (4, element, point)."""
         weighted = np.einsum("aiep,iep,ep->ae", self.strains, stress, self.basis.dx)
         held = self.unknowns >= 0
-        return np.bincount(self.unknowns[held], weighted[held])
+        return np.asarray(np.bincount(self.unknowns[held], weighted[held]), dtype=np.float64)
 
     def stiffness(self, tangent: Array) -> sparse.csc_matrix:
         """Matrix of the unknowns, of tangents (4, 4, element, point)."""
@@ -246,8 +246,8 @@ class PlasticStrip:
         y = np.linspace(0, self.strip.length, self.order[0].shape[1], endpoint=False)
         opposite = np.abs(y - 0.5 * self.strip.length) < 2.0
         for _ in range(self.case.passes):
-            for field in [*fields[1:], fields[0]]:
-                displaced, plastic, _ = self.increment(displaced, plastic, field)
+            for elastic in [*fields[1:], fields[0]]:
+                displaced, plastic, _ = self.increment(displaced, plastic, elastic)
             kept.append(self.rows(plastic)[..., opposite].mean(axis=-1))
         spread = 0.5 * np.ptp(self.rows(plastic)[..., opposite], axis=-1)
         for part in (0.75, 0.5, 0.25, 0.0):
