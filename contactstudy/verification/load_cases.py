@@ -199,6 +199,6 @@ PASSES_CASES: dict[str, PassesCase] = {
     "settling": PassesCase(1 / 3.6, friction=0.0, passes=2),
     "settling_sliding": PassesCase(1 / 3.1, friction=0.2, passes=5),
     "flowing": PassesCase(1 / 4.3, friction=0.0, passes=3),
-    "flowing_sliding": PassesCase(1 / 3.4, friction=0.2, passes=3),
+    "flowing_sliding": PassesCase(1 / 3.4, friction=0.2, passes=2),
 }
 """Passes whose residual stresses and plastic strains are stored: either side of the shakedown limits 4.0 k, 3.2 k."""
