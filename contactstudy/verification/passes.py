@@ -25,11 +25,11 @@ TOLERANCES = {
     "settling": (0.06, 0.03),
     "settling_sliding": (0.06, 0.05),
     "flowing": (0.15, 0.12),
-    "flowing_sliding": (0.15, 0.12),
+    "flowing_sliding": (0.2, 0.12),
 }
 """Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up."""
 
-QUICK_CASES = ("settling", "flowing_sliding")
+QUICK_CASES = ("settling", "settling_sliding")
 """Passes of the quick level."""
 
 
@@ -135,7 +135,7 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     z, tolerances = left["z"].values, TOLERANCES[name]
     found = over_half_plane(case, z)
     after = found.isel(pass_number=-1)
-    size = float(np.abs(left["sigma_xx"]).max())
+    size = max(float(np.abs(left[component]).max()) for component in ("sigma_xx", "sigma_yy"))
     label = f"{name}: p0 = {1 / case.shear_yield_stress:.3g} k, f = {case.friction:g}, {case.passes} passes"
     own = "finite elements (scikit-fem), own error"
     for component in ("sigma_xx", "sigma_yy"):

@@ -49,8 +49,9 @@ def test_stored_passes(name: str) -> None:
     assert np.abs(xx + yy + zz).max() < 1e-6
     held = -(xx + case.poisson * yy).isel(pass_number=-1) / (1 - case.poisson**2)
     assert np.abs(left["sigma_xx"] - held).max() < 0.08 * np.abs(held).max()
+    allowed = 0.08 if name.startswith("settling") else 0.3
     for component in ("sigma_xx", "plastic_strain_yz_young"):
-        assert left[component].attrs["error_estimate"] < 0.12 * float(np.abs(left[component]).max()), component
+        assert left[component].attrs["error_estimate"] < allowed * float(np.abs(left[component]).max()), component
 
 
 @pytest.mark.parametrize("name", LOAD_CASES)
@@ -87,7 +88,7 @@ def test_stored_friction_is_a_superposition() -> None:
     assert np.abs(sliding.tau_xy).max() > 0.05
 
 
-@pytest.mark.parametrize("load", [load_stress, load_contact])
+@pytest.mark.parametrize("load", [load_stress, load_contact, load_passes])
 def test_unknown_names_are_errors(load: Callable[[str], object]) -> None:
     with pytest.raises(InvalidInputError, match="nothing"):
         load("nothing")
