@@ -125,7 +125,10 @@ def over_half_plane(case: PassesCase, z: FloatArray) -> xr.Dataset:
     contact = xr.Dataset(fields, {"x": [0.0], "y": y, "z": z})
     hardening = STIFF.young * case.kinematic_hardening
     plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
-    return rolled_in(contact, HalfSpace(material=Material(STIFF.young, case.poisson)), plastic, case.passes).isel(x=0)
+    body = HalfSpace(material=Material(STIFF.young, case.poisson))
+    found = rolled_in(contact, body, plastic, case.passes).isel(x=0)
+    # Passes that would change nothing are not made.
+    return found.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
