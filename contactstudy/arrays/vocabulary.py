@@ -106,7 +106,7 @@ CONTACT = {
     ),
     "force_error": Variable(SCALAR, "1", "", "resultant of the tractions minus the prescribed one, over the largest"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
-    "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
+    "converged": Variable(SCALAR, "1", "", "whether the iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),
     "penetration_error": Variable(
         SCALAR, "1", "", "largest gap or overlap under pressure, over the variation of the displacement"
