@@ -120,7 +120,7 @@ CONTACT = {
     ),
     "force_error": Variable(SCALAR, "1", "", "resultant of the tractions minus the prescribed one, over the largest"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
-    "converged": Variable(SCALAR, "1", "", "whether the contact iteration reached its tolerance"),
+    "converged": Variable(SCALAR, "1", "", "whether the iteration reached its tolerance"),
     "load_error": Variable(SCALAR, "1", "", "resultant of the pressure minus the load, over the load"),
     "penetration_error": Variable(
         SCALAR, "1", "", "largest gap or overlap under pressure, over the variation of the displacement"
@@ -348,7 +348,6 @@ PASSES = {
     "plastic_flow": Variable(SCALAR, "1", "", "largest equivalent plastic strain of the pass"),
     "residual_displacement_z": Variable(X, "m", "", "normal displacement that passes leave on the top, into the body"),
     "residual_displacement_y": Variable(X, "m", "", "displacement along +y that passes leave on the top"),
-    "flow_contained": Variable(SCALAR, "1", "", "whether the elastic body contains the flow of every instant"),
 }
 """What :mod:`contactstudy.passes` returns."""
 

@@ -10,5 +10,6 @@ splines.py         piecewise polynomials along one axis that vanish, with their 
 stress_function.py stress functions of (x, z) as their products: stresses, and the equations of least energy
 body.py            elements for a body with two ends, one or none, and the stresses under eigenstrains on cells
 influence.py       stress in some cells per eigenstrain in the same cells
+along.py           layers with eigenstrains that change along y, by their waves
 =================  ===================================================================================================
 """

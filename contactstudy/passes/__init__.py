@@ -6,7 +6,8 @@ After many passes nothing that is left depends on y, so the residual state is a 
 plastic.py      elastic-plastic materials
 cells.py        cells of the cross-section around the positions of a stress field
 residual.py     residual stress of any plastic strain over the cross-section
-flow.py         plastic flow at an instant: least energy over all cells at once
+tensors.py      tensors as arrays
+passage.py      plastic flow during a pass, at all places along the way at once
 rolled_in.py    passes of a stress field over an elastic-plastic body
 ==============  ======================================================================================================
 """

@@ -1,21 +1,22 @@
 """Passes of a contact over an elastic-plastic body, until what they leave does not change any more.
 
-All points of one (x, z) have the same history, the stress field along y from the leading edge to the trailing one. The
-plastic strain of an instant is taken as if it were uniform along y, so its residual stress is that of the
-cross-section (eigenstrain/): no strain along y, in the plane what the free ends allow. After many passes the plastic
-strain is uniform along y indeed, so whether flow stops is told exactly (Melan). During a pass that flows, material
-ahead and behind would hold the flow a little more. J. E. Merwin and K. L. Johnson, An analysis of plastic deformation
-in rolling contact, Proc. IMechE 177 (1963) 676, take all strains from the elastic contact instead.
+All points of one (x, z) have the same history, the stress field along y from the leading edge to the trailing one. What
+a pass leaves is uniform along y, and its residual stress is that of the cross-section (eigenstrain/): no strain along
+y, in the plane what the free ends allow. During the pass the plastic strain changes along y, from what was there ahead
+of the contact to what is left behind it (passage.py). This is taken as it is in a line contact. Along x, what changes
+along y is answered for by each column by itself, in plane strain.
 """
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 
 import numpy as np
 import xarray as xr
+from scipy.fft import next_fast_len
+from scipy.interpolate import make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, positions, single_case
@@ -23,12 +24,14 @@ from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
+from contactstudy.eigenstrain.along import LayersAlong
 from contactstudy.eigenstrain.body import EigenstrainBody
 from contactstudy.eigenstrain.influence import Influence, LayerInfluence
-from contactstudy.errors import InvalidInputError
-from contactstudy.passes.cells import cross_section
-from contactstudy.passes.flow import DOUBLED, Flow, Residual, State, deviator, length
+from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.passes.cells import cross_section, edges_around
+from contactstudy.passes.passage import Passage, Residual, State
 from contactstudy.passes.plastic import ElasticPlastic
+from contactstudy.passes.tensors import deviator, length
 
 STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
 """Plastic strains, components of the tensor."""
@@ -40,16 +43,21 @@ SMALL_STRAIN = 0.05
 """Plastic strain beyond which strains are not small and the stresses of the contact are not those of a flat body."""
 
 STEADY = 2.0
-"""Stress of a pass' flow, over what the tolerance leaves at an instant, below which nothing flows any more."""
+"""Stress of a pass' flow, over what the tolerance leaves of it, below which nothing flows any more."""
+
+CLOSED = 3.0
+"""Length of the way that closes on itself, over that of the positions along y. Accuracy: what changes along y answers
+from as far as that."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Section:
-    """The cross-section: elastic stresses (instant, 6, cell) and all that holds its plastic strain."""
+    """The cross-section: elastic stresses (6, position, cell) at falling y, and all that holds its plastic strain."""
 
     body: Body
     material: ElasticPlastic
     x: FloatArray
+    y: FloatArray
     z: FloatArray
     elastic: FloatArray
 
@@ -70,10 +78,33 @@ class _Section:
 
     def residual(self, cells: IntArray) -> Residual:
         """Residual stress of plastic strain in some of the cells, in the same ones."""
-        constants = self.body.material
         if self.layered:
-            return LayerInfluence(constants.poisson, constants.young)
+            return self.layers
         return Influence.of(self.cells, *np.unravel_index(cells, (self.x.size, self.z.size)))
+
+    @property
+    def layers(self) -> LayerInfluence:
+        """Residual stress of layers without an end."""
+        return LayerInfluence(self.body.material.poisson, self.body.material.young)
+
+    def passage(self, cells: IntArray, substeps: int, tolerance: float) -> Passage:
+        """Return what passes over some of the cells."""
+        steps = substeps * max(1, round(float(np.ptp(self.y) / np.abs(np.diff(self.y)).min())))
+        y = np.linspace(self.y[0], self.y[-1], steps + 1)
+        # Between positions the stress is linear; behind the last one there is none any more.
+        spline = make_interp_spline(self.y[::-1], self.elastic[:, ::-1, cells], k=1, axis=1)
+        elastic = np.concatenate([spline(y), np.zeros((6, 1, cells.size))], axis=1)
+        columns, layers = np.unravel_index(cells, (self.x.size, self.z.size))
+        first, last = layers.min(), layers.max()
+        edges = edges_around(self.z, 0.0, np.inf)[first : last + 2]
+        places = int(next_fast_len(int(CLOSED * y.size), real=True))
+        along = LayersAlong(self.body.material, edges, places, float(y[1] - y[0]))
+        box = np.unique(columns, return_inverse=True)[1], layers - first
+        material, shear = self.material, self.body.material.shear_modulus
+        hardening = material.isotropic_hardening, material.kinematic_hardening
+        strength = self.yield_stress[cells]
+        of = self.residual(cells), self.layers, along, places, box
+        return Passage(elastic, *of, strength, shear, *hardening, tolerance)
 
     def left(self, strain: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residual stresses (6, x, z) everywhere, and displacements z and y of the top."""
@@ -81,7 +112,7 @@ class _Section:
         if not self.layered:
             solution = self.cells.solve(shaped)
             return solution.cell_averages(), *solution.top_displacement(self.x)
-        stress = self.residual(np.zeros(0, np.int64)).stresses(strain).reshape(shaped.shape)
+        stress = self.layers.stresses(strain).reshape(shaped.shape)
         heights = np.diff(np.concatenate([[0.0], 0.5 * (self.z[1:] + self.z[:-1]), self.z[-1:]]))
         constants = self.body.material
         strain_zz = -constants.poisson / constants.young * (stress[0] + stress[1]) + shaped[2]
@@ -89,17 +120,8 @@ class _Section:
 
     def may_flow(self, residual: FloatArray, part: float) -> IntArray:
         """Cells whose von Mises stress passes a part of their yield stress at some instant."""
-        size = np.max([length(deviator(instant + residual)) for instant in self.elastic], axis=0)
+        size = np.max([length(deviator(self.elastic[:, at] + residual)) for at in range(self.y.size)], axis=0)
         return np.flatnonzero(size * np.sqrt(1.5) > part * self.yield_stress)
-
-
-@dataclass(frozen=True, eq=False)
-class _Left:
-    """Plastic strains (6, cell), equivalent plastic strain accumulated (cell), and whether flow was contained."""
-
-    strain: FloatArray
-    accumulated: FloatArray
-    contained: bool = True
 
 
 def rolled_in(
@@ -127,9 +149,9 @@ def rolled_in(
         Number of passes; fewer if one leaves everything as it was.
     substeps : int
         Steps from one position along y to the next, between which the elastic stress is linear. The error falls with
-        their number: 1.5 % of the residual stress with 2 and 16 positions per half-width.
+        their number.
     tolerance : float
-        Accuracy of the stress at each instant, over the yield stress.
+        Accuracy of the stress at each place, over the yield stress.
 
     Returns
     -------
@@ -138,13 +160,18 @@ def rolled_in(
         added to those of the contact; the plastic strains ``plastic_strain_xx`` ... (components of the tensor);
         `equivalent_plastic_strain`, accumulated; `plastic_flow`, the largest equivalent plastic strain of the pass;
         `residual_displacement_z` and `residual_displacement_y` of the top (m, relative to the depth; of a line contact
-        relative to the last depth); `flow_contained`, whether the elastic body contains the flow of every instant. The
-        contact itself is that of the elastic body.
+        relative to the last depth); `converged`, whether every pass reached the tolerance. The contact itself is that
+        of the elastic body.
 
     Raises
     ------
     InvalidInputError
         If an argument is of the wrong kind, there is more than one case, or strains are not small any more.
+
+    Warns
+    -----
+    ConvergenceWarning
+        If the flow of a pass did not reach the tolerance.
 
     Examples
     --------
@@ -166,25 +193,31 @@ def rolled_in(
     section, dims = _section(stress, body, material)
     cells = section.may_flow(np.zeros((6, 1)), NEAR_YIELD)
     count = section.yield_stress.size
-    state = _Left(np.zeros((6, count)), np.zeros(count))
+    state = State(np.zeros((6, count)), np.zeros(count), True)
     kept: list[xr.Dataset] = []
-    flow = _flow(section, cells, tolerance)
+    passage = section.passage(cells, substeps, tolerance) if cells.size else None
     for number in range(1, passes + 1):
         while True:
-            after = _passed(section, flow, cells, state, substeps)
+            after = _passed(passage, cells, state)
             residual, *displaced = section.left(after.strain)
             further = np.setdiff1d(section.may_flow(residual.reshape(6, -1), 1 + tolerance), cells)
             if not further.size:
                 break
             # Residual stress makes cells flow that were not counted: once more with them.
             cells = np.union1d(np.union1d(cells, further), section.may_flow(residual.reshape(6, -1), NEAR_YIELD))
-            flow = _flow(section, cells, tolerance)
+            passage = section.passage(cells, substeps, tolerance)
         grown = float((after.accumulated - state.accumulated).max())
         _check_small(section, after.strain)
         state = after
         kept.append(_labelled(section, dims, state, residual, displaced, grown).expand_dims(pass_number=[number]))
         if 3 * body.material.shear_modulus * grown <= STEADY * tolerance * section.yield_stress.min():
             break
+    if not state.converged:
+        warnings.warn(
+            f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
     joined = xr.concat(kept, "pass_number")
     return describe(joined, "what passes of a contact leave")
 
@@ -198,45 +231,31 @@ def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[
     x, y, z = (np.asarray(positions(first, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))
     # The contact moves along +y: a point meets its leading edge, at the largest y, first.
     order = np.argsort(y)[::-1]
-    values = np.stack([one[name].transpose(*dims.values()).values[order] for name in STRESSES], axis=1)
+    values = np.stack([one[name].transpose(*dims.values()).values[order] for name in STRESSES])
+    if y.size < 2:
+        raise InvalidInputError("stress", f"{y.size} position along y", "the whole passage along y")
     if not np.isfinite(values).all():
         raise InvalidInputError("stress", "values that are not finite", "finite stresses")
-    elastic = np.concatenate([values.reshape(*values.shape[:2], -1), np.zeros((1, 6, x.size * z.size))])
-    section = _Section(body, material, x, z, elastic)
+    elastic = values.reshape(*values.shape[:2], -1)
+    section = _Section(body, material, x, y[order], z, elastic)
     if not section.layered:
         section.cells  # noqa: B018, refuses positions that make no cells
     return section, (dims["x"], dims["z"])
 
 
-def _flow(section: _Section, cells: IntArray, tolerance: float) -> Flow:
-    """Plastic flow in some of the cells."""
-    material, constants = section.material, section.body.material
-    return Flow(
-        section.residual(cells),
-        section.yield_stress[cells],
-        constants.shear_modulus,
-        material.isotropic_hardening,
-        material.kinematic_hardening,
-        tolerance,
-    )
-
-
-def _passed(section: _Section, flow: Flow, cells: IntArray, state: _Left, substeps: int) -> _Left:
+def _passed(passage: Passage | None, cells: IntArray, state: State) -> State:
     """State after one more pass."""
-    total, sums, contained = state.strain.copy(), state.accumulated.copy(), True
-    if cells.size:
-        elastic, strain = section.elastic[:, :, cells], state.strain[:, cells]
-        now = State(strain, state.accumulated[cells], flow.residual.stresses(strain), True)
-        for before, there in pairwise(np.concatenate([elastic[-1:], elastic])):
-            for part in np.arange(1, substeps + 1) / substeps:
-                now = flow.step(before + part * (there - before), now)
-        total[:, cells], sums[cells], contained = now.strain, now.accumulated, now.contained
-    return _Left(total, sums, contained)
+    if passage is None:
+        return state
+    after = passage.after(State(state.strain[:, cells], state.accumulated[cells], state.converged))
+    total, sums = state.strain.copy(), state.accumulated.copy()
+    total[:, cells], sums[cells] = after.strain, after.accumulated
+    return State(total, sums, after.converged)
 
 
 def _check_small(section: _Section, strain: FloatArray) -> None:
     """Raise if plastic strains are not small."""
-    size = np.sqrt((DOUBLED * strain**2).sum(axis=0))
+    size = length(strain)
     if size.max(initial=0.0) > SMALL_STRAIN:
         at = np.unravel_index(int(size.argmax()), (section.x.size, section.z.size))
         place = f"x = {section.x[at[0]]:.4g} m, z = {section.z[at[1]]:.4g} m"
@@ -251,7 +270,7 @@ def _check_small(section: _Section, strain: FloatArray) -> None:
 def _labelled(
     section: _Section,
     dims: tuple[str, str],
-    state: _Left,
+    state: State,
     residual: FloatArray,
     displaced: list[FloatArray],
     grown: float,
@@ -265,6 +284,6 @@ def _labelled(
     return xr.Dataset(
         {name: (dims, field) for name, field in fields.items()}
         | {name: (dims[:1], along) for name, along in tops.items()}
-        | {"plastic_flow": ((), grown), "flow_contained": ((), state.contained)},
+        | {"plastic_flow": ((), grown), "converged": ((), state.converged)},
         coords={dims[0]: section.x, dims[1]: section.z},
     )

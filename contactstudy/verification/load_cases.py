@@ -150,6 +150,31 @@ class ContactCase:
         return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
 
 
+@dataclass(frozen=True)
+class PassesCase:
+    """Passes of Hertz' line contact of half-width and peak pressure 1 over an elastic-plastic half-plane.
+
+    Attributes
+    ----------
+    shear_yield_stress : float
+        k over the peak pressure.
+    friction : float
+        Full sliding: the shear traction on the body is friction times pressure, along +y, as the contact moves.
+    passes : int
+        How many.
+    kinematic_hardening : float
+        Growth of the back stress in tension per plastic strain, over Young's modulus.
+    poisson : float
+        Poisson's ratio.
+    """
+
+    shear_yield_stress: float
+    friction: float
+    passes: int
+    kinematic_hardening: float = 0.0
+    poisson: float = 0.3
+
+
 LOAD_CASES: dict[str, LoadCase] = {
     "full": LoadCase(8.0, Uniform()),
     "middle": LoadCase(8.0, Bump(4.0, 2.0)),
@@ -169,3 +194,11 @@ CONTACT_CASES: dict[str, ContactCase] = {
     "overhanging": ContactCase(8.0, -2.0, crown=0.03),
 }
 """Contacts that are stored, by name."""
+
+PASSES_CASES: dict[str, PassesCase] = {
+    "settling": PassesCase(1 / 3.6, friction=0.0, passes=2),
+    "settling_sliding": PassesCase(1 / 3.1, friction=0.2, passes=5),
+    "flowing": PassesCase(1 / 4.3, friction=0.0, passes=3),
+    "flowing_sliding": PassesCase(1 / 3.4, friction=0.2, passes=2),
+}
+"""Passes whose residual stresses and plastic strains are stored: either side of the shakedown limits 4.0 k, 3.2 k."""

@@ -1,4 +1,4 @@
-"""Stored references: stresses and contacts of bodies with free ends by independent finite elements.
+"""Stored references by independent finite elements: stresses and contacts of bodies with free ends, plastic passes.
 
 The files lie in ``data`` of the project and are part of the package once it is built. They were made with scikit-fem
 by ``python -m tests.finite_elements.generate``, which shares no formula with the solver: Fourier in y, elements of high
@@ -14,9 +14,17 @@ from pathlib import Path
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES, ContactCase, LoadCase
+from contactstudy.verification.load_cases import (
+    CONTACT_CASES,
+    LOAD_CASES,
+    PASSES_CASES,
+    ContactCase,
+    LoadCase,
+    PassesCase,
+)
 
 STRESS_FILE, CONTACT_FILE = "finite_elements_stress.nc", "finite_elements_contact.nc"
+PASSES_FILE = "finite_elements_passes.nc"
 """Files of the stored finite elements."""
 
 
@@ -123,3 +131,45 @@ def load_contact(name: str, path: Path | None = None) -> ContactReference:
     """
     checks.known_name("name", name, CONTACT_CASES)
     return ContactReference(CONTACT_CASES[name], xr.load_dataset(path or data_file(CONTACT_FILE), group=name))
+
+
+@dataclass(frozen=True)
+class PassesReference:
+    """Passes over an elastic-plastic half-plane and what they leave.
+
+    Attributes
+    ----------
+    case : PassesCase
+        Contact and material.
+    left : Dataset
+        Residual stresses `sigma_xx` and `sigma_yy` (z) after the last pass, over the peak pressure; plastic strains
+        after each pass, ``plastic_strain_xx_young`` ... (pass_number, z), times Young's modulus over it. Each with
+        its `error_estimate`.
+    """
+
+    case: PassesCase
+    left: xr.Dataset
+
+
+def load_passes(name: str, path: Path | None = None) -> PassesReference:
+    """Load stored passes.
+
+    Parameters
+    ----------
+    name : str
+        Their name in `PASSES_CASES`.
+    path : Path, optional
+        File to read instead of the package's own.
+
+    Raises
+    ------
+    InvalidInputError
+        If the name is unknown.
+
+    Examples
+    --------
+    >>> load_passes("settling").left.sigma_yy.dims
+    ('z',)
+    """
+    checks.known_name("name", name, PASSES_CASES)
+    return PassesReference(PASSES_CASES[name], xr.load_dataset(path or data_file(PASSES_FILE), group=name))

@@ -39,7 +39,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "friction": lambda full: friction.checks(full=full),
     "heat": lambda full: heat.checks(),
     "wear": lambda full: wear.checks(),
-    "passes": lambda full: passes.checks(),
+    "passes": lambda full: passes.checks(full=full),
     "consistency": lambda full: consistency.checks(),
 }
 """Checks by what they compare with; those of convergence are added at the full level."""

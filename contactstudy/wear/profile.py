@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
+from scipy.interpolate import make_interp_spline
 
 from contactstudy import checks
 from contactstudy.arrays.required import require
@@ -16,8 +21,14 @@ from contactstudy.profiles.measured import Measured
 ROUNDING = 1e-9
 """Distance over another that is rounding. Accuracy."""
 
+CLOSER = 10
+"""Points between the outer column's middle and the end, each half as far from it as the one before. Accuracy."""
+
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)
+"""Gauss points from which a column's mean depth is taken."""
+
 CORRECTIONS = 8
-"""Rounds in which points are moved until the interpolation has the columns' depths as its means. Accuracy."""
+"""Rounds in which points are moved until every column takes its own depth of the interpolation. Accuracy."""
 
 
 def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Sum:
@@ -35,8 +46,9 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Returns
     -------
     Sum
-        Of the unworn profile, as it was, and of the worn depth as a `Measured`, whose points are the middles of the
-        columns and the roller's ends. Over columns of different widths its means are the depths that wore off.
+        Of the unworn profile, as it was, and of the worn depth as a `Measured`, whose points are the middles and edges
+        of the columns and the roller's ends. Over columns of different widths its means are the depths that wore off;
+        between the columns and towards the ends it is smooth.
 
     Raises
     ------
@@ -51,12 +63,13 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.6e-3), max_pressure=1.5e9)
     >>> x = 1e-4 * (np.arange(6) + 0.5)
     >>> depth = xr.DataArray([[0.0] * 6, [2e-6, 1e-6, 1e-6, 1e-6, 1e-6, 2e-6]], dims=("distance", "x"))
-    >>> worn = xr.Dataset({"wear_depth": depth}, {"distance": [0.0, 1e3], "x": x})
-    >>> (1e6 * worn_profile(case, worn).drop(np.array([-3e-4, 0.0]), 0.6e-3)).round(6).tolist()
-    [2.0, 1.0]
+    >>> pressure = xr.zeros_like(depth).expand_dims(y=[0.0], axis=-1)
+    >>> worn = xr.Dataset({"wear_depth": depth, "pressure": pressure}, {"distance": [0.0, 1e3], "x": x})
+    >>> (1e6 * worn_profile(case, worn).drop(x[:3] - 3e-4, 0.6e-3)).round(6).tolist()
+    [2.0, 1.0, 1.0]
     """
     checks.instance("case", case, Case, "a Case")
-    require(worn, "wear_depth", argument="worn")
+    require(worn, "wear_depth", "pressure", argument="worn")
     known = worn["distance"].values
     at = known.size - 1
     if distance is not None:
@@ -64,21 +77,112 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
         at = int(np.abs(known - wanted).argmin())
         if not np.isclose(known[at], wanted, rtol=1e-9, atol=0.0):
             raise InvalidInputError("distance", wanted, f"one of those of the result, such as {known[at]:g} m")
-    half = 0.5 * case.roller.length
-    x = worn["x"].values - (case.roller_start + half)
-    under = np.abs(x) <= half * (1 + ROUNDING)
+    middle = case.roller_start + 0.5 * case.roller.length
+    x = worn["x"].values - middle
+    start, stop = (end - middle for end in case.contact_range)
+    rounding = ROUNDING * case.roller.length
+    under = (x >= start - rounding) & (x <= stop + rounding)
+    columns = _Columns.of(worn, x, under, start, stop)
     depth = worn["wear_depth"].values[at, under]
-    points = depth
-    profile = _measured(case, x[under], points)
-    if "x_width" in worn.coords:
-        nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
-        within = x[under][:, None] + 0.5 * worn["x_width"].values[under][:, None] * nodes
-        for _ in range(CORRECTIONS):
-            means = 0.5 * profile.drop(within.ravel(), case.roller.length).reshape(within.shape) @ weights
-            points = np.maximum(points + depth - means, 0.0)
-            profile = _measured(case, x[under], points)
+    ends = _Ends.of(case, columns, depth, worn["pressure"].values[at, under])
+    profile = _through(case, columns, ends, depth)
     own = case.roller.profile
     return Sum((*(own.terms if isinstance(own, Sum) else (own,)), profile))
+
+
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Columns in the contact, from mid-length, and the points (column, node) at which a profile gives their depth."""
+
+    edges: FloatArray
+    points: FloatArray
+
+    @classmethod
+    def of(cls, worn: xr.Dataset, x: FloatArray, under: NDArray[np.bool_], start: float, stop: float) -> _Columns:
+        """Columns of a result, of different widths or all alike."""
+        own = x[under]
+        alike = "x_width" not in worn.coords
+        widths = np.full(own.size, (x[-1] - x[0]) / (x.size - 1)) if alike else worn["x_width"].values[under]
+        edges = np.append(own - 0.5 * widths, own[-1] + 0.5 * widths[-1])
+        within = np.clip(edges, start, stop)
+        points = 0.5 * (within[1:] + within[:-1])[:, None] + 0.5 * np.diff(within)[:, None] * NODES
+        # Uniform cells have the gap of their middles; one that the end cuts has what it carries on the part inside.
+        slack = ROUNDING * (stop - start)
+        whole = alike & (edges[:-1] >= start - slack) & (edges[1:] <= stop + slack)
+        return cls(within, np.where(whole[:, None], own[:, None], points))
+
+    @property
+    def middles(self) -> FloatArray:
+        """Middles of the columns."""
+        return np.asarray(0.5 * (self.edges[1:] + self.edges[:-1]))
+
+    def depths(self, profile: Callable[[FloatArray], FloatArray]) -> FloatArray:
+        """Depth that each column takes of a profile."""
+        return np.asarray(0.5 * profile(self.points.ravel()).reshape(self.points.shape) @ WEIGHTS)
+
+
+@dataclass(frozen=True, eq=False)
+class _Ends:
+    """Depth that pressure up to a sharp end takes: near it the body sinks in like ``s ln s``, s from the end.
+
+    A pressure p that ends there leaves the slope ``2 p / (pi E') ln s`` on the body on either side of the end, with its
+    plane-strain modulus E' (Johnson, Contact Mechanics, section 2.5). A profile without this part presses a punch's
+    edge into the body: a pressure without bound that would not have outlasted the wear.
+    """
+
+    places: tuple[float, float]
+    slopes: tuple[float, float]
+    length: float
+
+    @classmethod
+    def of(cls, case: Case, columns: _Columns, depth: FloatArray, pressure: FloatArray) -> _Ends:
+        """Both ends of the contact: where the body goes on beyond it, and as far as the part has worn in already."""
+        low, high = case.contact_range
+        middle = case.roller_start + 0.5 * case.roller.length
+        modulus = case.body.material.plane_strain_modulus
+        inward = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(columns.middles)[[0, -1]]
+        beyond = np.array([low - case.body.extent[0], case.body.extent[1] - high])
+        loaded = [float(column[column > 0].mean()) if (column > 0).any() else 0.0 for column in pressure[[0, -1]]]
+        slopes = np.clip(2 * np.array(loaded) / (np.pi * modulus), 0.0, np.maximum(inward, 0.0))
+        slopes[beyond <= np.diff(columns.edges)[[0, -1]]] = 0.0
+        return cls((low - middle, high - middle), (float(slopes[0]), float(slopes[1])), high - low)
+
+    def depth(self, x: FloatArray) -> FloatArray:
+        """Return this part of the depth, at distances from mid-length."""
+        total = np.zeros_like(x)
+        for place, slope in zip(self.places, self.slopes, strict=True):
+            away = np.maximum(np.abs(x - place) / self.length, np.finfo(np.float64).tiny)
+            total += slope * self.length * away * np.log(away)
+        return total
+
+
+def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> Measured:
+    """Smooth profile from which every column takes its depth.
+
+    Without the ends' part, what has worn off up to each edge is interpolated by a spline; its slope is the depth:
+    smooth between the columns and towards the ends, with the columns' means.
+    """
+    half, (start, stop) = 0.5 * case.roller.length, ends.places
+    rest = depth - columns.depths(ends.depth)
+    volume = np.concatenate([[0.0], np.cumsum(rest * np.diff(columns.edges))])
+    spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
+    places = _points(columns, start, stop)
+    points = np.maximum(spline(places) + ends.depth(places), 0.0)
+    middles = np.searchsorted(places, columns.middles)
+    profile = _measured(half, places, points)
+    for _ in range(CORRECTIONS):
+        taken = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
+        points[middles] = np.maximum(points[middles] + depth - taken, 0.0)
+        profile = _measured(half, places, points)
+    return profile
+
+
+def _points(columns: _Columns, start: float, stop: float) -> FloatArray:
+    """Return the columns' edges and middles, and ever closer points towards the contact's ends."""
+    edges, middles = columns.edges, columns.middles
+    closer = 0.5 ** np.arange(1, CLOSER + 1)
+    first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
+    return np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
 
 
 def _overhanging(length: float, step: float) -> FloatArray:
@@ -88,19 +192,14 @@ def _overhanging(length: float, step: float) -> FloatArray:
     # Steps that grow by a factor that a measured profile may have.
     count = max(1, int(np.ceil(np.log2(1 + length / step))))
     steps = 2.0 ** np.arange(count)
-    return np.concatenate([[0.0], length * np.cumsum(steps) / steps.sum()])
+    return np.asarray(length * np.cumsum(steps) / steps.sum())
 
 
-def _measured(case: Case, places: FloatArray, depth: FloatArray) -> Measured:
-    """Worn depth at distances from mid-length, continued to the roller's ends, as a profile."""
-    half = 0.5 * case.roller.length
-    start, stop = (end - (case.roller_start + half) for end in case.contact_range)
-    # Where the roller overhangs the body nothing is worn off; else the last column reaches to the end.
-    before = _overhanging(start + half, places[0] - start)
-    behind = _overhanging(half - stop, stop - places[-1])
-    left = np.column_stack([start - before[::-1], np.zeros(before.size)]) if before.size else [(-half, depth[0])]
-    right = np.column_stack([stop + behind, np.zeros(behind.size)]) if behind.size else [(half, depth[-1])]
-    # The middle of a uniform cell may lie right under an end.
-    inside = np.abs(places) < half * (1 - ROUNDING)
-    x, drops = np.concatenate([left, np.column_stack([places[inside], depth[inside]]), right]).T
+def _measured(half: float, places: FloatArray, depth: FloatArray) -> Measured:
+    """Worn depth from the one end of the contact to the other as a profile of the roller's length."""
+    # Where the roller overhangs the body nothing is worn off.
+    before = _overhanging(places[0] + half, places[1] - places[0])[::-1]
+    behind = _overhanging(half - places[-1], places[-1] - places[-2])
+    x = np.concatenate([places[0] - before, places, places[-1] + behind])
+    drops = np.concatenate([np.zeros(before.size), depth, np.zeros(behind.size)])
     return Measured((half + x).tolist(), drops.tolist(), largest_spike=half)

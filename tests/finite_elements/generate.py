@@ -1,6 +1,6 @@
-"""Make the stored references anew: `python -m tests.finite_elements.generate stress|contact [--out FOLDER]`.
+"""Make the stored references anew: `python -m tests.finite_elements.generate stress|contact|passes [--out FOLDER]`.
 
-On one core `stress` takes ten to fifteen minutes, `contact` about six.
+On one core `stress` takes ten to fifteen minutes, `contact` about six, `passes` about half an hour.
 """
 
 from __future__ import annotations
@@ -8,8 +8,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from contactstudy.verification.stored import CONTACT_FILE, STRESS_FILE
-from tests.finite_elements import contact_file, stress_file
+from contactstudy.verification.stored import CONTACT_FILE, PASSES_FILE, STRESS_FILE
+from tests.finite_elements import contact_file, passes_file, stress_file
 
 DATA = Path(__file__).resolve().parents[2] / "data"
 
@@ -17,13 +17,15 @@ DATA = Path(__file__).resolve().parents[2] / "data"
 def main() -> None:
     """Make one of the files."""
     parser = argparse.ArgumentParser(description="Make a file of finite-element references anew.")
-    parser.add_argument("kind", choices=("stress", "contact"))
+    parser.add_argument("kind", choices=("stress", "contact", "passes"))
     parser.add_argument("--out", metavar="FOLDER", type=Path, default=DATA, help="default: the project's data")
     options = parser.parse_args()
     if options.kind == "stress":
         stress_file.write(options.out / STRESS_FILE)
-    else:
+    elif options.kind == "contact":
         contact_file.write(options.out / CONTACT_FILE)
+    else:
+        passes_file.write(options.out / PASSES_FILE)
 
 
 if __name__ == "__main__":

@@ -187,6 +187,13 @@ def pressed_harder_by(factor: float) -> Callable[[Patch], None]:
     return patched
 
 
+def harder_steel(patch: Patch) -> None:
+    real = passes.ElasticPlastic
+    patch.setattr(
+        passes, "ElasticPlastic", lambda yield_stress, **hardening: real(yield_stress=1.05 * yield_stress, **hardening)
+    )
+
+
 def passed_over_a_body_without_ends(patch: Patch) -> None:
     patch.setattr(passes, "FiniteLengthSpace", lambda length, material: HalfSpace(material=material))
 
@@ -238,6 +245,7 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
     "passes": (
         pressed_harder_by(1.05),
         pressed_harder_by(0.9),
+        harder_steel,
         passed_over_a_body_without_ends,
         strained_more,
     ),

@@ -10,8 +10,16 @@ import xarray as xr
 
 from contactstudy import InvalidInputError
 from contactstudy.verification import closed_forms as ref
-from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES
-from contactstudy.verification.stored import CONTACT_FILE, STRESS_FILE, data_file, load_contact, load_stress
+from contactstudy.verification.load_cases import CONTACT_CASES, LOAD_CASES, PASSES_CASES
+from contactstudy.verification.stored import (
+    CONTACT_FILE,
+    PASSES_FILE,
+    STRESS_FILE,
+    data_file,
+    load_contact,
+    load_passes,
+    load_stress,
+)
 
 
 @pytest.mark.parametrize("name", CONTACT_CASES)
@@ -28,6 +36,22 @@ def test_stored_contacts(name: str) -> None:
     inner = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
     assert float(inner["pressure_error"].max()) < 6e-3
     assert float(inner["pressure_error"].median()) < 3e-3
+
+
+@pytest.mark.parametrize("name", PASSES_CASES)
+def test_stored_passes(name: str) -> None:
+    """No change of volume, stresses of layers with strains xx and yy held, errors worth comparing with."""
+    case, left = load_passes(name).case, load_passes(name).left
+    stated = [left.attrs[key] for key in ("shear_yield_stress", "friction", "kinematic_hardening", "poisson")]
+    assert stated == [case.shear_yield_stress, case.friction, case.kinematic_hardening, case.poisson]
+    assert left.sizes["pass_number"] == case.passes
+    xx, yy, zz = (left[f"plastic_strain_{pair}_young"] for pair in ("xx", "yy", "zz"))
+    assert np.abs(xx + yy + zz).max() < 1e-6
+    held = -(xx + case.poisson * yy).isel(pass_number=-1) / (1 - case.poisson**2)
+    assert np.abs(left["sigma_xx"] - held).max() < 0.08 * np.abs(held).max()
+    allowed = 0.08 if name.startswith("settling") else 0.3
+    for component in ("sigma_xx", "plastic_strain_yz_young"):
+        assert left[component].attrs["error_estimate"] < allowed * float(np.abs(left[component]).max()), component
 
 
 @pytest.mark.parametrize("name", LOAD_CASES)
@@ -64,13 +88,13 @@ def test_stored_friction_is_a_superposition() -> None:
     assert np.abs(sliding.tau_xy).max() > 0.05
 
 
-@pytest.mark.parametrize("load", [load_stress, load_contact])
+@pytest.mark.parametrize("load", [load_stress, load_contact, load_passes])
 def test_unknown_names_are_errors(load: Callable[[str], object]) -> None:
     with pytest.raises(InvalidInputError, match="nothing"):
         load("nothing")
 
 
-@pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE])
+@pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE])
 def test_files_are_small_and_say_how_they_were_made(name: str) -> None:
     assert data_file(name).stat().st_size < 300_000
     stated = xr.load_dataset(data_file(name)).attrs

@@ -1,0 +1,66 @@
+"""The finite elements of passes checked where something is known of them, and against what is stored."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contactstudy.verification.load_cases import PASSES_CASES, PassesCase
+from contactstudy.verification.stored import load_passes
+from tests.finite_elements.passes import YOUNG, PlasticStrip, Strip
+from tests.finite_elements.passes_file import PRODUCTION, solved
+
+COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
+
+
+def test_nothing_flows_below_first_yield() -> None:
+    """First yield of a line contact is at p0 = 3.107 k."""
+    strains, stresses, _ = PlasticStrip(PassesCase(1 / 3.0, friction=0.0, passes=1), COARSE).rolled()
+    assert np.abs(strains).max() == 0
+    assert np.abs(stresses).max() < 1e-12
+
+
+def test_what_is_left_is_the_stress_of_layers() -> None:
+    """Far behind the contact plastic strain is uniform along y, its stress Hooke's with xx and yy held."""
+    strip = PlasticStrip(PASSES_CASES["settling"], COARSE)
+    strains, stresses, spread = strip.rolled()
+    xx, yy, zz, _ = YOUNG * strains[-1]
+    poisson = strip.case.poisson
+    assert xx + yy + zz == pytest.approx(0, abs=1e-9)
+    size = np.abs(stresses).max()
+    assert stresses[:2] == pytest.approx(
+        -np.array([xx + poisson * yy, yy + poisson * xx]) / (1 - poisson**2), abs=0.1 * size
+    )
+    assert stresses[2:] == pytest.approx(0, abs=0.01 * size)
+    assert size > 0.05
+    assert YOUNG * spread.max() < 0.1 * np.abs(YOUNG * strains).max()
+
+
+def test_radial_return_has_its_own_tangent() -> None:
+    """Stresses change with strains as the tangent says, on either side of yield."""
+    strip = PlasticStrip(replace(PASSES_CASES["settling"], kinematic_hardening=0.02), COARSE)
+    rng = np.random.default_rng(2)
+    total, plastic = rng.normal(size=(2, 4, 40)) * np.array([4e-4, 1e-5])[:, None, None]
+    elastic = np.zeros((4, 40))
+    stress, after, tangent = strip.returned(total, plastic, elastic)
+    assert 0 < np.count_nonzero((after != plastic).any(axis=0)) < 40
+    for component in range(4):
+        change = np.zeros((4, 1))
+        change[component] = 1e-9
+        there, back = (strip.returned(total + sign * change, plastic, elastic)[0] for sign in (1, -1))
+        slope = (there - back) / 2e-9 / (2 if component == 3 else 1)
+        assert slope == pytest.approx(tangent[:, component], abs=1e-4 * YOUNG)
+    assert np.isfinite(stress).all()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", PASSES_CASES)
+def test_a_coarse_mesh_comes_near_to_what_is_stored(name: str) -> None:
+    left = load_passes(name).left
+    found = solved(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
+    size = float(np.abs(left["sigma_xx"]).max())
+    assert np.abs(found["sigma_xx"].values - left["sigma_xx"].values).max() < 0.15 * size
+    shear, expected = (one["plastic_strain_yz_young"].sum("z").values for one in (found, left))
+    assert shear == pytest.approx(expected, abs=0.15 * np.abs(expected).max())
