@@ -410,7 +410,7 @@ def free_ends(solved: Solved) -> bool:
     return True
 
 
-FREE = 2e-3
+FREE = 3e-3
 """Largest traction left on the ends."""
 
 

@@ -89,3 +89,12 @@ def test_sent_loads_have_the_moments_alone(row: tuple[FloatArray, FloatArray]) -
     forces = sent(edges, loads).total * widths
     assert np.allclose(forces.sum(axis=1), 0.0, atol=1e-9)
     assert np.allclose(forces @ centres, loads.sum(axis=1), atol=1e-9)
+
+
+def test_rounding_does_not_decide_how_a_load_ends() -> None:
+    """Four cells of which the two in the middle are alike but for rounding, either way."""
+    edges = np.linspace(-1.0, 1.0, 5)
+    rows = np.array([[0.4, 1.0, 1.0, 0.4]]) * (1 + 1e-12 * np.array([[0, 1, -1, 0], [0, -1, 1, 0], [0, 0, 0, 0]]))
+    fine = SmoothLoad.of(rows, edges).means(np.linspace(-1.0, 1.0, 21))
+    assert np.ptp(fine, axis=0).max() < 1e-9
+    assert np.abs(fine - fine[:, ::-1]).max() < 1e-9
