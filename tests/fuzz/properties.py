@@ -393,7 +393,8 @@ def same_points_among_others(solved: Solved) -> bool:
 def free_ends(solved: Solved) -> bool:
     """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
 
-    Nearer to it a cell's edge shows; `end_traction_residual`, which looks there on coarse cells, says by how much.
+    Nearer to it a cell's edge shows; `end_traction_residual`, which looks there on coarse cells, says by how much. On few
+    columns in a thin body more is left farther down too: then it has to be stated.
     """
     case, grid, chance = solved.drawn.case, solved.grid, solved.chance
     ends = [end for end in case.body.extent if np.isfinite(end)]
@@ -406,12 +407,13 @@ def free_ends(solved: Solved) -> bool:
     across = [chance.uniform(*grid.y_range) for _ in range(3)]
     field = stress_field(case.body, solved.result["pressure"], case.friction, ends, across, depths)
     left = max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solved.peak
-    require(left <= FREE, f"traction of {left:.3g} is left on the ends")
+    stated = float(solved.result["end_traction_residual"])
+    require(left <= max(FREE, SAMPLED * stated), f"traction of {left:.3g} is left on the ends, {stated:.3g} is stated")
     return True
 
 
-FREE = 3e-3
-"""Largest traction left on the ends."""
+FREE, SAMPLED = 2e-3, 1.5
+"""Largest traction left on the ends that need not be stated, and over the stated one, which is a sample as well."""
 
 
 def stated_errors(solved: Solved) -> bool:
