@@ -10,10 +10,14 @@ import numpy as np
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, Roller
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import MODELS, Body
+from tests.fuzz.motions import random_motion, scaled_motion, turned_motion
 from tests.fuzz.shapes import magnitude, mirrored, random_profile, stretched
 
 REFINED = 0.06
 """Part of the cases whose cells are refined: they take several seconds."""
+
+MOVING = 0.2
+"""Part of the cases on given cells that roll or are shifted, with stick and slip."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,7 @@ class Drawn:
             end_distance=total - case.roller_start - case.roller.length,
             tilt=-case.tilt,
             load_position=None if position is None else total - position,
+            motion=turned_motion(case.motion),
         )
         if grid is None:
             return replace(self, case=other)
@@ -82,6 +87,7 @@ class Drawn:
             coupled=case.coupled,
             tilt=case.tilt,
             load_position=some(case.load_position, length),
+            motion=scaled_motion(case.motion, length, modulus),
         )
         if grid is None:
             return replace(self, case=other)
@@ -137,7 +143,12 @@ def random_drawn(chance: Random, *, refined: bool | None = None) -> Drawn:
     case = replace(case, **_tilt(chance, case, strain))
     if chance.random() < 0.3:
         case = replace(case, max_pressure=None, load=case.normal_load)
-    return _with_cells(chance, case, refined)
+    drawn = _with_cells(chance, case, refined)
+    if drawn.grid is not None and chance.random() < MOVING:
+        friction = abs(case.friction) or 0.1
+        moving = replace(case, friction=friction, motion=random_motion(chance, case, friction))
+        drawn = replace(drawn, case=moving)
+    return drawn
 
 
 def _random_body(chance: Random, material: Material, length: float, half_width: float) -> Body:

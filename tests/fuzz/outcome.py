@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from random import Random
 
 from contactstudy import ContactStudyError, MagnitudeWarning
-from tests.fuzz import properties
+from tests.fuzz import motion_properties, properties
 from tests.fuzz.drawn import Drawn, random_drawn
-from tests.fuzz.properties import Solved, ViolationError
+from tests.fuzz.solved import Solved, ViolationError, run
 
 
 @dataclass(frozen=True)
@@ -64,16 +64,19 @@ def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
 
 def _checked(drawn: Drawn, chance: Random, checked: list[str]) -> tuple[str, str]:
     """Solve a case and note each property as it is looked at."""
-    result = properties.run(drawn)
+    result = run(drawn)
     if not bool(result["converged"]):
         return "not converged", ""
     solved = Solved(drawn, result, chance)
-    for holds in properties.ALWAYS:
+    always, in_turn = properties.ALWAYS, properties.IN_TURN
+    if solved.moves:
+        always, in_turn = always + motion_properties.ALWAYS, motion_properties.IN_TURN
+    for holds in always:
         checked.append(holds.__name__)
         if not holds(solved):
             checked.pop()
     # One that there is anything to look at for.
-    for holds in chance.sample(properties.IN_TURN, len(properties.IN_TURN)):
+    for holds in chance.sample(in_turn, len(in_turn)):
         checked.append(holds.__name__)
         if holds(solved):
             break
