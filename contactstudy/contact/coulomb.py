@@ -22,6 +22,7 @@ import numpy as np
 from scipy.sparse import linalg
 
 from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.projected import balanced_tractions
 
 Operator = Callable[[FloatArray], FloatArray]
 
@@ -33,6 +34,9 @@ GUESSED = 1e-6
 
 RESTART = 60
 """Directions that the linear solver keeps. Speed."""
+
+ASTRAY = 15
+"""Steps of Newton's method after which it has lost its way, and begins again from a descent. Speed."""
 
 LINEAR_STEPS = 5
 """Restarts after which a linear system is left as it is. Speed."""
@@ -64,6 +68,8 @@ class CoulombProblem:
         Violation, over the largest bound and the largest rigid slip, at which the iteration stops.
     max_steps : int
         Bound on the steps of Newton's method.
+    symmetric : bool
+        Whether B is symmetric, so that the tractions minimise an energy.
     """
 
     relief: Operator
@@ -76,10 +82,15 @@ class CoulombProblem:
     shares: FloatArray
     tolerance: float = 1e-6
     max_steps: int = 40
+    symmetric: bool = False
 
     def slip(self, traction: FloatArray, amplitudes: FloatArray) -> FloatArray:
         """Slip (2, cell) under tractions."""
-        return self.rigid + np.tensordot(amplitudes, self.modes, axes=1) - self.relief(traction)
+        return self.rigid_slip(amplitudes) - self.relief(traction)
+
+    def rigid_slip(self, amplitudes: FloatArray) -> FloatArray:
+        """Slip (2, cell) of rigid surfaces."""
+        return np.asarray(self.rigid + np.tensordot(amplitudes, self.modes, axes=1))
 
 
 @dataclass(frozen=True, eq=False)
@@ -208,9 +219,27 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             # Cells that go round in circles do not if fewer of them change at once (in the end one by one: Murty).
             again = sticks.tobytes() in seen
             share = 0.5 * share if again else min(1.0, 2 * share)
-            accuracy = max(0.1 * accuracy, problem.tolerance) if again else LINEAR_TOLERANCE
-            seen.add(sticks.tobytes())
+        if problem.symmetric and steps % ASTRAY == 0 and not converged:
+            traction, amplitudes = balanced_tractions(
+                relief,
+                counted.rigid_slip,
+                problem.works,
+                problem.resultants,
+                _within(bound, traction),
+                amplitudes,
+                scale,
+                bound,
+                problem.shares,
+            )
+            slip, share = counted.slip(traction, amplitudes), 1.0
+            sticks, seen = np.hypot(*traction) < (1 - GUESSED) * bound, set()
     return CoulombSolution(traction, slip, sticks, amplitudes, steps, relief.number, converged)
+
+
+def _within(bound: FloatArray, traction: FloatArray) -> FloatArray:
+    """Tractions put back onto their bound where they exceed it."""
+    size = np.hypot(*traction)
+    return np.asarray(traction * np.where(size > bound, bound / np.where(size > 0, size, 1.0), 1.0))
 
 
 def _some(cells: BoolArray, share: float) -> BoolArray:
@@ -237,8 +266,7 @@ def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> Bool
 
 def _scale(problem: CoulombProblem, amplitudes: FloatArray) -> float:
     """Size of the rigid slip, to which violations are related."""
-    rigid = problem.rigid + np.tensordot(amplitudes, problem.modes, axes=1)
-    return max(float(np.hypot(*rigid).max(initial=0.0)), np.finfo(float).tiny)
+    return max(float(np.hypot(*problem.rigid_slip(amplitudes)).max(initial=0.0)), np.finfo(float).tiny)
 
 
 class _Step:

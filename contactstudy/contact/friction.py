@@ -104,6 +104,7 @@ def tractions_of(
         shares=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
         tolerance=tolerance,
         max_steps=max_steps,
+        symmetric=not rolling,
     )
     if coarser is None:
         coarser = _solved_on_coarser(motion, surfaces, pressure, bound, cells, max_steps=max_steps, before=before)

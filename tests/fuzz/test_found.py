@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, profiles, solve, stress_field
+from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, Shift, profiles, solve, stress_field
 
 
 @pytest.mark.parametrize("cells", [130, 128])
@@ -41,3 +41,24 @@ def test_stresses_below_a_contact_one_cell_wide() -> None:
     (row,) = np.flatnonzero(pressure.any("x"))
     stress = stress_field(body, pressure, x=pressure["x"][[7]], y=pressure["y"][[row]], z=[0.0])
     assert stress["sigma_zz"].item() == pytest.approx(-pressure[7, row].item())
+
+
+@pytest.mark.parametrize(
+    "motion", [Shift(x=3.6e-11, y=-1.1e-11), Shift(force_x=-2e-10), Shift(force_y=3e-10, x=1e-11)], ids=str
+)
+def test_a_small_shift_of_a_contact_that_slips_by_pressure_converges(motion: Shift) -> None:
+    """Newton's method went round in circles: the pressure alone displaces the surfaces by more than the shift."""
+    material = Material(4.625e9, 0.3)
+    case = Case(
+        body=FiniteLengthSpace(length=2.407632396547847e-08, material=material),
+        roller=Roller(radius=2.932e-6, length=3.741e-8, profile=profiles.FullCrown(crown_radius=5.419e-6)),
+        load=7.008e-08,
+        friction=0.1,
+        end_distance=-0.6665e-8,
+        tilt=-4.716e-3,
+        motion=motion,
+    )
+    window = (-9.248014993268249e-08, 9.248014993268249e-08)
+    result = solve(case, Grid((0.0, case.body.length), window, 6, 12), stresses=False)
+    assert bool(result["converged"])
+    assert float(result["slip_error"]) < 1e-5

@@ -12,6 +12,7 @@ from contactstudy import InvalidInputError
 from tests.fuzz import __main__ as long_run
 from tests.fuzz import outcome, properties
 from tests.fuzz.outcome import Outcome, outcome_of
+from tests.fuzz.solved import ViolationError
 
 
 @pytest.fixture
@@ -62,6 +63,6 @@ def test_errors_that_are_not_the_packages_own_are_violations(monkeypatch) -> Non
         assert outcome_of(Random(0)).kind == kind
     monkeypatch.undo()
     # The package's own error for a variant of a case that it has solved is one as well.
-    for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), properties.ViolationError()):
+    for error in (ZeroDivisionError(), InvalidInputError("a", 1, "b"), ViolationError()):
         monkeypatch.setattr(properties, "ALWAYS", (fails(error),))
         assert outcome_of(Random(3)).kind == "violation"

@@ -1,0 +1,69 @@
+"""Tractions by descent: the law without a guess of the cells that slip."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contactstudy.contact import coulomb
+from contactstudy.contact.coulomb import solve_coulomb
+from contactstudy.contact.projected import balanced_tractions, projected_tractions
+from tests.contact.test_coulomb import holds, problem
+
+CELLS = 24
+
+
+@pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
+def test_the_descent_ends_where_newton_does(size: float) -> None:
+    random = np.random.default_rng(3)
+    bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
+    asked = replace(problem(size * random.standard_normal((2, CELLS)), bound), shares=ones)
+    found, slip = projected_tractions(asked.relief, asked.rigid, np.zeros((2, CELLS)), bound, ones)
+    assert np.abs(found - solve_coulomb(asked).traction).max() < 1e-5
+    assert np.abs(slip - asked.slip(found, np.zeros(0))).max() < 1e-9 * max(size, 1.0)
+
+
+@pytest.mark.parametrize("part", [0.05, 0.5, 0.9])
+def test_rigid_slips_make_the_prescribed_forces(part: float) -> None:
+    random = np.random.default_rng(4)
+    bound, ones = random.uniform(0.2, 1.0, CELLS), np.ones(CELLS)
+    forces = part * bound.sum() * np.array([0.6, -0.8])
+    asked = replace(problem(0.1 * random.standard_normal((2, CELLS)), bound, forces=forces), shares=ones)
+    expected = solve_coulomb(asked)
+    found, amplitudes = balanced_tractions(
+        asked.relief,
+        asked.rigid_slip,
+        asked.works,
+        asked.resultants,
+        np.zeros((2, CELLS)),
+        np.zeros(2),
+        1.0,
+        bound,
+        ones,
+    )
+    assert (asked.works * found).sum(axis=(1, 2)) == pytest.approx(forces, abs=1e-4 * bound.sum())
+    assert np.abs(found - expected.traction).max() < 1e-3
+    assert amplitudes == pytest.approx(expected.amplitudes, rel=1e-2)
+
+
+@pytest.mark.parametrize("prescribed", [False, True])
+def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, prescribed: bool) -> None:
+    monkeypatch.setattr(coulomb, "ASTRAY", 3)
+    descents = []
+
+    def counted(*arguments: object) -> object:
+        descents.append(arguments)
+        return balanced_tractions(*arguments)
+
+    monkeypatch.setattr(coulomb, "balanced_tractions", counted)
+    random = np.random.default_rng(5)
+    bound = random.uniform(0.2, 1.0, CELLS)
+    forces = 0.5 * bound.sum() * np.array([0.6, -0.8]) if prescribed else None
+    asked = problem(random.standard_normal((2, CELLS)), bound, forces=forces)
+    asked = replace(asked, shares=np.ones(CELLS), symmetric=True)
+    found = solve_coulomb(asked)
+    assert found.converged
+    assert descents
+    holds(asked, found)
