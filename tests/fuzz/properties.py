@@ -256,12 +256,19 @@ def loads_on_the_top(solved: Solved) -> bool:
         field = stress_field(case.body, pressure, case.friction, [grid.x[i]], [grid.y[j]], [0.0], smooth=smooth)
         # A smooth load keeps the force of a cell; in its middle it may differ, up to the steepest that a cell can hold.
         own = -field["sigma_zz"].item() if smooth else p
-        require(p == 0 or 0 <= own <= 1.5 * p * (1 + 1e-6), f"a smooth load of {own / p if p else own:.6g} of its mean")
+        low, high = -MOMENTS * solved.peak, 1.5 * p * (1 + 1e-6) + MOMENTS * solved.peak
+        require(
+            p == 0 or low <= own <= high, f"a smooth load of {own / solved.peak:.6g}, its mean is {p / solved.peak:.6g}"
+        )
         for name, expected in (("sigma_zz", -own), ("tau_yz", -case.friction * own), ("tau_xz", 0.0)):
             found = field[name].item()
             off = abs(found - expected) / solved.peak
             require(off <= 1e-6, f"{name} = {found / solved.peak:.6g} on the top, not {expected / solved.peak:.6g}")
     return True
+
+
+MOMENTS = 0.03
+"""What a fine cell carries for the moments of its neighbours, where a load falls steeply to nothing in few cells."""
 
 
 def same_points_among_others(solved: Solved) -> bool:
