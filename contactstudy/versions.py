@@ -13,8 +13,9 @@ OTHERS = ("dask", "matplotlib", "pandas", "panel", "clarabel")
 """What is worth knowing besides; the last two come with the extras `explore` and `shakedown`."""
 
 
+@cache
 def version_of(package: str) -> str:
-    """Version of an installed package; "unknown" if there is none.
+    """Version of an installed package; "unknown" if there is none. It is looked up once: a study asks for each case.
 
     Examples
     --------

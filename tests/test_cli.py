@@ -55,6 +55,19 @@ def test_failures_give_code_1_and_are_named(study_file, capsys):
     assert command("rerun", "results/small", "--workers", 0) == 1
 
 
+def test_status_says_an_equal_reason_once(study_file, capsys):
+    study_file.write_text(as_toml(small_study(sweep={"e_over_a": [0, 1, 2], "friction": [FAILS]})))
+    run(study_file)
+    capsys.readouterr()
+    assert command("status", "results/small") == 1
+    output = capsys.readouterr().out
+    assert output.count("this friction fails") == 1
+    assert "(and 2 more)" in output
+    assert "every case: --all" in output
+    command("status", "results/small", "--all")
+    assert capsys.readouterr().out.count("this friction fails") == 3
+
+
 def test_plan_solves_nothing(study_file, tmp_path, capsys):
     assert command("plan", study_file) == 0
     output = capsys.readouterr().out

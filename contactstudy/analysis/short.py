@@ -152,9 +152,9 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
             yield _settled(one, f"end_load_{end}", f"load on the last half-width, {place}")
     if {"pressure", "gap"} <= set(one.data_vars) and bool((one["pressure"] > 0).any()):
         edges = contact_edges(one)
-        yield _row(edges, "contact_length", "length of the contact")
+        yield _row(edges, "contact_length", "length of the contact", UNBOUNDED)
     elif "contact_length" in one:
-        yield _row(one, "contact_length", "length of the contact")
+        yield _row(one, "contact_length", "length of the contact", UNBOUNDED)
     yield from _stress(one)
     for name, meaning in PLAIN.items():
         if name in one and float(one[name]) != 0 and np.isfinite(float(one[name])):
@@ -225,4 +225,4 @@ def _stress(one: xr.Dataset) -> Iterator[MainNumber]:
         return
     yield _settled(one, "peak_von_mises", meaning)
     if "peak_von_mises_z" in one:
-        yield _row(one, "peak_von_mises_z", "depth of the largest von Mises stress")
+        yield _row(one, "peak_von_mises_z", "depth of the largest von Mises stress", UNBOUNDED)

@@ -285,6 +285,9 @@ def small_tilt(value: object) -> float:
     tilt = checks.finite("tilt", value, "radians")
     if abs(tilt) > LARGEST_TILT:
         raise InvalidInputError(
-            "tilt", tilt, f"a small angle, at most {LARGEST_TILT} radians", "degrees need numpy.radians"
+            "tilt",
+            tilt,
+            f"a small angle, at most {LARGEST_TILT} radians",
+            "1 mrad is 0.001, and degrees need numpy.radians",
         )
     return tilt

@@ -13,7 +13,7 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import checked_drop, in_words
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -71,7 +71,7 @@ class Roller:
         if self.material is not None and self.ends == "none":
             made += ", as a half-space"
         sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
-        return f"Roller({sizes}, {self.profile!r}, end drop {quantity(drop, 'm')}, {made})"
+        return f"Roller({sizes}, {in_words(self.profile)}, end drop {quantity(drop, 'm')}, {made})"
 
     @staticmethod
     def combined_radius(first: float, second: float) -> float:

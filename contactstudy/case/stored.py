@@ -18,7 +18,7 @@ from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Profile, Shape, Sum, checked_drop
+from contactstudy.profiles.base import Profile, Shape, Sum, checked_drop, in_words
 
 SAMPLES = 401
 """Points at which a profile of the user's own is kept."""
@@ -99,7 +99,7 @@ def _as_table(part: Any, length: float) -> Any:
         positions = np.linspace(-0.5, 0.5, SAMPLES)
         drops = checked_drop(part, positions * length, length)
         known = [float(drop) if np.isfinite(drop) else None for drop in drops]
-        return _as_table(Sampled(repr(part), tuple(positions.tolist()), tuple(known)), length)
+        return _as_table(Sampled(in_words(part), tuple(positions.tolist()), tuple(known)), length)
     if isinstance(part, (tuple, list)):
         return [_as_table(entry, length) for entry in part]
     if isinstance(part, (bool, np.bool_)):

@@ -14,6 +14,7 @@ from contactstudy.bodies.models import EndedBody, FiniteLengthSpace, HalfSpace
 from contactstudy.case.friction import AxialFriction
 from contactstudy.case.motion import Sliding
 from contactstudy.profiles import Cylinder, Profile, Shape
+from contactstudy.profiles.base import in_words
 
 if TYPE_CHECKING:
     from contactstudy.case.case import Case
@@ -122,7 +123,7 @@ def _profile(profile: Profile) -> str:
     """Profile in words."""
     if profile == Cylinder():
         return "cylinder with sharp ends"
-    text = repr(profile)
+    text = in_words(profile)
     return text.replace("_", " ").replace("=", " ").replace("(", " (") if isinstance(profile, Shape) else text
 
 

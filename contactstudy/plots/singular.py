@@ -63,6 +63,6 @@ def near_singular(one: xr.Dataset, ends: list[float], x: FloatArray | None = Non
 
 
 def mark_at_top(ax: Axes, x: list[float], color: Any) -> None:
-    """Mark values without a limit at the top of the axes."""
+    """Mark values without a limit at the top of the axes; those beyond the axes' ends are not seen."""
     if x:
-        ax.plot(x, [AT_TOP] * len(x), transform=ax.get_xaxis_transform(), color=color, clip_on=False, **MARK)
+        ax.plot(x, [AT_TOP] * len(x), transform=ax.get_xaxis_transform(), color=color, **MARK)

@@ -56,7 +56,8 @@ def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear
     distances = worn["distance"].values
     for number, style in enumerate(line_styles(distances.size)):
         values = np.where(loaded, factor * worn[variable].transpose("distance", "x").values[number], np.nan)
-        ax.plot(places, values, label=f"{distances[number]:.3g} m", **style)
+        distance = np.format_float_positional(distances[number], precision=4, fractional=False, trim="-")
+        ax.plot(places, values, label=f"{distance} m", **style)
     if variable == "wear_depth" and not ax.yaxis_inverted():
         ax.invert_yaxis()
     ax.set_xlabel("position along the axis, $x$ (mm)")

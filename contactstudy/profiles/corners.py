@@ -10,7 +10,7 @@ from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Profile, Shape, checked_drop, local_radius
+from contactstudy.profiles.base import Profile, Shape, checked_drop, in_words, local_radius
 
 
 @dataclass(frozen=True, repr=False)
@@ -69,7 +69,7 @@ class EffectiveLength(Shape):
 
     def __repr__(self) -> str:
         length, drop = (quantity(value, "m") for value in (self.effective_length, self.end_drop))
-        return f"EffectiveLength({self.profile!r}, effective_length={length}, drop {drop} at its end)"
+        return f"EffectiveLength({in_words(self.profile)}, effective_length={length}, drop {drop} at its end)"
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

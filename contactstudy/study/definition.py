@@ -221,7 +221,8 @@ class Study:
         try:
             content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
         except (OSError, ValueError) as error:  # a ValueError is no TOML, no UTF-8, or a number of thousands of digits
-            raise StudyFileError(f"study file {path}: {error}") from error
+            reason = error.strerror if isinstance(error, OSError) and error.strerror else error
+            raise StudyFileError(f"study file {path}: {reason}") from error
         except RecursionError:
             raise StudyFileError(f"study file {path}: tables or lists are nested too deeply to be read") from None
         return cls.from_mapping({"name": path.stem} | with_files_in(content, path.parent))

@@ -99,7 +99,7 @@ def execute(
         for job in Dispatched(jobs):
             yield _perform_here(job, solver)
         return
-    with _client(len(jobs), workers, scheduler) as client:
+    with _client(len(jobs), workers, scheduler, say) as client:
         yield from _drive(client, Crew(client, jobs[0].folder, wait, say), jobs, solver)
 
 
@@ -124,9 +124,10 @@ def _perform_here(job: Job, solver: Solver | None) -> Record:
 
 
 @contextlib.contextmanager
-def _client(jobs: int, workers: int | None, scheduler: str | None) -> Iterator[Client]:
+def _client(jobs: int, workers: int | None, scheduler: str | None, say: Callable[[str], None]) -> Iterator[Client]:
     """Client of the given scheduler, or of local processes that end with the block."""
     if scheduler is not None:
+        say(f"connecting to the dask scheduler at {scheduler}, for up to {START_SECONDS:g} s")
         with _client_of(scheduler) as client:
             yield client
         return

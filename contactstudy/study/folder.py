@@ -117,7 +117,13 @@ class Folder:
         try:
             content = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
-            reason = "there is no such folder" if not self.path.exists() else f"study.json: {error.strerror}"
+            reason = "it holds no study.json; give what `contactstudy run` wrote into, such as results/NAME"
+            if not self.path.exists():
+                reason = "there is no such folder"
+            elif self.path.is_file():
+                reason = "it is a file; give the folder that `contactstudy run` wrote into, such as results/NAME"
+            elif path.exists():
+                reason = f"study.json: {error.strerror}"
             raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error
         except ValueError as error:
             raise StudyFileError(f"{self.path} is not the folder of a study: study.json: {error}") from error

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from contactstudy.study.folder import Entry
@@ -11,7 +11,7 @@ from contactstudy.study.plan import Plan
 from contactstudy.study.progress import duration
 from contactstudy.study.run import RunReport
 
-# Longest list of cases on the screen; ``--all`` shows every one.
+# Most reasons on the screen; ``--all`` lists every case with its own.
 SHOWN = 20
 
 
@@ -42,11 +42,7 @@ def run_lines(report: RunReport) -> Iterator[str]:
     """Lines on what a run did."""
     counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
     yield f"{len(report.plan.cases)} cases: {counts}; {report.solved} solved now"
-    reasons: dict[str, list[str]] = {}
-    for case, entry in report.failures:
-        reasons.setdefault(entry.reason, []).append(case.name)
-    for reason, names in list(reasons.items())[:SHOWN]:
-        yield f"  failed: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
+    yield from _alike(("failed", entry.reason, case.name) for case, entry in report.failures)
     if report.failures:
         yield f"  details in {shown(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {shown(report.folder)}"
@@ -70,26 +66,35 @@ def stale_lines(report: RunReport) -> Iterator[str]:
 
 
 def skipped_lines(plan: Plan) -> Iterator[str]:
-    """Lines on the cases that cannot be solved: of those with the same reason the first, and how many more."""
-    reasons: dict[str, list[str]] = {}
-    for case in plan.skipped:
-        reasons.setdefault(case.reason, []).append(case.name)
-    for reason, names in list(reasons.items())[:SHOWN]:
-        yield f"  skipped: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
+    """Lines on the cases that cannot be solved."""
+    yield from _alike(("skipped", case.reason, case.name) for case in plan.skipped)
+
+
+def _alike(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
+    """Lines on cases, each its status, reason and name: of those that are alike the first, and how many more."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for status, reason, name in cases:
+        groups.setdefault((status, reason), []).append(name)
+    for (status, reason), names in list(groups.items())[:SHOWN]:
+        yield f"  {status}: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
+    if len(groups) > SHOWN:
+        yield f"  ... and {len(groups) - SHOWN} more reasons"
 
 
 def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterator[str]:
     """Lines of counts, and of the cases that need attention, or of every case."""
     for status, count in Counter(entry.status for entry in entries).items():
         yield f"  {count} {status}"
-    if not everything:
-        yield from skipped_lines(plan)
-    pairs = zip(plan.cases, entries, strict=True)
-    listed = [(case, entry) for case, entry in pairs if everything or (entry.reason and not case.reason)]
-    for case, entry in listed if everything else listed[:SHOWN]:
-        yield f"  {entry.status}: {case.id[:16]} {case.name}" + (f": {entry.reason}" if entry.reason else "")
-    if not everything and len(listed) > SHOWN:
-        yield f"  ... and {len(listed) - SHOWN} more (--all)"
+    named = [(case, entry, f"{case.id[:16]} {case.name}") for case, entry in zip(plan.cases, entries, strict=True)]
+    if everything:
+        for _, entry, name in named:
+            yield f"  {entry.status}: {name}" + (f": {entry.reason}" if entry.reason else "")
+        return
+    yield from skipped_lines(plan)
+    listed = [(entry.status, entry.reason, name) for case, entry, name in named if entry.reason and not case.reason]
+    yield from _alike(listed)
+    if len(listed) > 1:
+        yield "  every case: --all"
 
 
 def forecast_lines(plan: Plan, entries: list[Entry]) -> Iterator[str]:

@@ -23,7 +23,8 @@ STUDY_ATTRIBUTE = "contactstudy_study"
 
 def is_opened(table: xr.Dataset) -> bool:
     """Whether a Dataset is an opened study, or a selection of one."""
-    checks.instance("table", table, xr.Dataset, "an xarray.Dataset of parameters, or an opened study")
+    allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
+    checks.instance("table", table, xr.Dataset, allowed)
     return STUDY_ATTRIBUTE in table.attrs and "case_id" in table
 
 

@@ -19,7 +19,8 @@ def singular() -> xr.Dataset:
 
 
 def test_a_settled_peak_has_its_error_and_a_cell_says_that_it_has_none(solved: xr.Dataset) -> None:
-    assert "no error known" in short(solved)["peak_pressure"].remark
+    for name in ("peak_pressure", "contact_length", "peak_von_mises_z"):
+        assert "no error known" in short(solved)[name].remark, name
     settled = solved.assign(peak_pressure=1.6234e9, peak_pressure_error=0.0121e9)
     row = short(settled)["peak_pressure"]
     assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")

@@ -28,6 +28,16 @@ def test_the_pressure_stops_before_a_singular_end_and_a_mark_stands_there(sharp)
     assert np.nanmax(line.get_ydata()) < 0.5 * float(sharp["pressure"].max()) / p0
 
 
+def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
+    ax = plots.plot_axial_pressure(sharp)
+    marks = ax.lines[-1]
+    first, last = marks.get_xdata()
+    ax.set_xlim(0.5 * (first + last), 1.1 * last)
+    ax.figure.canvas.draw()
+    assert ax.get_tightbbox().x0 > ax.transData.transform((first, 0.0))[0]
+    assert marks.get_clip_on()
+
+
 def test_the_colours_of_the_map_stop_before_a_singular_end(sharp):
     (mesh,) = plots.plot_pressure_map(sharp).collections
     assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])

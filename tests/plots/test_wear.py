@@ -26,6 +26,8 @@ def test_depth_points_down_and_loads_are_in_newton_per_millimetre(worn):
 def test_lines_differ_and_are_named_by_the_distance(worn, assert_nothing_clipped):
     ax = plots.plot_wear(worn)
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0 m", "10 m"]
+    long = plots.plot_wear(worn.assign_coords(distance=[1e4 / 3, 2e4]))
+    assert [text.get_text() for text in long.get_legend().get_texts()] == ["3333 m", "20000 m"]
     assert len({line.get_linestyle() for line in ax.lines}) == 2
     assert_nothing_clipped(ax.figure)
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from contactstudy import InvalidInputError, Roller
 from contactstudy.profiles import (
     Cylinder,
+    EffectiveLength,
     Ellipsoid,
     FujiwaraKawase,
     FullCrown,
@@ -114,6 +115,17 @@ def test_a_drop_that_is_a_number_only_near_the_middle() -> None:
     roller = Roller(radius=RADIUS, length=LENGTH, profile=Own())
     with pytest.raises(InvalidInputError, match="it returned nan at x = "):
         roller.clearance(np.array([-0.45 * LENGTH, 0.0]), np.zeros(1))
+
+
+def test_a_profile_of_ones_own_has_its_name_and_no_address() -> None:
+    class Own:
+        def drop(self, x, length):
+            return np.zeros_like(x)
+
+    for profile in (Own(), Sum((Own(), Cylinder())), Halves(Own(), Cylinder()), EffectiveLength(Own(), 0.5 * LENGTH)):
+        said = repr(Roller(radius=RADIUS, length=LENGTH, profile=profile))
+        assert "Own()" in said
+        assert " at 0x" not in said
 
 
 def test_a_drop_may_be_a_list() -> None:

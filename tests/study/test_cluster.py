@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from contactstudy.study import open_study, run_study
+from contactstudy.study import StudyFileError, open_study, run_study
 from contactstudy.study.folder import Folder
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import DIES, solve_fake
@@ -27,6 +27,13 @@ def test_the_documentation_names_these_commands():
     assert WORKER in text
     for name, value in ENVIRONMENT.items():
         assert f"{name}={value}" in text
+
+
+def test_a_run_says_that_it_seeks_the_scheduler_before_it_gives_up(tmp_path, monkeypatch):
+    monkeypatch.setattr("contactstudy.study.executor.START_SECONDS", 0.2)
+    with pytest.raises(StudyFileError, match="no dask scheduler answers"):
+        run_study(small_study(), tmp_path, scheduler="tcp://127.0.0.1:1", solver=solve_fake)
+    assert "connecting to the dask scheduler at tcp://127.0.0.1:1" in (tmp_path / "run.log").read_text()
 
 
 @pytest.mark.system

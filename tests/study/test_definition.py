@@ -122,6 +122,12 @@ def test_unknown_names_are_answered_with_the_nearest(content, hint):
         small_study(**content)
 
 
+def test_a_missing_file_is_named_once(tmp_path):
+    with pytest.raises(StudyFileError) as refused:
+        Study.from_toml(tmp_path / "nowhere.toml")
+    assert str(refused.value).count("nowhere.toml") == 1
+
+
 def test_unknown_key_of_the_file(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[bsae]\nyoung = 1.0\n")

@@ -40,5 +40,4 @@ def test_the_tutorial_shows_one_study_as_file_and_in_python():
 def test_named_files_exist():
     for page in (ROOT / "docs").rglob("*.md"):
         for name in re.findall(r"(?:tests|studies|contactstudy|docs)/[\w/]+\.(?:py|toml|md)", page.read_text()):
-            if name not in ("studies/ends.toml",):  # the example's name
-                assert (ROOT / name).exists(), (page.name, name)
+            assert (ROOT / name).exists(), (page.name, name)

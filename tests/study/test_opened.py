@@ -120,6 +120,12 @@ def test_collect_keeps_summaries_only(opened, tmp_path):
     assert summary["peak_pressure"].attrs["units"] == "Pa"
 
 
+def test_a_file_instead_of_the_folder_is_told_apart(tmp_path):
+    (tmp_path / "case.nc").write_text("")
+    with pytest.raises(StudyFileError, match="it is a file; give the folder"):
+        open_study(tmp_path / "case.nc")
+
+
 def test_a_folder_without_a_study(tmp_path):
     with pytest.raises(StudyFileError, match="not the folder of a study"):
         open_study(tmp_path)
