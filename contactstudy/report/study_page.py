@@ -34,8 +34,8 @@ CAPTIONS = {
 }
 """What figures show, by name."""
 
-MOST_FIELDS = 300
-"""Cases up to which figures of fields are drawn. Speed."""
+MOST_FIELDS = 60
+"""Cases up to which figures of fields are drawn: the file of every one is opened for them. Speed."""
 
 
 class Row(NamedTuple):
