@@ -20,6 +20,10 @@ _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 def __getattr__(name: str) -> object:
     """Import a public name on first use, and register ``Dataset.contact`` as soon as xarray is there."""
+    if name == "__version__":
+        from contactstudy.versions import version_of
+
+        return version_of(__name__)
     try:
         value: object = _public_name(name)
     except AttributeError as error:

@@ -55,3 +55,5 @@ from .study.errors import StudyFileError as StudyFileError
 from .study.opened import open_study as open_study
 from .study.run import run_study as run_study
 from .versions import show_versions as show_versions
+
+__version__: str

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import subprocess
 import sys
 from pathlib import Path
@@ -34,6 +35,10 @@ def test_no_public_name_is_hidden_by_a_module_of_that_name() -> None:
     assert {"analysis", "plots", "profiles"} <= shared
     for name in shared:
         assert getattr(contactstudy, name) is importlib.import_module(f"contactstudy.{name}"), name
+
+
+def test_the_version_is_that_of_the_installation() -> None:
+    assert contactstudy.__version__ == importlib.metadata.version("contactstudy")
 
 
 def test_a_name_that_is_nearly_right_is_suggested() -> None:
