@@ -23,7 +23,7 @@ from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact, labelled
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact, settled_values
-from contactstudy.contact.settled_tractions import middle_of, settled_tractions
+from contactstudy.contact.settled_tractions import settled_tractions
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import TopLoad, sliding
@@ -246,7 +246,7 @@ def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
     assert not isinstance(case.motion, Sliding)
     friction = case.friction_on(contact.shape.grid.x)
     found = frictional_contact(
-        contact.shape, contact.settings, case.motion, friction, middle_of(case), coupled=case.coupled
+        contact.shape, contact.settings, case.motion, friction, case.roller_middle, coupled=case.coupled
     )
     found.warn_unless_converged(stacklevel=3)
     return found

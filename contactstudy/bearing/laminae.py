@@ -10,6 +10,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.arrays.across import largest_across
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies import hertz
@@ -100,9 +101,9 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[Fl
     """Load per length of every lamina whose line contact has the solved pressure, and its error, N/m."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
-    place, top = result[x].values, _top(pressure.values)
+    place, top = result[x].values, largest_across(pressure.values)
     half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, place.shape)
-    middle = case.roller_start + 0.5 * case.roller.length
+    middle = case.roller_middle
     under = np.abs(place - middle) <= 0.5 * case.roller.length
     radius = np.full(place.size, case.roller.radius)
     radius[under] = local_radius(case.roller.profile, place[under] - middle, case.roller.length, case.roller.radius)
@@ -119,19 +120,6 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[Fl
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
             load[end] = error[end] = np.inf
     return load, error
-
-
-def _top(pressure: FloatArray) -> FloatArray:
-    """Largest pressure of each cross-section (x, y), between its cells: its square is a parabola across a contact."""
-    squared = pressure**2
-    at = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
-    before, here, after = (squared[np.arange(at.size), at + step] for step in (-1, 0, 1))
-    bend = np.minimum(before - 2 * here + after, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        lift = np.where(bend < 0, -((after - before) ** 2) / (8 * bend), 0.0)
-    largest = squared.max(axis=1)
-    # A contact of a cell or two has no parabola.
-    return np.sqrt(np.where(largest > 0, np.maximum(here + np.minimum(lift, 0.25 * here), largest), 0.0))
 
 
 def _pressure_errors(result: xr.Dataset) -> tuple[float, float]:

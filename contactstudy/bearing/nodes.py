@@ -64,11 +64,6 @@ class Presser:
     tolerance: float
 
     @property
-    def middle(self) -> float:
-        """Position x of the roller's mid-length, metres."""
-        return self.case.roller_start + 0.5 * self.case.roller.length
-
-    @property
     def reference(self) -> str:
         """What approach and tilt are relative to."""
         return motion_reference(self.case.body, self.case.counterbody)
@@ -107,7 +102,7 @@ class Presser:
         forces = grid.weights * contact.pressure * grid.cell_area
         # Where it is pressed, the surfaces have moved apart by what the shape would have sunk in.
         sunk = np.where(contact.pressure > 0, contact.approach - contact.shape.gap.values, 0.0)
-        moment = float((forces * (grid.x[:, None] - self.middle)).sum())
+        moment = float((forces * (grid.x[:, None] - self.case.roller_middle)).sum())
         return Node(float(forces.sum()), moment, 0.5 * float((forces * sunk).sum()))
 
 
@@ -145,7 +140,9 @@ def _mirror_images(presser: Presser) -> bool:
     """Whether the halves of roller and body are mirror images."""
     case, (low, high) = presser.case, presser.case.body.extent
     length = case.roller.length
-    centred = (np.isinf(low) and np.isinf(high)) or abs(low + high - 2 * presser.middle) <= MIRRORED * length
+    centred = (np.isinf(low) and np.isinf(high)) or abs(
+        low + high - 2 * presser.case.roller_middle
+    ) <= MIRRORED * length
     places = 0.5 * length * np.linspace(0.01, 0.99, 50)
     right, left = (case.roller.clearance(side * places, np.array([0.0, 1e-2 * length])) for side in (1, -1))
     return bool(centred) and bool(np.allclose(right, left, rtol=MIRRORED, atol=0.0))

@@ -154,7 +154,7 @@ class Case:
     def _check_inclination(self, start: float, stop: float) -> None:
         """Raise if a roller that is free to tilt would have to by more than a small angle, to lie on the body."""
         x = np.linspace(start, stop, INCLINED_POINTS)[1:-1]
-        lowest = self._clearance(x - self.roller_start - 0.5 * self.roller.length, np.zeros(1))[:, 0]
+        lowest = self._clearance(x - self.roller_middle, np.zeros(1))[:, 0]
         slope = float(np.polynomial.polynomial.polyfit((x - start) / (stop - start), lowest, 1)[1]) / (stop - start)
         if abs(slope) > LARGEST_TILT:
             raise InvalidInputError(
@@ -213,6 +213,11 @@ class Case:
         return 0.5 * (high - low - self.roller.length) if np.isfinite(high) else 0.0
 
     @property
+    def roller_middle(self) -> float:
+        """Position x of the roller's mid-length, metres: about which it tilts, and spin and moment are taken."""
+        return self.roller_start + 0.5 * self.roller.length
+
+    @property
     def contact_range(self) -> tuple[float, float]:
         """First and last x where roller and body face each other, metres."""
         low, high = self.body.extent
@@ -260,7 +265,7 @@ class Case:
         It is that at the centres of uniform cells, and the mean along x over others. A tilted roller turns about its
         mid-length, where its clearance stays as it is.
         """
-        from_middle = grid.x - (self.roller_start + 0.5 * self.roller.length)
+        from_middle = grid.x - self.roller_middle
         gap = self._clearance(from_middle, grid.y)
         if grid.uniform:
             return gap

@@ -14,6 +14,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from contactstudy.arrays.across import largest_across
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
@@ -277,7 +278,8 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
 
 def _read(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
     """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
-    top, along_y = _across(pressure)
+    top = largest_across(pressure)
+    along_y = float(top.max() / pressure.max()) - 1
     half = 0.5 * (edges[-1] - edges[0])
     peaks, ends = [], []
     for side in (0, 1):
@@ -325,23 +327,6 @@ def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     top = np.maximum(top, LESSER_HALF * pressure.max())
     steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
     return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (top / pressure.max()) ** power)
-
-
-def _across(pressure: FloatArray) -> tuple[FloatArray, float]:
-    """Largest pressure of each column between its cells along y, and by how much that lifts the largest of all.
-
-    The squared pressure is a parabola across the contact, so the one through the largest three cells tells its top.
-    """
-    squared = pressure**2
-    at = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
-    before, here, after = (squared[np.arange(at.size), at + step] for step in (-1, 0, 1))
-    bend = np.minimum(before - 2 * here + after, 0.0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        lift = np.where(bend < 0, -((after - before) ** 2) / (8 * bend), 0.0)
-    largest = squared.max(axis=1)
-    top = np.sqrt(np.where(largest > 0, np.maximum(here + np.minimum(lift, 0.25 * here), largest), 0.0))
-    raw = float(pressure.max())
-    return np.asarray(top, dtype=np.float64), float(top.max()) / raw - 1
 
 
 def _extrapolated(edges: FloatArray, row: FloatArray) -> float:

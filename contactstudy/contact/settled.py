@@ -248,7 +248,7 @@ def _room(distance: float, near: float) -> float:
 def _axial_shape(case: Case) -> AxialShape:
     """Return what the refinement knows of a case."""
     start, stop = case.contact_range
-    middle = case.roller_start + 0.5 * case.roller.length
+    middle = case.roller_middle
     low, high = case.body.extent
     half_width = case.hertz_half_width
     near = 1e-9 * (stop - start)

@@ -54,11 +54,6 @@ class SettledTractions(NamedTuple):
         return describe(result)
 
 
-def middle_of(case: Case) -> float:
-    """Position x about which spin and moment of a case are taken, metres."""
-    return case.roller_start + 0.5 * case.roller.length
-
-
 def settled_tractions(case: Case, settled: SettledContact, accuracy: float) -> SettledTractions:
     """Tractions of a case on the columns of its settled contact.
 
@@ -99,7 +94,7 @@ def _on(case: Case, settled: SettledContact, rows: int, before: FrictionalContac
         contact.settings,
         case.motion,
         friction,
-        middle_of(case),
+        case.roller_middle,
         coupled=case.coupled,
         coarser=coarser,
     )
@@ -120,7 +115,7 @@ def _scales(case: Case, found: FrictionalContact) -> dict[str, float]:
     """
     pressure, grid = found.contact.pressure, found.contact.shape.grid
     loads = case.friction_on(grid.x) * pressure * grid.weights * grid.cell_area
-    arms = np.hypot((grid.x - middle_of(case))[:, None], grid.y)
+    arms = np.hypot((grid.x - case.roller_middle)[:, None], grid.y)
     slip = float(np.max(case.friction_on(grid.x))) * case.hertz_half_width / case.roller.radius
     force, moment = float(loads.sum()), float((loads * arms).sum())
     rolls = isinstance(case.motion, Rolling)

@@ -92,7 +92,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     start, _ = case.contact_range
     length, roller = case.contact_length, case.roller
     x = start + length * (np.arange(slices) + 0.5) / slices
-    from_middle = x - (case.roller_start + 0.5 * roller.length)
+    from_middle = x - case.roller_middle
     height = checked_drop(roller.profile, from_middle, roller.length) - np.tan(tilt) * from_middle
     stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL)
     approach, deflection = _equilibrium(height, stiffness, case.normal_load)

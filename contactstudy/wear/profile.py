@@ -77,7 +77,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
         at = int(np.abs(known - wanted).argmin())
         if not np.isclose(known[at], wanted, rtol=1e-9, atol=0.0):
             raise InvalidInputError("distance", wanted, f"one of those of the result, such as {known[at]:g} m")
-    middle = case.roller_start + 0.5 * case.roller.length
+    middle = case.roller_middle
     x = worn["x"].values - middle
     start, stop = (end - middle for end in case.contact_range)
     rounding = ROUNDING * case.roller.length
@@ -138,7 +138,7 @@ class _Ends:
     def of(cls, case: Case, columns: _Columns, depth: FloatArray, pressure: FloatArray) -> _Ends:
         """Both ends of the contact: where the body goes on beyond it, and as far as the part has worn in already."""
         low, high = case.contact_range
-        middle = case.roller_start + 0.5 * case.roller.length
+        middle = case.roller_middle
         modulus = case.body.material.plane_strain_modulus
         inward = np.array([depth[0] - depth[1], depth[-1] - depth[-2]]) / np.diff(columns.middles)[[0, -1]]
         beyond = np.array([low - case.body.extent[0], case.body.extent[1] - high])

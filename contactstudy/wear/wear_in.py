@@ -231,7 +231,7 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
     distances = np.array([state.distance for state in states])
     depths = np.array([state.depth for state in states])
     pressures = np.array([state.pressure for state in states])
-    from_middle = grid.x - (case.roller_start + 0.5 * case.roller.length)
+    from_middle = grid.x - case.roller_middle
     under = np.abs(from_middle) <= 0.5 * case.roller.length
     drop = np.full(grid.cells_x, np.nan)
     drop[under] = checked_drop(case.roller.profile, from_middle[under], case.roller.length)

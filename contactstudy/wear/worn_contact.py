@@ -123,7 +123,7 @@ class WornContact:
         friction = np.broadcast_to(case.friction_on(grid.x), (grid.cells_x, 1))[:, 0]
         if not isinstance(case.motion, Rolling):
             return np.ones(grid.cells_x) if law == "slip" else np.abs(friction)
-        middle = case.roller_start + 0.5 * case.roller.length
+        middle = case.roller_middle
         shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
         found = frictional_contact(shape, self.settings, case.motion, friction[:, None], middle, coupled=False)
         found.warn_unless_converged(stacklevel=4)
