@@ -148,8 +148,8 @@ class AxialModes:
 DECAY_LENGTHS = 14.0
 """Decay lengths from the corner beyond which a wavenumber along y adds nothing: exp(-14) = 8e-7. Accuracy."""
 
-SEPARATE_ENDS = 30.0
-"""Decay lengths beyond which the two ends do not affect each other: exp(-30) = 1e-13. Accuracy."""
+SEPARATE_ENDS = 20.0
+"""Decay lengths beyond which the two ends do not affect each other: exp(-20) = 2e-9. Accuracy."""
 
 
 def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:

@@ -39,9 +39,11 @@ from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, cell_moments, g
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
 
-MORE_NODES = 3
+MORE_NODES = 2
 """Wavenumbers along y per panel beyond those for a field: an operator is built once for every load. Accuracy."""
 
+STEEPER = 1.25
+"""Angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed."""
 
 FINER = 8
 """Cells along y over the distance from an end down to which the kernel is resolved if cells along x are narrow there.
@@ -98,6 +100,12 @@ class EndRequest(NamedTuple):
             at_ends = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
             finest = grid.dy / FINER if at_ends <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
+        resolution = replace(
+            resolution,
+            angle=STEEPER * resolution.angle,
+            step=STEEPER * resolution.step,
+            lateral_nodes=resolution.lateral_nodes + MORE_NODES,
+        )
         return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, responses, reference, resolution)
 
     @property
@@ -221,7 +229,6 @@ def end_kernel(request: EndRequest) -> EndKernel:
     shortest = 0.5 * request.finest
     # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
     last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
-    finer = replace(request.resolution, lateral_nodes=request.resolution.lateral_nodes + MORE_NODES)
     reference = request.reference if relative else None
     half = 0.5 * length if np.isfinite(length) else request.span
     edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
@@ -229,7 +236,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     beyond: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
         first = ALONE[poles] / min(length, 4 * max(request.span, window))
-        panels = lateral_panels(first, 0.5 * window, last, finer, reference, poles)
+        panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles)
         samples = np.stack(list(_samples(request, panels, positions, shortest, beyond)), axis=2)
         even, odd = _lateral_transforms(panels, request.dy, request.cells_y)
         for i, response in enumerate(request.responses):

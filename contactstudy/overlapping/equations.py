@@ -29,9 +29,8 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.quadrature import (
     Resolution,
-    growing_edges,
-    panel_nodes,
     ray_nodes,
+    scale_nodes,
 )
 
 
@@ -137,7 +136,7 @@ class EquationSet:
     ) -> EquationSet:
         """Assemble and factorise; `shortest` is the smallest distance from a loaded corner that matters."""
         last = max(resolution.reach / shortest, 4 * lateral)
-        depth, weights = panel_nodes(growing_edges(0.5 * lateral, last, resolution.ratio), resolution.order)
+        depth, weights = scale_nodes(0.5 * lateral, last, resolution.step)
         kappa = np.sqrt(depth**2 + lateral**2)
         scale = np.real(modes.face_factor(kappa)) * weights / kappa
         axial = modes.wavenumbers

@@ -29,7 +29,7 @@ LEAST_PRODUCT = 1e-7
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0: 3 under a force along x, which bends the body as a plate."""
 
-ALONE, TERMS = {POLES: 0.01, BENDING_POLES: 1.0}, {POLES: 1, BENDING_POLES: 6}
+ALONE, TERMS = {POLES: 0.1, BENDING_POLES: 1.0}, {POLES: 4, BENDING_POLES: 6}
 """Wavenumber along y, over the smallest length of the problem, below which an amplitude is its poles and this number of
 powers from the constant on. Accuracy. The higher the pole (a double one if a sliding load off-centre turns the body),
 the more it amplifies what the quadratures leave, if the wavenumber is much lower."""
@@ -157,16 +157,19 @@ def lateral_panels(
     """
     order = resolution.lateral_nodes
     count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.lateral_ratio))))
-    edges = np.concatenate([[0.0], first * (last / first) ** (np.arange(count + 1) / count)])
-    panels = []
+    edges = first * (last / first) ** (np.arange(count + 1) / count)
+    nodes, weights = panel_nodes(np.array([0.0, first]), order)
+    panels = [LateralPanel(nodes, nodes, weights)]
     for low, high in pairwise(edges):
-        nodes, weights = panel_nodes(np.array([low, high]), order)
-        if (high - low) * reach <= PHASE_PER_NODE * order:
-            panels.append(LateralPanel(nodes, nodes, weights))
+        # The answers are smooth over the logarithm of the wavenumber.
+        places, weights = panel_nodes(np.log([low, high]), order)
+        nodes = np.exp(places)
+        if high * np.log(high / low) * reach <= PHASE_PER_NODE * order:
+            panels.append(LateralPanel(nodes, nodes, weights * nodes))
             continue
         pieces = int(np.ceil((high - low) * reach / (PHASE_PER_NODE * resolution.lateral_order)))
         fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
-        panels.append(LateralPanel(nodes, fine, weights, lagrange(nodes, fine)))
+        panels.append(LateralPanel(nodes, fine, weights, lagrange(places, np.log(fine))))
     if reference is not None:
         count = poles + TERMS[poles]
         samples = first * np.arange(1.0, count + 1) / count

@@ -1,4 +1,9 @@
-"""Gauss-Legendre quadrature on growing panels, on the real axis or along a ray in the complex plane."""
+"""Quadratures over wavenumbers: Gauss-Legendre's on panels, and the trapezoidal rule over their logarithm.
+
+What is integrated along axial and depth wavenumbers is smooth over their logarithm ``u``: its nearest poles lie at the
+angle `Resolution.angle` from the path. The trapezoidal rule of step h over u leaves ``exp(-2 pi angle / h)`` there,
+with half the nodes of Gauss's on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
+"""
 
 from __future__ import annotations
 
@@ -62,9 +67,13 @@ def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
     return np.concatenate([[0.0], first * ratio ** np.arange(panels)])
 
 
-AXIAL_ORDER, AXIAL_REACH = 12, 1000.0
-"""Least order and reach under loads along x. Accuracy: where they bend the body, H and V grow and cancel; on a corner
-their normal stress on the end is singular."""
+AXIAL_STEP, AXIAL_REACH = 0.16, 1000.0
+"""Largest step and least reach under loads along x. Accuracy: where they bend the body, H and V grow and cancel; on a
+corner their normal stress on the end is singular."""
+
+START, LOWEST = 0.3, -2.8
+"""Wavenumber about which the nodes begin to thin out towards 0, over the smallest scale, and the least ``u``.
+Accuracy: below it lies 1e-7 of that scale."""
 
 
 @dataclass(frozen=True)
@@ -75,10 +84,8 @@ class Resolution:
 
     Parameters
     ----------
-    order : int
-        Gauss nodes per panel.
-    ratio : float
-        Growth of the panels of axial and depth wavenumbers.
+    step : float
+        Step of axial and depth wavenumbers over their logarithm.
     angle : float
         Angle of the rays to the real axis, radians. Axial and depth wavenumbers are turned by the same angle; twice
         the angle must stay well below pi/2, where ``k_x**2 + k_y**2 + k_z**2`` would vanish.
@@ -91,7 +98,7 @@ class Resolution:
     lateral_nodes : int
         Wavenumbers along y per panel at which the body is asked.
     lateral_ratio : float
-        Growth of these panels.
+        Growth of these panels, whose nodes are Gauss's over the logarithm.
     lateral_order : int
         Gauss nodes per panel of the finer wavenumbers along y, which follow the load's phase.
     lateral_reach : float
@@ -103,26 +110,26 @@ class Resolution:
         If a setting cannot resolve anything.
     """
 
-    order: int = 8
-    ratio: float = 3.0
+    step: float = 0.22
     angle: float = np.pi / 6
     reach: float = 200.0
     ray_reach: float = 50.0
     modes: int = 8
     lateral_nodes: int = 7
-    lateral_ratio: float = 3.5
+    lateral_ratio: float = 5.5
     lateral_order: int = 16
     lateral_reach: float = 10.0
 
     def __post_init__(self) -> None:
         """Refuse settings with which the ends would carry traction that looks like a result."""
-        for name in ("order", "modes", "lateral_nodes", "lateral_order"):
+        for name in ("modes", "lateral_nodes", "lateral_order"):
             checks.count(name, getattr(self, name), least=2)
         for name in ("reach", "ray_reach", "lateral_reach"):
             checks.positive(name, getattr(self, name))
-        for name in ("ratio", "lateral_ratio"):
-            if not getattr(self, name) > 1:
-                raise InvalidInputError(name, getattr(self, name), "more than 1: the panels grow")
+        if not 0 < self.step <= 1:
+            raise InvalidInputError("step", self.step, "more than 0 and at most 1")
+        if not self.lateral_ratio > 1:
+            raise InvalidInputError("lateral_ratio", self.lateral_ratio, "more than 1: the panels grow")
         if not 0 < self.angle < np.pi / 4:
             raise InvalidInputError("angle", self.angle, "between 0 and pi/4, where k_x^2 + k_y^2 + k_z^2 vanishes")
 
@@ -130,11 +137,29 @@ class Resolution:
         """Return settings that resolve loads in these directions as well as these do a pressure."""
         if Load.ALONG_X not in loads:
             return self
-        return replace(self, order=max(self.order, AXIAL_ORDER), reach=max(self.reach, AXIAL_REACH))
+        return replace(self, step=min(self.step, AXIAL_STEP), reach=max(self.reach, AXIAL_REACH))
+
+
+def scale_nodes(first: float, last: float, step: float) -> tuple[FloatArray, FloatArray]:
+    """Nodes and weights of an integral from 0 to about `last`, of what is smooth over the logarithm from `first` on.
+
+    The trapezoidal rule over ``u`` with ``k = start exp(u - exp(-u))``, where k falls to 0 doubly exponentially.
+
+    Examples
+    --------
+    >>> nodes, weights = scale_nodes(1.0, 1e6, 0.25)
+    >>> nodes.size, bool(abs(weights @ (1 + nodes) ** -2.0 - 1) < 3e-6)
+    (74, True)
+    """
+    start = START * first
+    lowest, highest = int(np.floor(LOWEST / step)), int(np.ceil(np.log(last / start) / step))
+    u = step * np.arange(lowest, highest + 1.0)
+    nodes = start * np.exp(u - np.exp(-u))
+    return nodes, step * nodes * (1 + np.exp(-u))
 
 
 def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
-    """Nodes and weights along the ray from 0 at the resolution's angle, panels growing from `first` to `last`."""
-    nodes, weights = panel_nodes(growing_edges(first, last, resolution.ratio), resolution.order)
+    """Nodes and weights along the ray from 0 at the resolution's angle, of scales from `first` to `last`."""
+    nodes, weights = scale_nodes(first, last, resolution.step)
     turn = np.exp(1j * resolution.angle)
     return nodes * turn, weights * turn

@@ -166,8 +166,7 @@ def contact_grid() -> Table:
 
 
 FINEST = Resolution(
-    order=12,
-    ratio=2.0,
+    step=0.12,
     angle=np.pi / 6.5,
     reach=1000.0,
     ray_reach=200.0,
@@ -180,14 +179,13 @@ FINEST = Resolution(
 """Quadrature that the errors of others are measured against."""
 
 SETTINGS: dict[str, tuple[Any, ...]] = {
-    "order": (4, 6, 8, 12),
-    "ratio": (6.0, 4.0, 3.0, 2.0),
-    "angle": (np.pi / 12, np.pi / 8, np.pi / 6, np.pi / 4.5),
+    "step": (0.44, 0.33, 0.22, 0.16),
+    "angle": (np.pi / 12, np.pi / 8, np.pi / 6, np.pi / 5.5),
     "reach": (12.5, 50.0, 200.0, 800.0),
     "ray_reach": (6.25, 12.5, 50.0, 200.0),
     "modes": (2, 4, 8, 16),
     "lateral_nodes": (3, 5, 7, 14),
-    "lateral_ratio": (8.0, 5.0, 3.5, 2.0),
+    "lateral_ratio": (12.0, 8.0, 5.5, 3.0),
     "lateral_order": (4, 8, 16, 32),
     "lateral_reach": (2.5, 5.0, 10.0, 20.0),
 }

@@ -57,8 +57,8 @@ def test_no_internal_setting_matters() -> None:
 
     usual = stress(Resolution())
     finer = {
-        "order": 12,
-        "ratio": 2.0,
+        "step": 0.15,
+        "lateral_ratio": 3.0,
         "angle": np.pi / 7,
         "reach": 1000.0,
         "modes": 14,
