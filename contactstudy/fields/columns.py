@@ -129,8 +129,10 @@ def _inverted(matrix: FloatArray) -> FloatArray:
     """Inverse of a symmetric matrix; where the reference of the displacement makes it indefinite, of one beside it."""
     factor, failed = linalg.lapack.dpotrf(matrix)
     if not failed:
-        upper, _ = linalg.lapack.dpotri(factor)
-        return np.asarray(np.triu(upper) + np.triu(upper, 1).T)
+        upper, _ = linalg.lapack.dpotri(factor)  # zeros below
+        inverse = upper + upper.T
+        inverse.flat[:: inverse.shape[0] + 1] *= 0.5
+        return np.asarray(inverse)
     values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
     values = np.maximum(np.abs(values), LEAST_EIGENVALUE * np.abs(values).max() / values.size)
     return np.asarray((vectors / values) @ vectors.T)

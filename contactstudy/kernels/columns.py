@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -276,8 +277,14 @@ def _between(
     Those of an image are sums of distances, none negative; else they are signed.
     """
     count, widths = edges.size, np.diff(edges)
-    i, j = np.tril_indices(count)
-    table = np.empty((lateral.cells + 1, count, count))
+    apart = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
+    far = np.tril(apart > FAR_COLUMNS * np.maximum.outer(widths, widths))
+    # Edges of columns that are not all far from each other.
+    near = np.zeros((count, count), bool)
+    for rows, columns in product((slice(None, -1), slice(1, None)), repeat=2):
+        near[rows, columns] |= np.tril(~far)
+    i, j = np.nonzero(np.tril(near | near.T))
+    table = np.zeros((lateral.cells + 1, count, count))
     values = np.empty((lateral.cells + 1, i.size))
     for start in range(0, i.size, CHUNK):
         part = slice(start, start + CHUNK)
@@ -290,28 +297,15 @@ def _between(
     if image:  # it runs backwards
         np.negative(kernel, out=kernel)
     kernel /= widths[:, None] * widths[None, :]
-    _expand_far(kernel, strip, distances, widths, lateral, matrix, backwards)
-    return kernel
-
-
-def _expand_far(
-    kernel: FloatArray,
-    strip: Strip,
-    distances: FloatArray,
-    widths: FloatArray,
-    lateral: Lateral,
-    matrix: FloatArray,
-    backwards: int,
-) -> None:
-    """Replace the influence of columns far from each other by an expansion about their centres, to fourth order."""
-    apart = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
-    i, j = np.nonzero(np.tril(apart > FAR_COLUMNS * np.maximum.outer(widths, widths)))
+    i, j = np.nonzero(far)
     for start in range(0, i.size, CHUNK):
-        a, b = i[start : start + CHUNK], j[start : start + CHUNK]
-        x, squares = apart[a, b, None], (widths[a] ** 2 + widths[b] ** 2)[:, None]
-        values = strip.kernel(x, lateral.edges) + squares / 24 * strip.curvature(x, lateral.edges)
-        kernel[:, a, b] = (values @ matrix).T
-        kernel[:, b, a] = backwards * kernel[:, a, b]
+        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
+        x, squares = apart[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
+        # Expanded about their centres, to fourth order.
+        expanded = strip.kernel(x, lateral.edges) + squares / 24 * strip.curvature(x, lateral.edges)
+        kernel[:, rows, columns] = (expanded @ matrix).T
+        kernel[:, columns, rows] = backwards * kernel[:, rows, columns]
+    return kernel
 
 
 def _far_images(

@@ -105,17 +105,17 @@ def image_kernel(
     return np.asarray(images if from_points_y is None else images @ from_points_y.T)
 
 
-def few_points(values: FloatArray, length: float) -> tuple[FloatArray, FloatArray | None]:
-    """Few points from which what images do is interpolated to many, and the matrix (value, point) that does so.
+def few_points(values: FloatArray, distance: float, left: float = LEFT) -> tuple[FloatArray, FloatArray | None]:
+    """Few points from which what loads far away do is interpolated to many, and the matrix (value, point) that does so.
 
-    The images are a length away from all points, so on a span ``2 s`` each point divides what is left by
-    ``exp(asinh(length / s))``. Where no fewer points would do: `values` and None.
+    The loads are at a `distance` from all points, so on a span ``2 s`` each point divides what is left by
+    ``exp(asinh(distance / s))``. Where no fewer points would do: `values` and None.
     """
     low, high = float(values.min()), float(values.max())
     half = 0.5 * (high - low)
     if not half:
         return values[:1], np.ones((values.size, 1)) if values.size > 1 else None
-    count = int(np.ceil(-np.log(LEFT) / np.arcsinh(length / half))) + 1
+    count = int(np.ceil(-np.log(left) / np.arcsinh(distance / half))) + 1
     if count >= values.size:
         return values, None
     points, matrix = _chebyshev_points(values - 0.5 * (low + high), half, count)

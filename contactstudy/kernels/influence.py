@@ -21,7 +21,7 @@ class Influence:
     Attributes
     ----------
     corner : callable
-        Corner functions (component, ...) of broadcastable offsets ``X, Y``, the depth and Poisson's ratio.
+        Corner functions (component, ...) of broadcastable offsets ``X, Y`` and depths, and Poisson's ratio.
     poisson : float
         Poisson's ratio.
     load : Load
@@ -33,7 +33,7 @@ class Influence:
         fixes the reference of a quantity that grows with distance.
     """
 
-    corner: Callable[[FloatArray, FloatArray, float, float], FloatArray]
+    corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
     poisson: float
     load: Load
     sign_along_x: tuple[int, ...]
@@ -43,7 +43,7 @@ class Influence:
     @classmethod
     def of(
         cls,
-        corner: Callable[[FloatArray, FloatArray, float, float], FloatArray],
+        corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray],
         poisson: float,
         load: Load,
         under_pressure: tuple[tuple[int, ...], tuple[int, ...]],

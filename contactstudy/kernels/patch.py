@@ -20,20 +20,20 @@ TINY = 1e-150
 """Least denominator. Its square is still a number, and offsets in metres are never so small unless they vanish."""
 
 
-def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: float) -> FloatArray:
+def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: FloatArray | float) -> FloatArray:
     """``asinh(numerator / hypot(other, z))``, finite where the denominator vanishes (a corner's edge)."""
     return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(other, z), 1e-30)))
 
 
-def normal_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of the six stresses under unit pressure, in the order xx, yy, zz, xy, xz, yz.
 
     Parameters
     ----------
     x, y : array
         Offsets from corner to observer, broadcastable to one shape.
-    z : float
-        Depth, not negative.
+    z : array or float
+        Depths, not negative, broadcastable to the same.
     poisson : float
         Poisson's ratio.
 
@@ -72,7 +72,7 @@ def normal_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> Flo
     return np.asarray(corner / (2 * np.pi))
 
 
-def tangential_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`.
 
     Examples
@@ -100,7 +100,7 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) ->
     return np.asarray(corner / (2 * np.pi))
 
 
-def axial_corner(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def axial_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of the six stresses under unit shear traction along +x: those along +y with x and y exchanged.
 
     Examples

@@ -20,7 +20,7 @@ from contactstudy.kernels.patch import TINY
 class _Potentials:
     """Corner functions of the potentials' derivatives at offsets ``(X, Y, z)``."""
 
-    def __init__(self, x: FloatArray, y: FloatArray, z: float) -> None:
+    def __init__(self, x: FloatArray, y: FloatArray, z: FloatArray | float) -> None:
         r = np.sqrt(x * x + y * y + z * z)
         xy = x * y
         self.r, self.z = r, z
@@ -36,15 +36,15 @@ class _Potentials:
         self.theta_yy = -y * self.asinh_x + z * self.chi_yy
 
 
-def normal_displacement_inside(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def normal_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit pressure.
 
     Parameters
     ----------
     x, y : array
         Offsets from corner to observer, broadcastable to one shape.
-    z : float
-        Depth, not negative.
+    z : array or float
+        Depths, not negative, broadcastable to the same.
     poisson : float
         Poisson's ratio.
 
@@ -70,7 +70,7 @@ def normal_displacement_inside(x: FloatArray, y: FloatArray, z: float, poisson: 
     )
 
 
-def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit shear traction along +y; otherwise as for pressure.
 
     Examples
@@ -90,7 +90,7 @@ def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: float, poiss
     )
 
 
-def axial_displacement_inside(x: FloatArray, y: FloatArray, z: float, poisson: float) -> FloatArray:
+def axial_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions under unit shear traction along +x: those along +y with x and y exchanged.
 
     Examples

@@ -7,7 +7,7 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.aligned import aligned_points
-from contactstudy.kernels.columns_field import columns_field
+from contactstudy.kernels.columns_field import smooth_columns_field
 from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.fine_cells import FineCells, ends_in_steps
 from contactstudy.kernels.influence import Influence
@@ -33,9 +33,9 @@ def smooth_field(
     """
     if not load.any() or ends_in_steps(load):
         return half_space_field(load, influence, grid, x, y, z, extent=extent)
-    fine = FineCells(load, grid, extent, influence.load.sign_x)
     if not grid.uniform or CELLS_PER_POSITION * x.size <= grid.cells_x:
-        return columns_field(load, influence, grid, x, y, z, extent=extent, fine=fine)
+        return smooth_columns_field(load, influence, grid, x, y, z, extent=extent)
+    fine = FineCells(load, grid, extent, influence.load.sign_x)
     near = fine.near(z)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     if not near.all():
@@ -54,8 +54,8 @@ def smooth_field(
             cells, grid_near = fine.near_top(column.offset, split=split)
             found = half_space_field(cells, influence, grid_near, x[rows], y[column.points], z[near], extent=extent)
             if not split:
-                found += columns_field(
-                    load, influence, grid, x[rows], y[column.points], z[near], extent=extent, fine=fine, added=True
+                found += smooth_columns_field(
+                    load, influence, grid, x[rows], y[column.points], z[near], extent=extent, added=True
                 )
             every = np.arange(influence.components)
             field[np.ix_(every, rows, column.points, np.flatnonzero(near))] = found

@@ -279,8 +279,9 @@ def _mean(a: FloatArray, b: FloatArray) -> FloatArray:
 def _first_moment(a: FloatArray, b: FloatArray) -> FloatArray:
     """First moment of such a function about its first end, over the length squared."""
     total = a + b
-    cubes = 3 * b**3 + 6 * b * b * a + 4 * b * a * a + 2 * a**3
-    return np.asarray(2 / 15 * cubes / np.where(total > 0, total, 1.0) ** 2)
+    total = np.where(total > 0, total, 1.0)
+    cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
+    return np.asarray(2 / 15 * cubes / (total * total))
 
 
 def _part(a: FloatArray, b: FloatArray, along: FloatArray, length: FloatArray) -> FloatArray:

@@ -133,27 +133,33 @@ class EndKernel:
     positions: FloatArray
     samples: Mapping[Response, list[FloatArray]]
 
-    def moments(self, parity: int, direction: Load, cell_edges: FloatArray) -> FloatArray:
-        """Integrals over the cells of the polynomials on the positions: array (position, cell)."""
-        one_side = cell_moments(self.edges, self.positions, cell_edges)
-        if not parity:
-            return one_side
-        length = self.request.freed.length
-        other_side = cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1]
-        return np.asarray(one_side + parity * direction.sign_x * other_side)
-
     def between(self, response: Response, cell_edges: FloatArray) -> FloatArray:
         """Displacement averaged over cells from forces on cells: array (wavenumber, cell, cell)."""
+        widths = np.diff(cell_edges)
+        sides = self.moments(cell_edges)
         total: FloatArray = np.zeros(())
         for parity, kernel in zip(self.request.parities, self.samples[response], strict=True):
-            seen, loaded = (self.moments(parity, direction, cell_edges) / np.diff(cell_edges) for direction in response)
+            seen, loaded = (seen_alike(sides, parity * direction.sign_x) / widths for direction in response)
             total = total + seen.T @ kernel @ loaded
         return total
+
+    def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
+        """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
+        sides = [cell_moments(self.edges, self.positions, cell_edges)]
+        length = self.request.freed.length
+        if np.isfinite(length):
+            sides.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
+        return sides
 
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
         return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
+
+
+def seen_alike(sides: list[FloatArray], sign: int) -> FloatArray:
+    """Sum of what both ends see of a load whose mirror image is `sign` times it; what one end sees if it is alone."""
+    return np.asarray(sides[0] + sign * sides[1]) if len(sides) > 1 else sides[0]
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,7 +11,7 @@ import numpy as np
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.end_kernel import EndKernel
+from contactstudy.overlapping.end_kernel import EndKernel, seen_alike
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,10 +116,10 @@ class EndCorrection:
     def on(cls, grid: Grid, ends: EndKernel) -> EndCorrection:
         """Correction on uniform cells that begin at ``x = 0``."""
         near = (grid.cells_x + 1) // 2
-        parities = ends.request.parities
+        parities, sides = ends.request.parities, ends.moments(grid.x_edges)
         moments = {
             direction: [
-                np.ascontiguousarray(ends.moments(parity, direction, grid.x_edges)[:, : near if parity else None])
+                np.ascontiguousarray(seen_alike(sides, parity * direction.sign_x)[:, : near if parity else None])
                 for parity in parities
             ]
             for direction in dict.fromkeys(chain.from_iterable(ends.samples))
