@@ -174,9 +174,11 @@ def solve(
     contact_seconds = time.perf_counter() - began
     LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
     half_width = case.hertz_half_width
-    result["initial_gap"] = (("x", "y"), contact.shape.gap.values.copy())
-    result["hertz_half_width"] = half_width
-    result["hertz_max_pressure"] = case.hertz_max_pressure
+    result = result.assign(
+        initial_gap=(("x", "y"), contact.shape.gap.values.copy()),
+        hertz_half_width=half_width,
+        hertz_max_pressure=case.hertz_max_pressure,
+    )
     looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z

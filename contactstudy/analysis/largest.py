@@ -6,7 +6,7 @@ between; the measure follows from them. What polynomials of a lower degree say t
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from itertools import product
 from typing import NamedTuple
 
@@ -199,16 +199,16 @@ def _between(
         fine.append(points)
         matrices.append(_lagrange(nodes, points))
     near = stresses.isel(window)
-    refined = xr.Dataset()
+    refined: dict[Hashable, tuple[tuple[Hashable, ...], FloatArray]] = {}
+    coordinates: dict[Hashable, xr.DataArray] = {}
     for name, component in near.items():
         ordered = component.transpose(*over.values(), ...)
         values = ordered.values
         for number, matrix in enumerate(matrices):
             values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
         refined[name] = (ordered.dims, values)
-        kept = {dim: ordered[dim] for dim in ordered.dims if dim not in over.values() and dim in ordered.coords}
-        refined = refined.assign_coords(kept)
-    found = evaluate(refined).transpose(*over.values()).values
+        coordinates |= {dim: ordered[dim] for dim in ordered.dims if dim not in over.values() and dim in ordered.coords}
+    found = evaluate(xr.Dataset(refined, coordinates)).transpose(*over.values()).values
     best = np.unravel_index(int(np.nanargmax(found)), found.shape)
     return float(found[best]), [float(points[index]) for points, index in zip(fine, best, strict=True)]
 

@@ -299,12 +299,12 @@ def _between(
     kernel /= widths[:, None] * widths[None, :]
     i, j = np.nonzero(far)
     for start in range(0, i.size, CHUNK):
-        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
-        x, squares = apart[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
+        a, b = i[start : start + CHUNK], j[start : start + CHUNK]
+        x, squares = apart[a, b, None], (widths[a] ** 2 + widths[b] ** 2)[:, None]
         # Expanded about their centres, to fourth order.
         expanded = strip.kernel(x, lateral.edges) + squares / 24 * strip.curvature(x, lateral.edges)
-        kernel[:, rows, columns] = (expanded @ matrix).T
-        kernel[:, columns, rows] = backwards * kernel[:, rows, columns]
+        kernel[:, a, b] = (expanded @ matrix).T
+        kernel[:, b, a] = backwards * kernel[:, a, b]
     return kernel
 
 
