@@ -266,8 +266,8 @@ def contact_law(
 
     Examples
     --------
-    >>> from contactstudy import FiniteLengthSpace, Material, Roller, profiles
-    >>> body = FiniteLengthSpace(length=0.3e-3, material=Material(210e9, 0.3))
+    >>> from contactstudy import HalfSpace, Material, Roller, profiles
+    >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1))
     >>> case = Case(body=body, roller=roller, load=30.0)
     >>> law = contact_law(case, np.linspace(-2e-4, 2e-4, 5), 1e-6 * np.linspace(1.0, 1.8, 5), accuracy=0.1)

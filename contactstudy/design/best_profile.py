@@ -84,8 +84,8 @@ def best_profile(
 
     Examples
     --------
-    >>> from contactstudy import FiniteLengthSpace, Material, Roller, profiles
-    >>> body = FiniteLengthSpace(length=0.4e-3, material=Material(210e9, 0.3))
+    >>> from contactstudy import HalfSpace, Material, Roller, profiles
+    >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
     >>> found = best_profile(case, profiles.Lundberg, {"amplitude": (0.02e-6, 1e-6)}, accuracy=0.05, evaluations=9)
     >>> bool(found.flat_from[0] <= found.optimum[0] <= found.flat_to[0])

@@ -216,14 +216,17 @@ def test_positions_have_to_reach_to_the_ends(passing, steel_between_ends) -> Non
             rolled_in(part, steel_between_ends, perfectly_plastic(0.2))
 
 
-@pytest.mark.parametrize("kind", [HalfSpace, QuarterSpace])
-def test_bodies_without_a_second_end(passing, steel_between_ends, kind) -> None:
+def test_bodies_without_a_second_end(passing, steel_between_ends) -> None:
     """Far from where the body ends the residual stress is nearly the same; a free end is free."""
     contact = passing(0.0, length=8.0)
     least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.95 * least)
-    bodies = kind(material=steel_between_ends.material), steel_between_ends
-    here, between = (rolled_in(contact, body, plastic, passes=2).isel(pass_number=-1) for body in bodies)
-    middle = [one["sigma_yy"].isel(x=4).values for one in (here, between)]
-    assert np.abs(np.subtract(*middle)).max() < 0.15 * np.abs(middle[1]).max()
-    assert float(np.abs(here["sigma_yy"]).max()) > 0.02
+    endless = (kind(material=steel_between_ends.material) for kind in (HalfSpace, QuarterSpace))
+    between, *others = (
+        rolled_in(contact, body, plastic, passes=2).isel(pass_number=-1)["sigma_yy"]
+        for body in (steel_between_ends, *endless)
+    )
+    middle = between.isel(x=4).values
+    for other in others:
+        assert np.abs(other.isel(x=4).values - middle).max() < 0.15 * np.abs(middle).max()
+        assert float(np.abs(other).max()) > 0.02

@@ -88,14 +88,21 @@ def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
     assert len({case_id(rolling | more) for more in ({}, {"spin": 1.0}, {"force_y": 0.0}, {"force_x": 0.0})}) == 4
 
 
-def test_results_are_those_of_the_solver_and_lie_on_one_axis(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def rolled(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Results of the six cases, solved at once in this process."""
+    folder = tmp_path_factory.mktemp("rolled")
+    assert run_study(rolling_study(), folder, workers=0, progress=False).counts == {"ok": 6}
+    return folder
+
+
+def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> None:
     study = rolling_study()
-    assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 6}
-    opened = open_study(tmp_path)
+    opened = open_study(rolled)
     for case in study.plan().cases:
         setup = build_setup(case.parameters)
         alone = solve(setup.case, setup.grid, **setup.options)
-        stored = load_case(Folder(tmp_path).case_path(case.id))
+        stored = load_case(Folder(rolled).case_path(case.id))
         for name in ("pressure", "traction_x", "traction_y", "slip_x", "slip_y", "stick"):
             np.testing.assert_array_equal(stored[name], alone[name])
         here = opened.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
@@ -114,16 +121,15 @@ def test_results_are_those_of_the_solver_and_lie_on_one_axis(tmp_path: Path) -> 
     assert opened["longitudinal_creepage"].attrs["units"] == "1"
 
 
-def test_a_study_that_goes_on_has_the_same_bits(tmp_path: Path) -> None:
+def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) -> None:
     first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
     run_study(first, tmp_path / "parts", workers=0, progress=False)
     (begun,) = (Folder(tmp_path / "parts").case_path(case.id) for case in first.plan().cases)
     stamp = begun.stat().st_mtime_ns
     assert run_study(study, tmp_path / "parts", workers=2, progress=False).counts == {"ok": 6}
     assert begun.stat().st_mtime_ns == stamp
-    run_study(study, tmp_path / "once", workers=0, progress=False)
     for case in study.plan().cases:
-        one, other = (load_case(Folder(tmp_path / name).case_path(case.id)) for name in ("parts", "once"))
+        one, other = (load_case(Folder(folder).case_path(case.id)) for folder in (tmp_path / "parts", rolled))
         assert one.drop_vars("seconds").identical(other.drop_vars("seconds").assign_attrs(one.attrs))
 
 
