@@ -12,6 +12,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels import displacement, stress
 from contactstudy.kernels.columns_field import columns_field
 from contactstudy.kernels.field import half_space_field
+from contactstudy.kernels.fine_cells import FineCells
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
@@ -64,6 +65,46 @@ def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) 
     expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
     found = columns_field(cells, influence, graded, X, y, Z, extent=EXTENTS[extent])
     assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+@pytest.mark.parametrize("column", [7, 10])
+def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
+    load: Load, extent: str, column: int
+) -> None:
+    # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    fine = FineCells(cells, graded, EXTENTS[extent], load.sign_x)
+    uniform = Grid((0.0, LENGTH), (float(fine.y_edges[0]), float(fine.y_edges[-1])), 20, 9 * fine.cells.shape[1])
+    smooth = fine.along_y(cells[:, fine.first : fine.first + fine.cells.shape[1]]).means(
+        np.linspace(*uniform.y_range, uniform.cells_y + 1)
+    )
+    spread = np.repeat(smooth, np.diff(GRADED), axis=0)
+    influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
+    for z in (np.array([0.15]), np.array([0.4])):
+        expected = half_space_field(spread, influence, uniform, x, y, z, extent=EXTENTS[extent])
+        found = columns_field(cells, influence, graded, x, y, z, extent=EXTENTS[extent], fine=fine)
+        assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(
+    ("column", "extent", "image", "expected"),
+    [
+        (3, "none", 1, [0.3, 0.5]),
+        (3, "last", 1, [0.3, 0.5, 3.5, 3.7]),
+        (10, "both", 1, [-1.9, 1.9, 2.1]),
+        (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
+    ],
+)
+def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    steps = FineCells(cells, graded, EXTENTS[extent], image).steps
+    assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
 def test_nothing_loaded_leaves_nothing() -> None:
