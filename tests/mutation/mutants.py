@@ -7,6 +7,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+ROOT = Path(__file__).parents[2]
+
+PACKAGES = ("kernels", "overlapping", "contact")
+"""The solver's core."""
+
 OTHER = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 """Arithmetic signs, and what each becomes."""
 
@@ -17,7 +22,7 @@ FACTOR = 1.1
 """By which a number with a decimal point grows inside a function."""
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Mutant:
     """A change of a source.
 
@@ -25,22 +30,30 @@ class Mutant:
     ----------
     file : str
         The source, relative to the repository.
-    line : int
-        Its line.
     start, stop : int
         Characters that are replaced.
     text : str
         What they become.
+    lines : range
+        Lines of the statement around it, without those of statements within.
+    where : str
+        The function.
     shown : str
         The line before and after.
     """
 
     file: str
-    line: int
     start: int
     stop: int
     text: str
+    lines: range
+    where: str
     shown: str
+
+    @property
+    def key(self) -> str:
+        """What tells a change from others, also after lines have moved."""
+        return f"{self.file}: {self.where}: {self.shown}"
 
     def applied(self, source: str) -> str:
         """The source with the change."""
@@ -61,9 +74,9 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         number = source.count("\n", 0, start) + 1
         changed = source[:start] + text + source[stop:]
         before, after = (each.splitlines()[number - 1].strip() for each in (source, changed))
-        return Mutant(file, number, start, stop, text, f"{before}  ->  {after}")
+        return Mutant(file, start, stop, text, lines, where, f"{before}  ->  {after}")
 
-    for node in _in_functions(ast.parse(source)):
+    for node, lines, where in _in_functions(ast.parse(source)):
         match node:
             case ast.BinOp(left=left, op=op) if type(op) in OTHER:
                 own, other = OTHER[type(op)]
@@ -82,25 +95,30 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
                 yield mutant(start, stop, repr(FACTOR * value))
 
 
-def _in_functions(tree: ast.AST) -> Iterator[ast.AST]:
-    """Nodes of the bodies of functions that compute; not of annotations, defaults, messages or checks."""
-    for node in ast.walk(tree):
+def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+    """Nodes of functions that compute, with the lines of their statement and the function's name."""
+    for node in ast.iter_child_nodes(tree):
+        name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
+        yield from _in_functions(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                yield from _computing(statement)
+                yield from ((found, lines, name) for found, lines in _computing(statement, range(0)))
 
 
-def _computing(node: ast.AST) -> Iterator[ast.AST]:
+def _computing(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
     """Nodes below one, without errors that are raised, texts, types and functions within, which come by themselves."""
     if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
         return
-    yield node
+    if isinstance(node, ast.stmt):
+        within = [each.lineno for each in getattr(node, "body", [])]
+        lines = range(node.lineno, min([*within, (node.end_lineno or 0) + 1]))
+    yield node, lines
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns"):
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _computing(child)
+                yield from _computing(child, lines)
 
 
 def _between(source: str, start: int, sign: str) -> int:
@@ -111,11 +129,11 @@ def _between(source: str, start: int, sign: str) -> int:
     return place
 
 
-def all_mutants(root: Path, packages: tuple[str, ...]) -> list[Mutant]:
+def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
     """All changes of the sources of some packages, in order."""
     files = sorted(path for package in packages for path in (root / "contactstudy" / package).glob("*.py"))
     return [
         mutant
         for path in files
-        for mutant in sorted(mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")))
+        for mutant in mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
     ]
