@@ -98,3 +98,47 @@ def test_rounding_does_not_decide_how_a_load_ends() -> None:
     fine = SmoothLoad.of(rows, edges).means(np.linspace(-1.0, 1.0, 21))
     assert np.ptp(fine, axis=0).max() < 1e-9
     assert np.abs(fine - fine[:, ::-1]).max() < 1e-9
+
+
+@settings(max_examples=30)
+@given(row=rows(), spilling=st.booleans())
+def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+    loads, edges = row
+    fine = np.linspace(edges[0], edges[-1], 60)
+    one, other = (SmoothLoad.of(factor * loads, edges, spilling=spilling).means(fine) for factor in (1.0, 64.0))
+    assert np.allclose(64 * one, other, atol=1e-9)
+
+
+def test_nothing_is_loaded_before_the_first_edge_and_behind_the_last() -> None:
+    edges = np.array([0.0, 1.0, 2.5, 3.0])
+    smooth = SmoothLoad.of(np.array([[1.0, 2.0, 3.0]]), edges)
+    assert smooth.integral(np.array([-1.0, 0.0, 3.0, 3.1, 9.0]))[0] == pytest.approx([0, 0, 5.5, 5.5, 5.5])
+    assert smooth._moment(np.array([3.0, 3.1, 9.0]))[0] == pytest.approx([smooth._moment(edges)[0, -1]] * 3)
+
+
+def test_a_load_that_does_not_fall_in_its_last_cell_ends_in_a_step() -> None:
+    means = SmoothLoad.of(np.array([[1.2, 1.1, 1.0, 1.0]]), np.linspace(0.0, 4.0, 5)).means(np.linspace(0.0, 4.0, 41))
+    assert means[0, 30:] == pytest.approx(1.0)
+
+
+def test_a_root_that_ends_behind_the_last_cell_is_followed_there() -> None:
+    """Contacts solved on cells press the last cell whose middle is in the contact, with what belongs to the next."""
+    edges, border = np.arange(10.0), 6.3
+    root = -2 / 3 * np.maximum(border - edges, 0.0) ** 1.5
+    loads = np.diff(root)
+    loads[5] += loads[6]
+    loads[6] = 0
+    fine = np.linspace(5.0, 8.0, 31)
+    expected = np.diff(-2 / 3 * np.maximum(border - fine, 0.0) ** 1.5) / np.diff(fine)
+    for factor in (1.0, 5.0):
+        found = SmoothLoad.of(factor * loads[None], edges, spilling=True).means(fine)[0] / factor
+        assert np.abs(found - expected).max() < 0.06
+        assert found[10] > 0.3
+        assert (found[14:] == 0).all()
+        kept = SmoothLoad.of(factor * loads[None], edges).means(fine)[0]
+        assert (kept[10:] == 0).all()
+
+
+def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
+    smooth = SmoothLoad.of(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
+    assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]

@@ -33,7 +33,7 @@ TESTS = (
 MEMORY = 6 * 2**30
 """Bytes that a fork may take; a change that asks for more is noticed by that."""
 
-SPARE, TIMES = 5.0, 10.0
+SPARE, TIMES = 2.0, 5.0
 """Processor time that a test may take: seconds, and so many times what it took without a change."""
 
 CORE = tuple(str(ROOT / "contactstudy" / package) for package in PACKAGES)
@@ -129,9 +129,7 @@ class Session:
 
     def _install(self, mutant: Mutant) -> None:
         """Give the functions of a source the changed code, wherever they have been imported or wrapped."""
-        path = ROOT / mutant.file
-        changed = compile(mutant.applied(path.read_text(encoding="utf-8")), str(path), "exec")
-        for code in _within(changed):
+        for code in _within(compile(mutant.changed, str(ROOT / mutant.file), "exec")):
             for function in self.functions.get(_place(code), ()):
                 function.__code__ = code
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -28,8 +28,8 @@ class Mutant:
 
     Attributes
     ----------
-    file : str
-        The source, relative to the repository.
+    file, source : str
+        The source, relative to the repository, and its text.
     start, stop : int
         Characters that are replaced.
     text : str
@@ -43,6 +43,7 @@ class Mutant:
     """
 
     file: str
+    source: str = field(repr=False)
     start: int
     stop: int
     text: str
@@ -55,9 +56,10 @@ class Mutant:
         """What tells a change from others, also after lines have moved."""
         return f"{self.file}: {self.where}: {self.shown}"
 
-    def applied(self, source: str) -> str:
+    @property
+    def changed(self) -> str:
         """The source with the change."""
-        return source[: self.start] + self.text + source[self.stop :]
+        return self.source[: self.start] + self.text + self.source[self.stop :]
 
 
 def mutants_of(file: str, source: str) -> Iterator[Mutant]:
@@ -74,7 +76,7 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         number = source.count("\n", 0, start) + 1
         changed = source[:start] + text + source[stop:]
         before, after = (each.splitlines()[number - 1].strip() for each in (source, changed))
-        return Mutant(file, start, stop, text, lines, where, f"{before}  ->  {after}")
+        return Mutant(file, source, start, stop, text, lines, where, f"{before}  ->  {after}")
 
     for node, lines, where in _in_functions(ast.parse(source)):
         match node:
