@@ -135,10 +135,25 @@ def test_a_root_that_ends_behind_the_last_cell_is_followed_there() -> None:
         assert np.abs(found - expected).max() < 0.06
         assert found[10] > 0.3
         assert (found[14:] == 0).all()
-        kept = SmoothLoad.of(factor * loads[None], edges).means(fine)[0]
-        assert (kept[10:] == 0).all()
+        beside = np.where(np.arange(9) == 7, 1.0, loads)
+        for row, spilling in ((loads, False), (beside, True), (loads[:6], True)):
+            kept = SmoothLoad.of(factor * row[None], edges[: row.size + 1], spilling=spilling)
+            assert kept.integral(edges[6:7])[0] == pytest.approx(factor * loads.sum())
 
 
 def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
     smooth = SmoothLoad.of(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("moved", [0.1, 0.4])
+@pytest.mark.parametrize("factor", [1.0, 5.0])
+def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved: float, factor: float) -> None:
+    """Contacts solved on cells put too little into the last cell, and too much into the one before."""
+    edges, border = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 4.7, 5.6, 7.0]), 4.95
+    forces = np.diff(-2 / 3 * np.maximum(border - edges, 0.0) ** 1.5)
+    forces[4:6] += moved * forces[5] * np.array([1, -1])
+    fine = np.linspace(4.0, 5.6, 33)
+    expected = np.diff(-2 / 3 * np.maximum(border - fine, 0.0) ** 1.5) / np.diff(fine)
+    found = SmoothLoad.of(factor * forces[None] / np.diff(edges), edges).means(fine)[0] / factor
+    assert np.abs(found - expected).max() < 0.05

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -72,11 +73,17 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         # ast counts bytes; sources hold other letters in comments and docstrings only.
         return starts[line - 1] + column
 
+    times: Counter[str] = Counter()
+
     def mutant(start: int, stop: int, text: str) -> Mutant:
         number = source.count("\n", 0, start) + 1
         changed = source[:start] + text + source[stop:]
         before, after = (each.splitlines()[number - 1].strip() for each in (source, changed))
-        return Mutant(file, source, start, stop, text, lines, where, f"{before}  ->  {after}")
+        shown = f"{before}  ->  {after}"
+        times[where + shown] += 1
+        if times[where + shown] > 1:
+            shown += f"  (no. {times[where + shown]})"
+        return Mutant(file, source, start, stop, text, lines, where, shown)
 
     for node, lines, where in _in_functions(ast.parse(source)):
         match node:
