@@ -53,7 +53,7 @@ class Trials:
     def __init__(self, session: Session, reached: Iterable[Reached], seconds: float) -> None:
         self.session, self.seconds = session, seconds
         self.taken: dict[str, float] = {}
-        self.by_line: dict[tuple[str, int], set[str]] = defaultdict(set)
+        self.by_line: dict[tuple[str, str], set[str]] = defaultdict(set)
         self.noticed: dict[str, Counter[str]] = defaultdict(Counter)
         for each in reached:
             if not each.passed or each.test not in session.items:
@@ -81,7 +81,7 @@ class Trials:
         by = self.session.first_failure(tests, mutant)
         self.noticed[mutant.file][by.split(" (")[0]] += 1
         print("noticed" if by else "MISSED ", mutant.key, flush=True)
-        return {"change": mutant.key, "by": by, "tests": len(tests), "line": mutant.lines.start}
+        return {"change": mutant.key, "by": by, "tests": len(tests)}
 
 
 def summary(notes: dict[str, Notes]) -> str:

@@ -51,14 +51,14 @@ class Reached:
         Whether it passes.
     seconds : float
         Processor time that it takes alone.
-    lines : dict of str to list of int
-        Lines of the core that it runs, by source.
+    lines : dict of str to list of str
+        Lines of the core that it runs, by source; their texts, which stay what they are when lines are put in before.
     """
 
     test: str
     passed: bool
     seconds: float
-    lines: dict[str, list[int]]
+    lines: dict[str, list[str]]
 
 
 @dataclass
@@ -93,7 +93,10 @@ class Session:
             began = time.process_time()
             failed = self._fails(test)
             sys.settrace(None)
-            found = {str(Path(name).relative_to(ROOT)): sorted(own) for name, own in lines.items()}
+            found = {}
+            for name, own in lines.items():
+                texts = Path(name).read_text(encoding="utf-8").splitlines()
+                found[str(Path(name).relative_to(ROOT))] = sorted({texts[number - 1].strip() for number in own})
             say(json.dumps(asdict(Reached(test, not failed, time.process_time() - began, found))))
 
         said, _ = forked(work)

@@ -35,7 +35,7 @@ class Mutant:
         Characters that are replaced.
     text : str
         What they become.
-    lines : range
+    lines : tuple of str
         Lines of the statement around it, without those of statements within.
     where : str
         The function.
@@ -48,7 +48,7 @@ class Mutant:
     start: int
     stop: int
     text: str
-    lines: range
+    lines: tuple[str, ...]
     where: str
     shown: str
 
@@ -73,7 +73,7 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         # ast counts bytes; sources hold other letters in comments and docstrings only.
         return starts[line - 1] + column
 
-    times: Counter[str] = Counter()
+    texts, times = source.splitlines(), Counter[str]()
 
     def mutant(start: int, stop: int, text: str) -> Mutant:
         number = source.count("\n", 0, start) + 1
@@ -83,7 +83,8 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         times[where + shown] += 1
         if times[where + shown] > 1:
             shown += f"  (no. {times[where + shown]})"
-        return Mutant(file, source, start, stop, text, lines, where, shown)
+        own = tuple(texts[number - 1].strip() for number in lines)
+        return Mutant(file, source, start, stop, text, own, where, shown)
 
     for node, lines, where in _in_functions(ast.parse(source)):
         match node:

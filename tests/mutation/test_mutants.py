@@ -21,14 +21,14 @@ def function(x: float | None = -1.5) -> float:
 
 
 def test_what_is_changed() -> None:
-    found = [(mutant.shown, list(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+    found = [(mutant.shown, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
     assert sorted(found) == [
-        ("* (2.0 - x))  ->  * (2.0 + x))", [7, 8]),
-        ("* (2.0 - x))  ->  * (2.2 - x))", [7, 8]),
-        ("* (2.0 - x))  ->  / (2.0 - x))", [7, 8]),
-        ("if x > 1.0:  ->  if x < 1.0:", [5]),
-        ("if x > 1.0:  ->  if x > 1.1:", [5]),
-        ("return (-x  # minus - here  ->  return (+x  # minus - here", [7, 8]),
+        ("* (2.0 - x))  ->  * (2.0 + x))", 2),
+        ("* (2.0 - x))  ->  * (2.2 - x))", 2),
+        ("* (2.0 - x))  ->  / (2.0 - x))", 2),
+        ("if x > 1.0:  ->  if x < 1.0:", 1),
+        ("if x > 1.0:  ->  if x > 1.1:", 1),
+        ("return (-x  # minus - here  ->  return (+x  # minus - here", 2),
     ]
 
 
