@@ -95,7 +95,9 @@ def summary(notes: dict[str, Notes]) -> str:
             f"{package}: {len(own)} tried, {len(own) - len(missed)} noticed, {len(same)} equivalent, "
             f"{len(missed) - len(same)} missed"
         )
-    return "\n".join(lines + [f"  missed: {key}" for key, note in notes.items() if not note["by"] and key not in EQUIVALENT])
+    return "\n".join(
+        lines + [f"  missed: {key}" for key, note in notes.items() if not note["by"] and key not in EQUIVALENT]
+    )
 
 
 def main() -> None:
