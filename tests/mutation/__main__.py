@@ -1,9 +1,9 @@
 """Try changes of the solver's core: ``python -m tests.mutation --notes FOLDER``.
 
-At first every test that may notice something is run once, and ``FOLDER/reached.jsonl`` notes which lines of the core it
-runs and how long it takes. Then each change is made in a fork of the process that has imported everything, and the tests
-that run the changed statement are run, those first that have noticed most for their time. ``FOLDER/tried.jsonl`` has a
-line for each change that was tried; begun again, the run goes on.
+At first every test that may notice something is run once, and ``FOLDER/reached.jsonl`` notes which lines of the core
+it runs and how long it takes. Then each change is made in a fork of the process that has imported everything, and the
+tests that run the changed statement are run, those first that have noticed most for their time. ``FOLDER/tried.jsonl``
+has a line for each change that was tried; begun again, the run goes on.
 """
 
 from __future__ import annotations

@@ -75,7 +75,7 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
 
     texts, times = source.splitlines(), Counter[str]()
 
-    def mutant(start: int, stop: int, text: str) -> Mutant:
+    def mutant(lines: range, where: str, start: int, stop: int, text: str) -> Mutant:
         number = source.count("\n", 0, start) + 1
         changed = source[:start] + text + source[stop:]
         before, after = (each.splitlines()[number - 1].strip() for each in (source, changed))
@@ -92,17 +92,17 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
                 own, other = OTHER[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
-                    yield mutant(place, place + len(own), other)
+                    yield mutant(lines, where, place, place + len(own), other)
             case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED:
                 own, other = REVERSED[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
-                yield mutant(place, place + len(own), other)
+                yield mutant(lines, where, place, place + len(own), other)
             case ast.UnaryOp(op=ast.USub(), operand=operand) if not isinstance(operand, ast.Constant):
                 place = at(node.lineno, node.col_offset)
-                yield mutant(place, place + 1, "+")
+                yield mutant(lines, where, place, place + 1, "+")
             case ast.Constant(value=float(value)) if value:
                 start, stop = at(node.lineno, node.col_offset), at(node.end_lineno or 0, node.end_col_offset or 0)
-                yield mutant(start, stop, repr(FACTOR * value))
+                yield mutant(lines, where, start, stop, repr(FACTOR * value))
 
 
 def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
