@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import displacement, stress
+from contactstudy.kernels.aligned import aligned_points
+from contactstudy.kernels.column_layers import Layer
 from contactstudy.kernels.columns_field import columns_field
 from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.fine_cells import FineCells
@@ -103,8 +105,15 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    steps = FineCells(cells, graded, EXTENTS[extent], image).steps
+    steps = FineCells(1e-3 * cells, graded, EXTENTS[extent], image).steps
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
+
+
+def test_columns_are_taken_together_from_three_widths_of_the_load_on() -> None:
+    (column,) = aligned_points(np.array([0.1, 0.3]), -0.5, 0.2)
+    for parts in (0, 5):
+        layer = Layer.of(stresses_of(Load.NORMAL), column, Z, np.array([0]), -0.5, 0.2, 7, parts)
+        assert layer.reach == pytest.approx(3 * 7 * 0.2, rel=0.1)
 
 
 def test_nothing_loaded_leaves_nothing() -> None:
