@@ -46,6 +46,8 @@ class AxialShape:
         How far the face of the body goes on beyond either end, metres; 0 or less where it does not.
     stiff : bool
         Whether it has no free ends of its own: rigid, or a half-space.
+    fades : bool
+        Whether the pressure falls towards a common end like a small power of the distance, which no columns settle.
     """
 
     start: float
@@ -55,6 +57,7 @@ class AxialShape:
     height: Callable[[FloatArray], FloatArray]
     room: tuple[float, float]
     stiff: bool = True
+    fades: bool = False
 
     def sharp(self, side: int) -> bool:
         """Whether an end is singular with the exponent 0.5 if it is pressed: a stiff one on a face that goes on."""

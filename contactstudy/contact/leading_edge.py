@@ -93,11 +93,10 @@ class RollingCells:
         own = carries.copy()
         tied_cells = np.array(tied, dtype=np.int64).reshape(-1, 2).T
         own[tuple(tied_cells)] = False
+        # A tied cell has the number of the last unknown one before it.
         numbers = np.cumsum(own).reshape(own.shape) - 1
         unknown = np.argwhere(own).T
-        return cls(
-            unknown, place[tuple(unknown)], tied_cells, numbers[tied_cells[0], tied_cells[1] - 1], np.array(ratio)
-        )
+        return cls(unknown, place[tuple(unknown)], tied_cells, numbers[tuple(tied_cells)], np.array(ratio))
 
     def on_grid(self, traction: FloatArray, shape: tuple[int, int]) -> FloatArray:
         """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""

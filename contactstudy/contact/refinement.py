@@ -212,9 +212,13 @@ class _State:
         self.loads.append(_end_loads(self.edges, self.pressure, self.shape.half_width))
 
     def _unknown_law(self, side: int) -> bool:
-        """Whether a stiff end inside the face is pressed, which is always singular, and its law did not show."""
-        pressed = bool(self.pressure[-side].any())
-        return pressed and self.shape.sharp(side) and self.laws[side] is None
+        """Whether an end is pressed whose pressure does not settle, and its law did not show.
+
+        A stiff one inside the face, which is always singular, or one that fades at the end of the face.
+        """
+        fades = self.shape.fades and self.shape.room[side] == 0
+        unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
+        return unsettled and bool(self.pressure[-side].any())
 
     def stated(self, theta: float, accuracy: float) -> Refined:
         """Values with their errors."""

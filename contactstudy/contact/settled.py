@@ -266,4 +266,6 @@ def _axial_shape(case: Case) -> AxialShape:
         height,
         (_room(case.roller_start - low, near), _room(high - end, near)),
         stiff=case.roller.body is None or isinstance(case.roller.body, HalfSpace),
+        # The factor of the body's image is not that of the roller's.
+        fades=case.roller.body is not None and isinstance(case.body, EndedBody) and case.body.model == "mirror-factor",
     )

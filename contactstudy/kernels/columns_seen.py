@@ -40,6 +40,9 @@ part of what they do that this may leave. Accuracy."""
 CENTRED = 0.25
 """Width of the fine column in whose middle a point lies, over that of the fine column around it. Accuracy."""
 
+LEAST = 1e-3
+"""That width at a step of the load, over the column's. Accuracy: on the top it has infinite stresses."""
+
 SAME_END = 1e-9
 """Part of a column by which a point on an end may miss it. Accuracy."""
 
@@ -266,7 +269,10 @@ def _surroundings(x: float, fine: FineCells, narrow: float, extent: tuple[float,
     if not on_end and low < x < high:
         # On an edge the narrower of both columns decides, so that the mirrored load is treated alike.
         beside = np.searchsorted(inserted, [x - SAME_END * (high - low), x + SAME_END * (high - low)]) - 1
-        step = CENTRED * float(np.diff(inserted)[beside].min())
+        width = float(np.diff(inserted)[beside].min())
+        # No column reaches over a step of the load, which would move its force.
+        free = float(np.abs(fine.steps - x).min(initial=np.inf)) / 2
+        step = min(CENTRED * width, max(free, LEAST * width))
         own = x + step * np.array([-1.5, -0.5, 0.5, 1.5])
         if low < own[0] and own[-1] < high:
             kept = np.abs(inserted - x) > 1.9 * step

@@ -97,6 +97,16 @@ class FineCells:
         return mirrored(_split(self.grid.x_edges, self.split), self._extent)
 
     @cached_property
+    def steps(self) -> FloatArray:
+        """Edges at which the load ends in a step along x, metres, with those of the nearest images."""
+        load, image = self._along_x, self._image
+        first, last = load.sign * load.first, load.sign * load.last
+        low, high = (image * np.isfinite(end) for end in self._extent)
+        before, behind = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
+        own = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLAT * np.abs(self.cells).max()]
+        return np.concatenate([own, *(2 * end - own for end in self._extent if np.isfinite(end))])
+
+    @cached_property
     def edges(self) -> FloatArray:
         """Edges of the cells along x, metres, with those of the nearest images."""
         return mirrored(self.grid.x_edges, self._extent)

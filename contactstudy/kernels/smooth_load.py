@@ -70,7 +70,7 @@ class SmoothLoad:
         faces = np.zeros((rows, widths.size + 1))
         faces[:, 1:-1] = np.where(same, np.minimum(np.sqrt(between), STEEPEST_FACE * least), 0.0)
         first, last = faces[:, :-1].copy(), faces[:, 1:].copy()
-        middle, knot = 1.5 * loads, np.full(loads.shape, 0.5)
+        middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
         fixed = np.zeros(loads.shape, bool)
         forwards = _Row(loads, sign, widths, first, middle, last, knot, fixed)
         forwards.end(spilling=spilling)

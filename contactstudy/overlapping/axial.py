@@ -79,8 +79,7 @@ class AxialModes:
     @property
     def face_weights(self) -> ComplexArray:
         """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of what they leave on top."""
-        single = 4 * np.where(self.discrete == 0, 1.0, 2.0) / self.length
-        return np.concatenate([single, self.weights * 4 / np.pi])
+        return self.load_weights * (4 if self.parity else 2)
 
     def left_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
         """Weighted spectrum of what V leaves on the top per scaled face load: array (wavenumber, depth).

@@ -43,6 +43,16 @@ def test_coefficients_between_and_beyond_the_table() -> None:
     assert creep_coefficients(50.0, 0.25) == pytest.approx([11.7, 12.8, 14.6])
 
 
+@pytest.mark.parametrize(("poisson", "table"), [(0.0, 0.334), (0.25, 0.473), (0.5, 0.731)])
+def test_spin_of_a_narrow_contact_turns_as_kalkers_asymptote(poisson: float, table: float) -> None:
+    # Kalker's own form has Lambda = ln(16 / g**2).
+    for ratio in (0.03, 0.0999):
+        half = 0.5 * np.log(16 / ratio**2)
+        expected = np.pi * ratio**0.5 / 3 * (1 + poisson * (half + np.log(4) - 5)) / (1 - poisson)
+        assert creep_coefficients(ratio, poisson)[2] == pytest.approx(expected)
+    assert expected == pytest.approx(table, rel=0.07)
+
+
 def test_it_takes_creepages_only() -> None:
     with pytest.raises(InvalidInputError, match=r"model = 'fastsim'.*takes forces"):
         Rolling(force_y=1.0, model="fastsim")

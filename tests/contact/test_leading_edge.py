@@ -24,7 +24,7 @@ def strip(part: float, cells: int = 20) -> np.ndarray:
 
 @pytest.mark.parametrize("part", [0.75, 0.9, 1.3])
 def test_a_leading_cell_in_the_contact_is_an_unknown(part: float) -> None:
-    pressure = strip(part)
+    pressure = 3 * strip(part)
     cells = RollingCells.of(pressure, pressure)
     assert cells.to.size == 0
     assert cells.unknown.shape[1] == (pressure > 0).sum()
@@ -45,6 +45,21 @@ def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
     weights = np.random.default_rng(0).random((3, *pressure.shape))
     expected = (weights * on_grid[0]).sum(axis=(1, 2))
     assert cells.gathered(weights).sum(axis=1) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("begins", [0, 2])
+@pytest.mark.parametrize(("count", "place"), [(5, EDGE_OFFSET + 1), (6, EDGE_OFFSET + 0.9)])
+def test_few_cells_do_not_tell_the_place_of_the_edge(begins: int, count: int, place: float) -> None:
+    pressure = strip(0.9)
+    cells = np.zeros((1, begins + count + 2))
+    last = int(np.flatnonzero(pressure[0])[-1]) + 1
+    cells[0, begins : begins + count] = pressure[0, last - count : last]
+    assert RollingCells.of(cells, cells).place == pytest.approx(place)
+
+
+def test_pressure_that_does_not_fall_does_not_tell_the_place_of_the_edge() -> None:
+    for pressure in (np.ones((1, 8)), np.array([[1.0, 1.0, 1.0, 2.0, 2.5, 3.1, 1.0, 0.0]])):
+        assert RollingCells.of(pressure, pressure).place == pytest.approx(EDGE_OFFSET + 1)
 
 
 def test_two_contacts_in_one_row_have_an_edge_each() -> None:

@@ -378,6 +378,16 @@ def test_a_sharp_end_close_to_a_free_end_is_never_a_plain_number(distance: float
         assert float(found["end_intensity_first_error"] / found["end_intensity_first"]) > 0.05
 
 
+def test_an_end_that_fades_is_never_a_plain_number() -> None:
+    """The first column's pressure falls by 5 % with each halving, from 0.64 to 0.47 p0 and on."""
+    rubber = Material(6e8, 0.0)
+    roller = Roller(radius=RADIUS, length=0.13e-3, material=rubber)
+    body = QuarterSpace(material=rubber, model="mirror-factor")
+    found = settled_values(settled(Case(body=body, roller=roller, max_pressure=2e6), 0.02))
+    assert np.isinf(found["end_pressure_first_error"])
+    assert 0 < float(found["peak_pressure_first_error"]) < 0.02 * float(found["peak_pressure_first"])
+
+
 def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
     """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
     body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))

@@ -89,6 +89,16 @@ EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
 
 
 @strips
+@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
+def test_a_body_elsewhere_has_the_same_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+    edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
+    here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
+    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
+    assert np.abs(there - here).max() < 1e-9 * np.abs(here).max()
+
+
+@strips
 @pytest.mark.parametrize(("seen", "loaded"), [(0, 0), (0, 1), (3, 1), (7, 2), (6, 7)])
 @pytest.mark.parametrize("offset", [0, 1, 4])
 def test_influence_between_columns_is_the_double_integral(strip: Strip, seen: int, loaded: int, offset: int) -> None:

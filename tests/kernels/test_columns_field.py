@@ -10,8 +10,11 @@ from hypothesis import strategies as st
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import displacement, stress
-from contactstudy.kernels.columns_field import columns_field
+from contactstudy.kernels.aligned import aligned_points
+from contactstudy.kernels.column_layers import Layer
+from contactstudy.kernels.columns_field import columns_field, smooth_columns_field
 from contactstudy.kernels.field import half_space_field
+from contactstudy.kernels.fine_cells import FineCells
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
@@ -64,6 +67,73 @@ def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) 
     expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
     found = columns_field(cells, influence, graded, X, y, Z, extent=EXTENTS[extent])
     assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+@pytest.mark.parametrize("column", [7, 10])
+def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
+    load: Load, extent: str, column: int
+) -> None:
+    # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    fine = FineCells(cells, graded, EXTENTS[extent], load.sign_x)
+    uniform = Grid((0.0, LENGTH), (float(fine.y_edges[0]), float(fine.y_edges[-1])), 20, 9 * fine.cells.shape[1])
+    smooth = fine.along_y(cells[:, fine.first : fine.first + fine.cells.shape[1]]).means(
+        np.linspace(*uniform.y_range, uniform.cells_y + 1)
+    )
+    spread = np.repeat(smooth, np.diff(GRADED), axis=0)
+    influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
+    for z in (np.array([0.15]), np.array([0.4])):
+        expected = half_space_field(spread, influence, uniform, x, y, z, extent=EXTENTS[extent])
+        found = smooth_columns_field(cells, influence, graded, x, y, z, extent=EXTENTS[extent])
+        assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
+    """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
+    scale = 1e-3
+    graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
+    across = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
+    cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * across
+    ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
+    fine = FineCells(cells, graded, ends)
+    y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
+    uniform = Grid((0.0, scale * LENGTH), y_range, 100, 9 * fine.cells.shape[1])
+    along_x = fine.columns([uniform.x_edges])
+    spread = fine.along_y(along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
+    influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
+    for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
+        expected = half_space_field(spread, influence, uniform, x, y, z, extent=ends)
+        found = smooth_columns_field(cells, influence, graded, x, y, z, extent=ends)
+        assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(
+    ("column", "extent", "image", "expected"),
+    [
+        (3, "none", 1, [0.3, 0.5]),
+        (3, "last", 1, [0.3, 0.5, 3.5, 3.7]),
+        (10, "both", 1, [-1.9, 1.9, 2.1]),
+        (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
+    ],
+)
+def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    steps = FineCells(1e-3 * cells, graded, EXTENTS[extent], image).steps
+    assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
+
+
+def test_columns_are_taken_together_from_three_widths_of_the_load_on() -> None:
+    (column,) = aligned_points(np.array([0.1, 0.3]), -0.5, 0.2)
+    for parts in (0, 5):
+        layer = Layer.of(stresses_of(Load.NORMAL), column, Z, np.array([0]), -0.5, 0.2, 7, parts)
+        assert layer.reach == pytest.approx(3 * 7 * 0.2, rel=0.1)
 
 
 def test_nothing_loaded_leaves_nothing() -> None:

@@ -63,12 +63,18 @@ def test_corners_and_edges_on_the_surface_give_numbers() -> None:
 
 @pytest.mark.parametrize("kind", sorted(CORNERS))
 @pytest.mark.parametrize("depth", [0.0, 0.3, 4.0])
-@pytest.mark.parametrize(("length", "dy", "cells_y"), [(2.0, 0.2, 3), (0.2, 0.04, 90)], ids=["long", "thin"])
-def test_all_images_are_summed(kind: str, depth: float, length: float, dy: float, cells_y: int) -> None:
+@pytest.mark.parametrize(
+    ("length", "dy", "cells_y", "cells_x", "allowed"),
+    [(2.0, 0.2, 3, 20, 1e-8), (0.2, 0.04, 90, 20, 1e-8), (2.0, 0.2, 3, 2, 1e-5)],
+    ids=["long", "thin", "two cells"],
+)
+def test_all_images_are_summed(
+    kind: str, depth: float, length: float, dy: float, cells_y: int, cells_x: int, allowed: float
+) -> None:
     """Against a plain sum over many images, extrapolated to infinitely many; also seen from many lengths aside."""
-    dx = 0.05 * length
+    dx = length / cells_x
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
-    x, y = dx * np.arange(0, 21), dy * np.arange(cells_y)
+    x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
     found = images.mirrored_kernel(corner, x, y, dx, dy, length)
     sums = []
     for count in (400, 800):
@@ -76,4 +82,22 @@ def test_all_images_are_summed(kind: str, depth: float, length: float, dy: float
         sums.append(sum(images.cell_kernel(corner, x + shift, y, dx, dy) for shift in shifts))
     limit = sums[1] + (sums[1] - sums[0])
     # Far below the length of the body there is next to nothing left of one cell's load.
-    assert np.abs(found - limit).max() < 1e-8 / length
+    assert np.abs(found - limit).max() < allowed / length
+
+
+@pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
+def test_few_points_stand_for_many_a_length_away(span: float) -> None:
+    length, values = 1.0, np.linspace(2.0, 2.0 + span, 200)
+    points, matrix = images.few_points(values, length)
+    assert matrix is not None
+    assert points.size < 120
+    for away in (1.0 - length, 2.0 + span + length):
+        expected = 1 / (values - away)
+        assert np.abs(matrix @ (1 / (points - away)) - expected).max() < 2 * images.LEFT * np.abs(expected).max()
+
+
+def test_points_at_one_place_are_one() -> None:
+    points, matrix = images.few_points(np.full(3, 0.7), 1.0)
+    assert points.tolist() == [0.7]
+    assert np.array_equal(np.ones((3, 1)), matrix)
+    assert images.few_points(np.array([0.7]), 1.0)[1] is None

@@ -53,3 +53,12 @@ def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
     for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
         found = mixed_difference(SURFACE_CORNERS[Response(direction, load)](x, y, NU))
         np.testing.assert_allclose(found, mixed_difference(expected), rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("load", list(Load))
+@pytest.mark.parametrize("at", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
+def test_on_the_lines_through_a_corner_they_are_continuous(load: Load, at: tuple[float, float]):
+    corner, (x, y) = DISPLACEMENT_CORNERS[load], at
+    found = corner(np.array([x]), np.array([y]), 0.0, NU)
+    beside = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
+    np.testing.assert_allclose(found, beside, atol=1e-7)

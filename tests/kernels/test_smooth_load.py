@@ -98,3 +98,107 @@ def test_rounding_does_not_decide_how_a_load_ends() -> None:
     fine = SmoothLoad.of(rows, edges).means(np.linspace(-1.0, 1.0, 21))
     assert np.ptp(fine, axis=0).max() < 1e-9
     assert np.abs(fine - fine[:, ::-1]).max() < 1e-9
+
+
+@settings(max_examples=30)
+@given(row=rows(), spilling=st.booleans())
+def test_a_multiple_of_a_load_has_the_multiple_of_its_shape(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+    loads, edges = row
+    fine = np.linspace(edges[0], edges[-1], 60)
+    one = SmoothLoad.of(loads, edges, spilling=spilling).means(fine)
+    for factor in (2.0**-30, 2.0**30):
+        other = SmoothLoad.of(factor * loads, edges, spilling=spilling).means(fine)
+        assert np.allclose(one, other / factor, atol=1e-9)
+
+
+@settings(max_examples=30)
+@given(row=rows(), spilling=st.booleans())
+def test_moments_are_those_of_many_narrow_cells(row: tuple[FloatArray, FloatArray], spilling: bool) -> None:
+    loads, edges = row[0], row[1] + 0.7
+    smooth = SmoothLoad.of(loads, edges, spilling=spilling)
+    parts = 400
+    fine = np.append((edges[:-1, None] + np.diff(edges)[:, None] * np.arange(parts) / parts).ravel(), edges[-1])
+    forces, middles = smooth.means(fine) * np.diff(fine), 0.5 * (fine[1:] + fine[:-1])
+    about = np.repeat(0.5 * (edges[1:] + edges[:-1]), parts)
+    own = (forces * (middles - about)).reshape(loads.shape[0], -1, parts).sum(axis=2)
+    assert np.allclose(smooth.moments, own, atol=1e-4)
+    total = np.cumsum(forces * (middles - edges[0]), axis=1)
+    assert np.allclose(smooth._moment(fine[1:]), total, atol=2e-3)
+    if edges.size < 3:
+        return
+    other = np.linspace(edges[0] - 0.3, edges[-1] + 0.2, 9)
+    for gathered, cells in ((smooth.gathered(), edges), (smooth.gathered_on(other), other)):
+        found = gathered * np.diff(cells)
+        assert np.allclose(found.sum(axis=1), forces.sum(axis=1), atol=1e-9)
+        centres = 0.5 * (cells[1:] + cells[:-1]) - edges[0]
+        assert np.allclose(found @ centres, total[:, -1], atol=2e-3)
+
+
+def test_nothing_is_loaded_before_the_first_edge_and_behind_the_last() -> None:
+    edges = np.array([0.0, 1.0, 2.5, 3.0])
+    smooth = SmoothLoad.of(np.array([[1.0, 2.0, 3.0]]), edges)
+    assert smooth.integral(np.array([-1.0, 0.0, 3.0, 3.1, 9.0]))[0] == pytest.approx([0, 0, 5.5, 5.5, 5.5])
+    assert smooth._moment(np.array([3.0, 3.1, 9.0]))[0] == pytest.approx([smooth._moment(edges)[0, -1]] * 3)
+
+
+def test_a_load_that_does_not_fall_in_its_last_cell_ends_in_a_step() -> None:
+    means = SmoothLoad.of(np.array([[1.2, 1.1, 1.0, 1.0]]), np.linspace(0.0, 4.0, 5)).means(np.linspace(0.0, 4.0, 41))
+    assert means[0, 30:] == pytest.approx(1.0)
+
+
+def root(edges: FloatArray, border: float) -> FloatArray:
+    """Forces between edges of a load whose square falls linearly to a border."""
+    return np.diff(-2 / 3 * np.maximum(border - edges, 0.0) ** 1.5)
+
+
+WIDTHS = np.array([1.0, 0.8, 1.2, 1.0, 0.9, 1.1, 0.7, 1.5, 1.0])
+
+
+@pytest.mark.parametrize("factor", [1.0, 5.0])
+def test_a_root_that_ends_behind_the_last_cell_is_followed_there(factor: float) -> None:
+    """Contacts solved on cells press the last cell whose middle is in the contact, with what belongs to the next."""
+    edges = np.append(0.0, np.cumsum(WIDTHS))
+    forces = root(edges, edges[6] + 0.25)
+    forces[5:7] = forces[5:7].sum(), 0.0
+    loads = forces / WIDTHS
+    fine = np.linspace(edges[5], edges[7], 31)
+    smooth = SmoothLoad.of(factor * loads[None], edges, spilling=True)
+    assert np.abs(smooth.means(fine)[0] / factor - root(fine, edges[6] + 0.25) / np.diff(fine)).max() < 0.06
+    assert smooth.integral(edges[6:8] + [0.0, 0.0])[0] / factor == pytest.approx(
+        [forces.sum() - 0.09, forces.sum()], abs=0.02
+    )
+    assert smooth.integral(edges[7:8])[0] == pytest.approx(factor * forces.sum())
+    assert smooth.means(np.array([edges[6] + 0.4, edges[7]]))[0] == 0
+    # Not where it is not wanted, nor at the end of a row, nor beside another load.
+    beside = np.where(np.arange(9) == 7, 1.0, loads)
+    for row, spilling in ((loads, False), (beside, True), (loads[:6], True)):
+        kept = SmoothLoad.of(factor * row[None], edges[: row.size + 1], spilling=spilling)
+        assert kept.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
+
+
+@pytest.mark.parametrize("moved", [0.1, 0.4])
+@pytest.mark.parametrize("factor", [0.01, 5.0])
+def test_a_root_that_ends_early_in_the_last_cell_is_shared_by_the_last_two(moved: float, factor: float) -> None:
+    """Contacts solved on cells put too little into the last cell, and too much into the one before."""
+    edges = np.append(0.0, np.cumsum(WIDTHS))
+    border = edges[5] + 0.25
+    forces = root(edges, border)
+    forces[4:6] += moved * forces[5] * np.array([1, -1])
+    fine = np.linspace(edges[4], edges[6], 33)
+    smooth = SmoothLoad.of(factor * forces[None] / WIDTHS, edges)
+    assert np.abs(smooth.means(fine)[0] / factor - root(fine, border) / np.diff(fine)).max() < 0.05
+    assert smooth.integral(edges[6:7])[0] == pytest.approx(factor * forces.sum())
+
+
+@pytest.mark.parametrize("factor", [1.0, 5.0])
+def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
+    edges = np.append(0.0, np.cumsum(WIDTHS[:5]))
+    loads = root(edges, edges[5] + 0.3) / WIDTHS[:5]
+    smooth = SmoothLoad.of(factor * loads[None], edges)
+    assert smooth.last[0, -1] / factor == pytest.approx(0.3**0.5, rel=0.05)
+    assert smooth.integral(edges[5:])[0] == pytest.approx(factor * loads @ WIDTHS[:5])
+
+
+def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
+    smooth = SmoothLoad.of(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
+    assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]

@@ -1,80 +1,133 @@
-"""Try mutants of the solver's core: ``python -m tests.mutation --sample 100 --out FILE``.
+"""Try changes of the solver's core: ``python -m tests.mutation --notes FOLDER``.
 
-FILE has one line of JSON for each mutant that was tried; begun again with the same file, the run goes on. Without
-``--sample`` all are tried, which takes days. ``--survivors`` tries those of the file again that no test noticed.
+At first every test that may notice something is run once, and ``FOLDER/reached.jsonl`` notes which lines of the core
+it runs and how long it takes. Then each change is made in a fork of the process that has imported everything, and the
+tests that run the changed statement are run, those first that have noticed most for their time. ``FOLDER/tried.jsonl``
+has a line for each change that was tried; begun again, the run goes on.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
-import tempfile
-from collections import Counter
+import os
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
 from dataclasses import asdict
 from pathlib import Path
 from random import Random
+from typing import Any
 
-from tests.mutation.mutants import Mutant, all_mutants
-from tests.mutation.trial import ROOT, Trial, copy_repository, try_mutant
+from tests.mutation.equivalent import EQUIVALENT
+from tests.mutation.forked import Reached, Session, with_session
+from tests.mutation.mutants import PACKAGES, Mutant, all_mutants
 
-PACKAGES = ("kernels", "overlapping", "contact")
-
-
-def key(mutant: Mutant) -> str:
-    """What tells a mutant from others, also after lines have moved."""
-    return f"{mutant.file}: {mutant.shown}"
+Notes = dict[str, Any]
 
 
-def chosen(mutants: list[Mutant], sample: int | None) -> list[Mutant]:
-    """So many of the mutants, always the same ones, from every source in turn."""
-    if sample is None:
-        return mutants
-    by_file: dict[str, list[Mutant]] = {}
-    for mutant in mutants:
-        by_file.setdefault(mutant.file, []).append(mutant)
-    for file, own in by_file.items():
-        Random(file).shuffle(own)
-    depth = max(len(own) for own in by_file.values())
-    in_turn = [own[i] for i in range(depth) for own in by_file.values() if i < len(own)]
-    return in_turn[:sample]
+def read(file: Path, key: str) -> dict[str, Notes]:
+    """Lines of JSON by one of their entries; the last one of each counts."""
+    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    return {note[key]: note for note in map(json.loads, lines)}
 
 
-def summary(notes: dict[str, dict[str, object]]) -> str:
-    """Counts by package, and every mutant that no test noticed."""
+def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
+    """Do jobs in some processes and append what each returns to a file."""
+    for number in range(processes):
+        if os.fork():
+            continue
+        try:
+            for job in jobs[number::processes]:
+                line = json.dumps(work(job))
+                with file.open("a", encoding="utf-8") as notes:
+                    notes.write(f"{line}\n")
+        finally:
+            os._exit(0)
+    for _ in range(processes):
+        os.wait()
+
+
+class Trials:
+    """Changes that are tried by the tests that reach them, until one fails or `seconds` of tests have passed."""
+
+    def __init__(self, session: Session, reached: Iterable[Reached], seconds: float) -> None:
+        self.session, self.seconds = session, seconds
+        self.taken: dict[str, float] = {}
+        self.by_line: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self.noticed: dict[str, Counter[str]] = defaultdict(Counter)
+        for each in reached:
+            if not each.passed or each.test not in session.items:
+                continue
+            self.taken[each.test] = each.seconds
+            for file, lines in each.lines.items():
+                for line in lines:
+                    self.by_line[file, line].add(each.test)
+
+    def tests(self, mutant: Mutant) -> list[tuple[str, float]]:
+        """Tests that run a changed statement, with their seconds: the most promising first."""
+        reaching = set().union(*(self.by_line[mutant.file, line] for line in mutant.lines))
+        noticed = self.noticed[mutant.file]
+        promising = sorted(reaching, key=lambda test: (self.taken[test] + 0.05) / (1 + 5 * noticed[test]))
+        chosen, total = [], 0.0
+        for test in promising:
+            if total + self.taken[test] <= self.seconds:
+                chosen.append((test, self.taken[test]))
+                total += self.taken[test]
+        return chosen
+
+    def tried(self, mutant: Mutant) -> Notes:
+        """Try a change and say what noticed it."""
+        tests = self.tests(mutant)
+        by = self.session.first_failure(tests, mutant)
+        self.noticed[mutant.file][by.split(" (")[0]] += 1
+        print("noticed" if by else "MISSED ", mutant.key, flush=True)
+        return {"change": mutant.key, "by": by, "tests": len(tests)}
+
+
+def summary(notes: dict[str, Notes]) -> str:
+    """Counts by package, and every change that no test noticed."""
     lines = []
     for package in PACKAGES:
-        kinds = Counter(note["killed"] for name, note in notes.items() if f"/{package}/" in name)
-        lines.append(f"{package}: {kinds.total()} tried, {kinds[True]} noticed, {kinds[False]} not")
-    lines += [f"  not noticed: {name}" for name, note in notes.items() if not note["killed"]]
-    return "\n".join(lines)
+        own = [note for key, note in notes.items() if f"/{package}/" in key]
+        missed = [note for note in own if not note["by"]]
+        same = [note for note in missed if note["change"] in EQUIVALENT]
+        lines.append(
+            f"{package}: {len(own)} tried, {len(own) - len(missed)} noticed, {len(same)} equivalent, "
+            f"{len(missed) - len(same)} missed"
+        )
+    return "\n".join(
+        lines + [f"  missed: {key}" for key, note in notes.items() if not note["by"] and key not in EQUIVALENT]
+    )
 
 
-def main() -> int:
+def main() -> None:
     """Try what is asked for."""
     parser = argparse.ArgumentParser(prog="python -m tests.mutation", description=__doc__)
-    parser.add_argument("--sample", type=int, help="number of mutants; default: all")
-    parser.add_argument("--package", choices=PACKAGES, action="append", help="only these; default: all three")
-    parser.add_argument("--out", type=Path, required=True, help="file of notes, one line a mutant")
-    parser.add_argument("--survivors", action="store_true", help="try those again that were not noticed")
+    parser.add_argument("--notes", type=Path, required=True, help="folder of notes")
+    parser.add_argument("--sample", type=int, help="so many changes, drawn by lot; default: all")
+    parser.add_argument("--only", default="", help="only changes whose source or text has this in it")
+    parser.add_argument("--again", action="store_true", help="try those again that no test noticed")
+    parser.add_argument("--seconds", type=float, default=60.0, help="processor time of tests for one change")
+    parser.add_argument("--processes", type=int, default=1)
     asked = parser.parse_args()
-    lines = asked.out.read_text().splitlines() if asked.out.exists() else []
-    notes = {note["mutant"]: note for note in map(json.loads, lines)}
-    again = {name for name, note in notes.items() if asked.survivors and not note["killed"]}
-    mutants = chosen(all_mutants(ROOT, tuple(asked.package or PACKAGES)), None if asked.survivors else asked.sample)
-    with tempfile.TemporaryDirectory(prefix="mutation-") as place:
-        copy_repository(Path(place))
-        for mutant in mutants:
-            name = key(mutant)
-            if name not in again if asked.survivors else name in notes:
-                continue
-            found: Trial = try_mutant(mutant, Path(place))
-            notes[name] = {"mutant": name, **asdict(found)}
-            print("noticed " if found.killed else "MISSED  ", f"{found.seconds:5.0f} s", name, flush=True)
-            with asked.out.open("a") as file:
-                file.write(json.dumps(notes[name]) + "\n")
-    print(summary(notes))
-    return int(any(not note["killed"] for note in notes.values()))
+    asked.notes.mkdir(parents=True, exist_ok=True)
+    reached, tried = asked.notes / "reached.jsonl", asked.notes / "tried.jsonl"
+
+    def work(session: Session) -> None:
+        known = read(reached, "test")
+        tests = [test for test in session.items if test not in known]
+        shared(lambda test: asdict(session.reached(test)), tests, reached, asked.processes)
+        trials = Trials(session, (Reached(**note) for note in read(reached, "test").values()), asked.seconds)
+        notes = read(tried, "change")
+        done = {key for key, note in notes.items() if note["by"] or not asked.again}
+        mutants = [each for each in all_mutants() if asked.only in each.key]
+        Random(0).shuffle(mutants)
+        rest = [each for each in mutants[: asked.sample] if each.key not in done | set(EQUIVALENT)]
+        shared(trials.tried, rest, tried, asked.processes)
+        print(summary(read(tried, "change")))
+
+    with_session(work)
 
 
 if __name__ == "__main__":
-    raise SystemExit(main())
+    main()

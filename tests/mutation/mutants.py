@@ -3,9 +3,15 @@
 from __future__ import annotations
 
 import ast
+from collections import Counter
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+PACKAGES = ("kernels", "overlapping", "contact")
+"""The solver's core."""
 
 OTHER = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
 """Arithmetic signs, and what each becomes."""
@@ -17,34 +23,44 @@ FACTOR = 1.1
 """By which a number with a decimal point grows inside a function."""
 
 
-@dataclass(frozen=True, order=True)
+@dataclass(frozen=True)
 class Mutant:
     """A change of a source.
 
     Attributes
     ----------
-    file : str
-        The source, relative to the repository.
-    line : int
-        Its line.
+    file, source : str
+        The source, relative to the repository, and its text.
     start, stop : int
         Characters that are replaced.
     text : str
         What they become.
+    lines : tuple of str
+        Lines of the statement around it, without those of statements within.
+    where : str
+        The function.
     shown : str
         The line before and after.
     """
 
     file: str
-    line: int
+    source: str = field(repr=False)
     start: int
     stop: int
     text: str
+    lines: tuple[str, ...]
+    where: str
     shown: str
 
-    def applied(self, source: str) -> str:
+    @property
+    def key(self) -> str:
+        """What tells a change from others, also after lines have moved."""
+        return f"{self.file}: {self.where}: {self.shown}"
+
+    @property
+    def changed(self) -> str:
         """The source with the change."""
-        return source[: self.start] + self.text + source[self.stop :]
+        return self.source[: self.start] + self.text + self.source[self.stop :]
 
 
 def mutants_of(file: str, source: str) -> Iterator[Mutant]:
@@ -57,50 +73,62 @@ def mutants_of(file: str, source: str) -> Iterator[Mutant]:
         # ast counts bytes; sources hold other letters in comments and docstrings only.
         return starts[line - 1] + column
 
-    def mutant(start: int, stop: int, text: str) -> Mutant:
+    texts, times = source.splitlines(), Counter[str]()
+
+    def mutant(lines: range, where: str, start: int, stop: int, text: str) -> Mutant:
         number = source.count("\n", 0, start) + 1
         changed = source[:start] + text + source[stop:]
         before, after = (each.splitlines()[number - 1].strip() for each in (source, changed))
-        return Mutant(file, number, start, stop, text, f"{before}  ->  {after}")
+        shown = f"{before}  ->  {after}"
+        times[where + shown] += 1
+        if times[where + shown] > 1:
+            shown += f"  (no. {times[where + shown]})"
+        own = tuple(texts[number - 1].strip() for number in lines)
+        return Mutant(file, source, start, stop, text, own, where, shown)
 
-    for node in _in_functions(ast.parse(source)):
+    for node, lines, where in _in_functions(ast.parse(source)):
         match node:
             case ast.BinOp(left=left, op=op) if type(op) in OTHER:
                 own, other = OTHER[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
                 if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
-                    yield mutant(place, place + len(own), other)
+                    yield mutant(lines, where, place, place + len(own), other)
             case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED:
                 own, other = REVERSED[type(op)]
                 place = _between(source, at(left.end_lineno or 0, left.end_col_offset or 0), own)
-                yield mutant(place, place + len(own), other)
+                yield mutant(lines, where, place, place + len(own), other)
             case ast.UnaryOp(op=ast.USub(), operand=operand) if not isinstance(operand, ast.Constant):
                 place = at(node.lineno, node.col_offset)
-                yield mutant(place, place + 1, "+")
+                yield mutant(lines, where, place, place + 1, "+")
             case ast.Constant(value=float(value)) if value:
                 start, stop = at(node.lineno, node.col_offset), at(node.end_lineno or 0, node.end_col_offset or 0)
-                yield mutant(start, stop, repr(FACTOR * value))
+                yield mutant(lines, where, start, stop, repr(FACTOR * value))
 
 
-def _in_functions(tree: ast.AST) -> Iterator[ast.AST]:
-    """Nodes of the bodies of functions that compute; not of annotations, defaults, messages or checks."""
-    for node in ast.walk(tree):
+def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+    """Nodes of functions that compute, with the lines of their statement and the function's name."""
+    for node in ast.iter_child_nodes(tree):
+        name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
+        yield from _in_functions(node, name)
         if isinstance(node, ast.FunctionDef):
             for statement in node.body:
-                yield from _computing(statement)
+                yield from ((found, lines, name) for found, lines in _computing(statement, range(0)))
 
 
-def _computing(node: ast.AST) -> Iterator[ast.AST]:
+def _computing(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
     """Nodes below one, without errors that are raised, texts, types and functions within, which come by themselves."""
     if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
         return
-    yield node
+    if isinstance(node, ast.stmt):
+        within = [each.lineno for each in getattr(node, "body", [])]
+        lines = range(node.lineno, min([*within, (node.end_lineno or 0) + 1]))
+    yield node, lines
     for name, value in ast.iter_fields(node):
         if name in ("annotation", "returns"):
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):
-                yield from _computing(child)
+                yield from _computing(child, lines)
 
 
 def _between(source: str, start: int, sign: str) -> int:
@@ -111,11 +139,11 @@ def _between(source: str, start: int, sign: str) -> int:
     return place
 
 
-def all_mutants(root: Path, packages: tuple[str, ...]) -> list[Mutant]:
+def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
     """All changes of the sources of some packages, in order."""
     files = sorted(path for package in packages for path in (root / "contactstudy" / package).glob("*.py"))
     return [
         mutant
         for path in files
-        for mutant in sorted(mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8")))
+        for mutant in mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
     ]

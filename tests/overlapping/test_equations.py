@@ -6,13 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy import integrate
 
 from contactstudy import Grid, Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import SINKS, Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
-from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.equations import ON_END, EquationSet
 from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -68,3 +69,41 @@ def test_no_internal_setting_matters() -> None:
     }
     for name, value in finer.items():
         assert np.abs(stress(replace(Resolution(), **{name: value})) - usual).max() < 2e-5, name
+
+
+ON_THE_END = {
+    Load.NORMAL: lambda x, y, k, z, nu: -((x / k) ** 2 * (1 - k * z) + 2 * nu * (y / k) ** 2),
+    Load.ALONG_X: lambda x, y, k, z, nu: x / k * (2 + 2 * nu * (y / k) ** 2 - (x / k) ** 2 * k * z),
+    Load.ALONG_Y: lambda x, y, k, z, nu: y / k * (2 * nu * (y / k) ** 2 - (x / k) ** 2 * k * z),
+}
+"""Stress sigma_xx, over ``exp(-k z)``, below a harmonic load on a half-space (Boussinesq's potentials)."""
+
+
+@pytest.mark.parametrize("load", Load)
+def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) -> None:
+    nu, lateral = 0.3, 0.7
+    axial, depth = np.array([0.0, 0.4, 2.0]), np.array([0.2, 1.5])
+    found = ON_END[load](axial.astype(complex), depth, lateral, nu)
+    for i, j in np.ndindex(found.shape):
+        k = np.hypot(axial[j], lateral)
+        stress = ON_THE_END[load]
+        integral = integrate.quad(
+            lambda z: stress(axial[j], lateral, k, z, nu) * np.exp(-k * z) * np.cos(depth[i] * z), 0, 60 / k, limit=200
+        )[0]
+        assert found[i, j] == pytest.approx(-2 / np.pi * integral, abs=1e-9)
+
+
+@pytest.mark.parametrize("length", [3.0, np.inf])
+def test_wavenumbers_in_other_units(length: float) -> None:
+    for shortest, lateral in ((0.02, 0.7), (2.0, 40.0)):
+        one = axial_modes(length, lateral, shortest, Resolution())
+        other = axial_modes(1e-3 * length, 1e3 * lateral, 1e-3 * shortest, Resolution())
+        for modes, scaled in zip(one, other, strict=True):
+            assert scaled.wavenumbers == pytest.approx(1e3 * modes.wavenumbers)
+            system, there = (
+                EquationSet.build(each, rate * lateral, 0.3, shortest / rate, Resolution())
+                for each, rate in ((modes, 1.0), (scaled, 1e3))
+            )
+            assert there.depth == pytest.approx(1e3 * system.depth)
+            assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
+            assert there.scale == pytest.approx(system.scale)

@@ -100,6 +100,15 @@ def test_poles_are_relative_to_the_reference():
     np.testing.assert_allclose(along[1, 1], -(total[0, 2] - total[0, 0]) / (2 * step), rtol=1e-4)
 
 
+@pytest.mark.parametrize("y", [0.02, 0.3, -2.0])
+def test_moments_of_a_sine_are_those_of_a_cosine_integrated_along_y(y: float):
+    """``sin(k y) / k**3`` grows along y as ``cos(k y) / k**2``, motions included, and so on."""
+    step, reference = 1e-4, 3.0
+    there, back = (sine_moments(0.7, np.array([y + side * step]), reference)[:, 0] for side in (1, -1))
+    cosine = cosine_moments(0.7, np.array([y]), reference)[:, 0]
+    np.testing.assert_allclose((there - back)[:3] / (2 * step), [cosine[1], cosine[2], cosine[3]], atol=1e-6)
+
+
 @pytest.mark.parametrize("poles", [POLES, BENDING_POLES])
 def test_an_answer_with_poles_is_integrated_whatever_the_first_panel(poles: int):
     y, totals = np.array([0.0, 0.4, 2.0]), []

@@ -211,9 +211,7 @@ def failed(checks: Iterator[Check]) -> dict[tuple[str, str], bool]:
 
 
 def coarse_quadratures(patch: Patch) -> None:
-    coarse = Resolution(
-        step=0.6, reach=12.5, lateral_nodes=4, lateral_ratio=12.0, lateral_order=4, lateral_reach=2.5
-    )
+    coarse = Resolution(step=0.6, reach=12.5, lateral_nodes=4, lateral_ratio=12.0, lateral_order=4, lateral_reach=2.5)
     patch.setattr(convergence, "Resolution", lambda: coarse)
 
 

@@ -1,0 +1,58 @@
+"""Lengths and moduli in other units: the same fields, whatever bodies, cells and tractions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    FiniteLengthSpace,
+    HalfSpace,
+    Material,
+    QuarterSpace,
+    displacement_field,
+    equivalent_loads,
+    stress_field,
+    surface_displacement,
+)
+from contactstudy.bodies.models import Body
+
+EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.1, 0.3, 0.6, 1.1, 1.7, 2.2, 2.8, 3.0])}
+ENDS = ["half", "quarter", "finite", "single-mirror", "mirror-factor"]
+
+
+def body(kind: str, length: float, modulus: float) -> Body:
+    material = Material(modulus, 0.3)
+    if kind in ("half", "quarter"):
+        return (HalfSpace if kind == "half" else QuarterSpace)(material=material)
+    return FiniteLengthSpace(length=3.0 * length, material=material, model="exact" if kind == "finite" else kind)
+
+
+def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndarray]:
+    """Stresses over the modulus, displacements over the length, equivalent loads over the modulus."""
+    x, y = 0.5 * (EDGES[cells][1:] + EDGES[cells][:-1]), np.linspace(-1.0, 1.0, 9)
+    pressure = 1e-3 * modulus * np.sqrt(np.maximum(0.7 - y**2, 0)) * (1 + 0.3 * x[:, None])
+    coordinates = {"x": length * x, "y": length * y, "x_width": ("x", length * np.diff(EDGES[cells]))}
+    load = xr.DataArray(pressure, coordinates, ("x", "y"))
+    own, at = body(kind, length, modulus), [length * np.array(each) for each in ([0.0, 0.5, 2.9], [-0.3, 0.4])]
+    stress = stress_field(own, load, 0.2, *at, [0.02 * length, 0.7 * length], traction_x=0.1 * load)
+    moved = displacement_field(own, load, 0.2, *at, [0.0, 0.7 * length])
+    top = surface_displacement(own, load, 0.2)
+    found = [stress[name].values / modulus for name in stress.data_vars]
+    found += [moved[name].values / length for name in moved.data_vars]
+    found += [(top if isinstance(top, xr.DataArray) else top.to_dataarray()).values / length]
+    if kind in ("quarter", "finite"):
+        loads = equivalent_loads(own, load, 0.2)
+        found += [loads[name].values / modulus for name in loads.data_vars if loads[name].attrs.get("units") == "Pa"]
+    return found
+
+
+@pytest.mark.parametrize("cells", EDGES)
+@pytest.mark.parametrize("kind", ENDS)
+def test_other_units_make_the_same_fields(kind: str, cells: str) -> None:
+    expected, found = fields(kind, cells, 1e-3, 2e11), fields(kind, cells, 2.0**-12 * 1e-3, 2.0**-24 * 2e11)
+    assert len(expected) > 8
+    for one, other in zip(expected, found, strict=True):
+        scale = np.abs(one[np.isfinite(one)]).max()  # displacements of mirrored rows are differences of large numbers
+        np.testing.assert_allclose(other, one, rtol=0, atol=1e-7 * scale)

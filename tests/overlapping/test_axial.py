@@ -1,0 +1,61 @@
+"""Axial wavenumbers: few of them and a ray stand for the whole sum, or for the whole integral."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.axial import AxialModes, axial_modes
+from contactstudy.overlapping.quadrature import Resolution
+
+X = np.array([0.02, 0.6, 1.5, 2.7])
+
+
+def represented(modes: AxialModes, waves: np.ndarray, height: float) -> np.ndarray:
+    """Sum of the waves times ``exp(-k height)``, with the weights of a load's spectrum."""
+    return np.asarray(((modes.load_weights * np.exp(-modes.wavenumbers * height))[:, None] * waves).sum(axis=0).real)
+
+
+@pytest.mark.parametrize("length", [3.0, 5.0])
+@pytest.mark.parametrize("height", [0.15, 1.0])
+def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: float) -> None:
+    for modes, parity in zip(axial_modes(length, 0.5, 0.05, Resolution()), (1, -1), strict=True):
+        numbers = np.arange(0 if parity > 0 else 1, 4000, 2)
+        k = np.pi * numbers / length
+        weights = np.where(numbers == 0, 1.0, 2.0) / length * np.exp(-k * height)
+        assert modes.parity == parity
+        for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
+            expected = weights @ wave(np.outer(k, X))
+            assert represented(modes, waves(X), height) == pytest.approx(expected, abs=2e-6)
+
+
+@pytest.mark.parametrize("height", [0.15, 1.0])
+def test_a_ray_is_the_integral_over_all_wavenumbers_of_one_end(height: float) -> None:
+    (modes,) = axial_modes(np.inf, 0.05, 0.05, Resolution())
+    exact = 2 / np.pi / (height**2 + X**2)
+    assert represented(modes, modes.cosine(X), height) == pytest.approx(height * exact, abs=1e-5)
+    assert represented(modes, modes.sine(X), height) == pytest.approx(X * exact, abs=1e-5)
+
+
+@pytest.mark.parametrize("length", [3.0, np.inf])
+@pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
+def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) -> None:
+    edges = np.array([0.0, 0.4, 1.7, 3.0])
+    for modes in axial_modes(length, 0.5, 0.05, Resolution()):
+        found = modes.cell_integrals(load, edges)
+        few = np.abs(modes.wavenumbers) < 20
+        for cell, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+            nodes, weights = np.polynomial.legendre.leggauss(60)
+            at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
+            expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
+            np.testing.assert_allclose(found[few, cell], expected[few], atol=1e-8)
+
+
+def test_wavenumbers_end_where_nothing_nearer_matters() -> None:
+    for lateral, shortest in ((0.5, 0.05), (0.5, 5.0), (60.0, 5.0)):
+        last = max(Resolution().reach / shortest, 4 * lateral)
+        for length in (0.4, np.inf):
+            for modes in axial_modes(length, lateral, shortest, Resolution()):
+                start = modes.ray[0].real - modes.ray[0].imag / np.tan(Resolution().angle)
+                assert 0.9 * last <= abs(modes.ray[-1] - start) <= Resolution().ratio * last

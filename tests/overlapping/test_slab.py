@@ -1,0 +1,31 @@
+"""The slab's factors against their closed forms, small arguments included."""
+
+from __future__ import annotations
+
+from math import factorial
+
+import numpy as np
+import pytest
+
+from contactstudy.overlapping.slab import slab_factors
+
+KAPPA = np.array([1e-3, 0.05, 0.2, 0.4, 0.49, 0.51, 1.0, 3.0, 12.0])
+
+
+@pytest.mark.parametrize("length", [1.0, 0.7])
+def test_factors_are_the_closed_forms(length: float) -> None:
+    t = 0.5 * KAPPA * length
+    even, tau_even = slab_factors(KAPPA, length, 1)
+    assert even == pytest.approx(2 * np.sinh(t) ** 2 / (np.sinh(2 * t) + 2 * t))
+    assert tau_even == pytest.approx(t * (1 / np.tanh(t) - 1))
+    odd, tau_odd = slab_factors(KAPPA, length, -1)
+    # sinh(2 t) - 2 t without what cancels
+    difference = sum((2 * t) ** (2 * n + 1) / factorial(2 * n + 1) for n in range(1, 40))
+    assert odd == pytest.approx(2 * np.cosh(t) ** 2 / difference)
+    assert tau_odd == pytest.approx(t * (np.tanh(t) - 1))
+
+
+def test_one_end_is_that_of_a_half_space() -> None:
+    factor, tau = slab_factors(KAPPA, np.inf, 0)
+    assert (factor == 1).all()
+    assert (tau == 0).all()
