@@ -10,8 +10,6 @@ from hypothesis import strategies as st
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import displacement, stress
-from contactstudy.kernels.aligned import aligned_points
-from contactstudy.kernels.column_layers import Layer
 from contactstudy.kernels.columns_field import columns_field, smooth_columns_field
 from contactstudy.kernels.field import half_space_field
 from contactstudy.kernels.fine_cells import FineCells
@@ -129,11 +127,19 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
-def test_columns_are_taken_together_from_three_widths_of_the_load_on() -> None:
-    (column,) = aligned_points(np.array([0.1, 0.3]), -0.5, 0.2)
-    for parts in (0, 5):
-        layer = Layer.of(stresses_of(Load.NORMAL), column, Z, np.array([0]), -0.5, 0.2, 7, parts)
-        assert layer.reach == pytest.approx(3 * 7 * 0.2, rel=0.1)
+@pytest.mark.parametrize("load", Load)
+def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
+    # What columns far away do is interpolated over the depth; at a single depth it is not.
+    edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
+    graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
+    cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
+    influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
+    x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
+    together = smooth_columns_field(cells, influence, graded, x, y, z, extent=extent)
+    for number in (0, 1, 8, 24):
+        alone = smooth_columns_field(cells, influence, graded, x, y, z[number : number + 1], extent=extent)
+        # Nearer to the top than the others see it, columns are split into more.
+        assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
 
 
 def test_nothing_loaded_leaves_nothing() -> None:

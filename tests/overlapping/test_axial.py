@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -27,7 +29,7 @@ def test_ray_and_first_modes_are_the_sum_over_all_modes(length: float, height: f
         assert modes.parity == parity
         for waves, wave in ((modes.cosine, np.cos), (modes.sine, np.sin)):
             expected = weights @ wave(np.outer(k, X))
-            assert represented(modes, waves(X), height) == pytest.approx(expected, abs=2e-6)
+            assert represented(modes, waves(X), height) == pytest.approx(expected, abs=4e-6)
 
 
 @pytest.mark.parametrize("height", [0.15, 1.0])
@@ -45,11 +47,12 @@ def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) 
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
         found = modes.cell_integrals(load, edges)
         few = np.abs(modes.wavenumbers) < 20
-        for cell, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        weights_of = np.abs(modes.load_weights)[few]  # as few digits are left at wavenumbers next to 0 as weight
+        for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
             expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
-            np.testing.assert_allclose(found[few, cell], expected[few], atol=1e-8)
+            np.testing.assert_allclose(weights_of * found[few, cell], weights_of * expected[few], atol=1e-9)
 
 
 def test_wavenumbers_end_where_nothing_nearer_matters() -> None:
@@ -58,4 +61,4 @@ def test_wavenumbers_end_where_nothing_nearer_matters() -> None:
         for length in (0.4, np.inf):
             for modes in axial_modes(length, lateral, shortest, Resolution()):
                 start = modes.ray[0].real - modes.ray[0].imag / np.tan(Resolution().angle)
-                assert 0.9 * last <= abs(modes.ray[-1] - start) <= Resolution().ratio * last
+                assert 0.9 * last <= abs(modes.ray[-1] - start) <= np.exp(2 * Resolution().step) * last
