@@ -28,14 +28,19 @@ MOST_NUMBERS = 80
 def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or of a quantity; stresses in MPa or GPa, lengths in um or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
+    factor, unit = scale_of(array)
+    return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
+
+
+def scale_of(array: xr.DataArray) -> tuple[float, str]:
+    """Size in SI and name of the unit in which figures show values; no name for a pure number."""
     unit = str(array.attrs.get("units", "1"))
     if unit in ("", "1"):
-        return array, text
-    if unit in SCALES:
-        largest = float(abs(array).where(np.isfinite(array)).max())
-        factor, unit = next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
-        array = array / factor
-    return array, f"{text} ({unit})"
+        return 1.0, ""
+    if unit not in SCALES:
+        return 1.0, unit
+    largest = float(abs(array).where(np.isfinite(array)).max())
+    return next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
 
 
 def one_value(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
