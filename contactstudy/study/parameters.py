@@ -72,6 +72,16 @@ _WITH_CASE = (
     Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
     Parameter("max_pressure", number, "Pa", "peak pressure p0 of the Hertz line contact", Case, absent="or `load`"),
     Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`"),
+    Parameter(
+        "approach",
+        number,
+        "m",
+        "how far the roller is pressed down at its mid-length, from first touch without tilt",
+        Case,
+        absent="or `load`",
+        note="the load results, and with it a: give `end_distance`, and leave out uniform cells and stress points, "
+        "which are over a",
+    ),
     Parameter("friction", number, "1", "coefficient of friction", Case),
     Parameter("profile", profile, "", "roller profile", fallback={"kind": "cylinder"}),
     Parameter(
