@@ -19,6 +19,7 @@ from contactstudy.case.doubts import changed
 from contactstudy.case.gridding import choose_grid
 from contactstudy.case.motion import Sliding
 from contactstudy.case.roughness import heights_on
+from contactstudy.case.settings import ACCURACY, TOLERANCE, check_accuracy
 from contactstudy.checks import FloatArray
 from contactstudy.contact.at_approach import ROUGH_TOLERANCE, AtApproach, load_error, settled_at_approach
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
@@ -47,9 +48,6 @@ LEAST_CONTACT = 1.0
 LEAST_ARM = 0.25
 """Distance of the load from the roller's end, over the Hertz half-width, below which no such contact balances it."""
 
-ACCURACIES = (1e-3, 0.1)
-"""Accuracies that the refinement reaches and that mean something."""
-
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 """Depths at which `end_traction_residual` looks at the ends, over the Hertz half-width."""
 
@@ -67,14 +65,14 @@ def solve(
     case: Case,
     grid: Grid | None = None,
     *,
-    accuracy: float = 0.01,
+    accuracy: float = ACCURACY,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions | None = None,
     stresses: bool = True,
     roughness: xr.DataArray | None = None,
     error_estimate: bool = False,
-    tolerance: float = 1e-6,
+    tolerance: float = TOLERANCE,
 ) -> xr.Dataset:
     """Solve a case: the contact, then the stresses in the body.
 
@@ -204,15 +202,6 @@ def solve(
     if cells == "refined":
         settings["accuracy"] = float(accuracy)
     return with_provenance(described, asked, settings, stages)
-
-
-def check_accuracy(value: object) -> float:
-    """Return an accuracy that the refinement can reach, or raise."""
-    accuracy = checks.positive("accuracy", value)
-    least, most = ACCURACIES
-    if not least <= accuracy <= most:
-        raise InvalidInputError("accuracy", accuracy, f"from {least:g} to {most:g} of the peak pressure")
-    return accuracy
 
 
 def _settled(case: Case, accuracy: float, tolerance: float) -> AtApproach:

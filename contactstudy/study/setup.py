@@ -17,9 +17,9 @@ from contactstudy.case.case import Case
 from contactstudy.case.doubts import unquestioned
 from contactstudy.case.gridding import choose_grid, widening_grids
 from contactstudy.case.roller import Roller
+from contactstudy.case.settings import check_accuracy, solver_settings
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.solution import check_accuracy, solve
 from contactstudy.study.motion_kinds import motion_of
 from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
@@ -280,7 +280,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
             **taken_by(Case, values),
         )
     tolerance = checks.positive("tolerance", values["tolerance"])
-    options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solve, values)
+    options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solver_settings, values)
     described: Described = {
         "e_over_a": sizes.end_distance / sizes.half_width,
         "friction": float(values["friction"]),

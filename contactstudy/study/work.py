@@ -22,8 +22,6 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import named
 from contactstudy.case.gridding import first_that_holds
 from contactstudy.errors import ContactStudyError
-from contactstudy.fatigue.shakedown import shakedown_summary
-from contactstudy.solution import solve
 from contactstudy.study import own_profiles
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
@@ -165,6 +163,10 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     StoreError
         If the file cannot be written.
     """
+    # Who only looks at a study, or plans one, does not wait for the solver to be imported.
+    from contactstudy.fatigue.shakedown import shakedown_summary
+    from contactstudy.solution import solve
+
     folder = Folder(job.folder)
     began = time.perf_counter()
     try:
