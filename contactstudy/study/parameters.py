@@ -1,8 +1,7 @@
 """The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
 
-A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the same
-name:
-its default is read from that signature, and the value is handed on. Any other parameter is used by name in
+A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
+same name: its default is read from that signature, and the value is handed on. Any other parameter is used by name in
 :func:`contactstudy.study.setup.setup_of`.
 """
 
