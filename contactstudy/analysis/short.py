@@ -141,7 +141,7 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
         ("hertz_half_width", "Hertz half-width a"),
     ):
         if name in one:
-            yield _row(one, name, meaning)
+            yield (_settled if f"{name}_error" in one else _row)(one, name, meaning)
     yield from _peak(one)
     for end, place in ENDS.items():
         if f"end_pressure_{end}" in one:

@@ -173,7 +173,9 @@ def plot_study_map(
 
 def _spread(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
     """Cases listed along one dimension, spread over two parameters; nothing stands where there is no case."""
-    listed = [dim for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))]
+    listed = [
+        str(dim) for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))
+    ]
     if x == y or not listed or listed[0] in (x, y):
         return array
     (dim,) = listed
@@ -185,7 +187,7 @@ def _spread(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
         )
     others = [name for name in array.coords if name not in (x, y)]
     attributes = {name: array[name].attrs for name in (x, y)}
-    spread = array.drop_vars(others).set_index({dim: [x, y]}).unstack(dim)
+    spread = array.drop_vars(others).set_index({dim: (x, y)}).unstack(dim)
     for name, entries in attributes.items():
         spread[name].attrs = entries
     return spread
