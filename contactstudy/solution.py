@@ -15,14 +15,16 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import changed
 from contactstudy.case.gridding import choose_grid
 from contactstudy.case.motion import Sliding
 from contactstudy.case.roughness import heights_on
+from contactstudy.case.settings import ACCURACY, TOLERANCE, check_accuracy
 from contactstudy.checks import FloatArray
+from contactstudy.contact.at_approach import ROUGH_TOLERANCE, AtApproach, load_error, settled_at_approach
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact, labelled
-from contactstudy.contact.prescribed import Prescribed
-from contactstudy.contact.settled import settled_contact, settled_values
+from contactstudy.contact.settled import ROUGHLY, prescribed_by, settled_contact, settled_values
 from contactstudy.contact.settled_tractions import settled_tractions
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError
@@ -46,9 +48,6 @@ LEAST_CONTACT = 1.0
 LEAST_ARM = 0.25
 """Distance of the load from the roller's end, over the Hertz half-width, below which no such contact balances it."""
 
-ACCURACIES = (1e-3, 0.1)
-"""Accuracies that the refinement reaches and that mean something."""
-
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 """Depths at which `end_traction_residual` looks at the ends, over the Hertz half-width."""
 
@@ -66,14 +65,14 @@ def solve(
     case: Case,
     grid: Grid | None = None,
     *,
-    accuracy: float = 0.01,
+    accuracy: float = ACCURACY,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions | None = None,
     stresses: bool = True,
     roughness: xr.DataArray | None = None,
     error_estimate: bool = False,
-    tolerance: float = 1e-6,
+    tolerance: float = TOLERANCE,
 ) -> xr.Dataset:
     """Solve a case: the contact, then the stresses in the body.
 
@@ -141,23 +140,30 @@ def solve(
     slides = isinstance(case.motion, Sliding)
     found: FrictionalContact | None = None
     cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
+    asked = case
     if grid is None and roughness is None:
         accuracy = check_accuracy(accuracy)
-        settled = settled_contact(case, accuracy, checks.positive("tolerance", tolerance))
+        at = _settled(case, accuracy, checks.positive("tolerance", tolerance))
+        case, settled = at
         contact, known = _checked(case, settled.contact), settled_values(settled)
         if not slides:
             rubbed = settled_tractions(case, settled, accuracy)
             found, known = rubbed.found, settled_values(rubbed.settled).assign(rubbed.errors().data_vars)
             found.warn_unless_converged(stacklevel=2)
             contact = found.contact
+        if asked.approach is not None:
+            known["normal_load_error"] = load_error(at)
     elif grid is None:
-        contact = _contact(case, choose_grid(case), roughness, tolerance)
+        # At an approach the cells are those of the smooth roller, though the rough one carries another load.
+        sized = case if case.approach is None else settled_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
+        contact = _contact(case, choose_grid(sized), roughness, tolerance)
     else:
         checks.instance("grid", grid, Grid, "a Grid")
         contact = _contact(case, grid, roughness, tolerance)
     if not slides and found is None:
         found = _with_tractions(case, contact)
         contact = found.contact
+    case = _under_its_load(asked, contact)
     grid = contact.shape.grid
     result = _labelled(case, contact)
     loads = sliding(contact.pressure, case.friction_on(grid.x)) if found is None else found.loads
@@ -169,7 +175,7 @@ def solve(
             raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
         if roughness is not None:
             raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
-        coarse = _labelled(case, _contact(case, grid.coarsened(), None, tolerance))
+        coarse = _labelled(case, _contact(asked, grid.coarsened(), None, tolerance))
         result = result.assign(discretisation_error(result, coarse).data_vars)
     contact_seconds = time.perf_counter() - began
     LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
@@ -197,16 +203,19 @@ def solve(
     settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
     if cells == "refined":
         settings["accuracy"] = float(accuracy)
-    return with_provenance(described, case, settings, stages)
+    return with_provenance(described, asked, settings, stages)
 
 
-def check_accuracy(value: object) -> float:
-    """Return an accuracy that the refinement can reach, or raise."""
-    accuracy = checks.positive("accuracy", value)
-    least, most = ACCURACIES
-    if not least <= accuracy <= most:
-        raise InvalidInputError("accuracy", accuracy, f"from {least:g} to {most:g} of the peak pressure")
-    return accuracy
+def _settled(case: Case, accuracy: float, tolerance: float) -> AtApproach:
+    """Settled contact of a case, and the case under the load that it carries."""
+    if case.approach is None:
+        return AtApproach(case, settled_contact(case, accuracy, tolerance))
+    return settled_at_approach(case, accuracy, tolerance)
+
+
+def _under_its_load(case: Case, contact: Contact) -> Case:
+    """Return a case that prescribes its approach as one that prescribes the load that this takes."""
+    return case if case.approach is None else changed(case, load=contact.carried, approach=None)
 
 
 def _initial_gap(case: Case, grid: Grid, roughness: xr.DataArray | None) -> FloatArray:
@@ -229,7 +238,7 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         case.body,
         grid,
         ArrayKey(gap),
-        Prescribed(case.normal_load, case.load_position).checked(gap, grid),
+        prescribed_by(case).checked(gap, grid),
         case.counterbody,
         case.coupled_friction,
     )
@@ -256,7 +265,7 @@ def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
 
 def _checked(case: Case, contact: Contact) -> Contact:
     """Return a contact that does not stand on the roller's end; warn unless it converged."""
-    _check_on_its_length(case, contact)
+    _check_on_its_length(_under_its_load(case, contact), contact)
     contact.warn_unless_converged(stacklevel=4)
     return contact
 

@@ -105,7 +105,7 @@ def test_equal_reasons_are_said_once_and_a_conflict_of_all_cases_fails(study_fil
     study_file.write_text(as_toml(small_study(base=BASE | {"load": 3.0})))
     assert command("plan", study_file) == 2
     output = capsys.readouterr().out
-    assert output.count("given as one of the two") == 1
+    assert output.count("given as one of the three") == 1
     assert "(and 3 more)" in output
     assert command("run", study_file, "--workers", 0) == 2
     assert "no case that can be solved" in capsys.readouterr().err

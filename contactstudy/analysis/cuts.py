@@ -42,8 +42,21 @@ def _interpolate(array: xr.DataArray, where: dict[str, xr.DataArray]) -> xr.Data
             array = array.isel({dim: 0}, drop=True)
         else:
             array = array.assign_coords({dim: place}).sortby(dim)
-            targets[dim] = target
+            if target.ndim:
+                targets[dim] = target
+            else:
+                array = _at(array, dim, float(target))
     return array.interp(targets) if targets else array
+
+
+def _at(array: xr.DataArray, dim: str, place: float) -> xr.DataArray:
+    """Linear interpolation to one position: between two planes only, and so without SciPy, which takes long to load."""
+    values = array[dim].values
+    right = int(np.clip(np.searchsorted(values, place), 1, values.size - 1))
+    part = float((place - values[right - 1]) / (values[right] - values[right - 1]))
+    before, after = (array.isel({dim: at}, drop=True) for at in (right - 1, right))
+    # The nearer plane alone where that is exact: what lies beside it may be infinite.
+    return before if part == 0 else after if part == 1 else (1 - part) * before + part * after
 
 
 def along_line(

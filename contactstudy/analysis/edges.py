@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from scipy.interpolate import CubicSpline
 
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.border import FITTED, SKIPPED, contact_borders
@@ -54,11 +53,7 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
     >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
     (1.0, 1.0)
     """
-    require(contact, argument="contact")
-    contact = single_case(contact)
-    require(contact, "pressure", "gap", argument="contact")
-    pressure, grid = labelled_cells("contact.pressure", contact["pressure"])
-    gap, _ = labelled_cells("contact.gap", contact["gap"], infinite=True)
+    contact, pressure, gap, grid = _cells(contact)
     left, right = contact_borders(pressure, grid.y, gap)
     touches = bool(pressure.any())
     first, last = _ends(pressure, gap, grid) if touches else (np.nan, np.nan)
@@ -75,6 +70,23 @@ def contact_edges(contact: xr.Dataset) -> xr.Dataset:
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
+
+
+def contact_length(contact: xr.Dataset) -> xr.DataArray:
+    """Length of a contact alone, as from `contact_edges`, metres."""
+    _, pressure, gap, grid = _cells(contact)
+    first, last = _ends(pressure, gap, grid) if pressure.any() else (0.0, 0.0)
+    return describe(xr.Dataset({"contact_length": last - first}))["contact_length"]
+
+
+def _cells(contact: xr.Dataset) -> tuple[xr.Dataset, FloatArray, FloatArray, Grid]:
+    """Contact of one case, its pressure and its gap on its cells, and these."""
+    require(contact, argument="contact")
+    contact = single_case(contact)
+    require(contact, "pressure", "gap", argument="contact")
+    pressure, grid = labelled_cells("contact.pressure", contact["pressure"])
+    gap, _ = labelled_cells("contact.gap", contact["gap"], infinite=True)
+    return contact, pressure, gap, grid
 
 
 def _ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:
@@ -102,6 +114,8 @@ def _area(grid: Grid, gap: FloatArray, width: FloatArray, first: float, last: fl
     columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
     if columns.size < 2:
         return float(np.nansum(width * grid.widths))
+    from scipy.interpolate import CubicSpline
+
     # At a smooth end the width goes to zero like a square root, so its square is what is interpolated.
     squared = width[columns] ** 2
     at = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])

@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from contactstudy.analysis.axes import single_case
-from contactstudy.analysis.edges import contact_edges
+from contactstudy.analysis.edges import contact_length
 from contactstudy.analysis.largest import largest
 from contactstudy.arrays.engineering import quantity, with_error
 from contactstudy.arrays.required import require
@@ -141,7 +141,7 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
         ("hertz_half_width", "Hertz half-width a"),
     ):
         if name in one:
-            yield _row(one, name, meaning)
+            yield (_settled if f"{name}_error" in one else _row)(one, name, meaning)
     yield from _peak(one)
     for end, place in ENDS.items():
         if f"end_pressure_{end}" in one:
@@ -151,8 +151,7 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
         if f"end_load_{end}" in one:
             yield _settled(one, f"end_load_{end}", f"load on the last half-width, {place}")
     if {"pressure", "gap"} <= set(one.data_vars) and bool((one["pressure"] > 0).any()):
-        edges = contact_edges(one)
-        yield _row(edges, "contact_length", "length of the contact", UNBOUNDED)
+        yield _row(one.assign(contact_length=contact_length(one)), "contact_length", "length of the contact", UNBOUNDED)
     elif "contact_length" in one:
         yield _row(one, "contact_length", "length of the contact", UNBOUNDED)
     yield from _stress(one)

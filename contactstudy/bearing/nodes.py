@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -10,25 +12,15 @@ import numpy as np
 
 from contactstudy.bearing.energy_spline import FitErrors, Nodes
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import changed
 from contactstudy.checks import FloatArray
-from contactstudy.contact.contact import Contact, Settings, contact_of
-from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.at_approach import POWER, pressed_to
+from contactstudy.contact.contact import Contact
 from contactstudy.contact.settled import settled_contact
 from contactstudy.contact.solve import motion_reference
 from contactstudy.errors import InvalidInputError, WindowError
 
 LOGGER = logging.getLogger(__name__)
-
-POWER = 1.2
-"""Of the depth from first touch that the load is taken to follow while it is sought: 10/9 for a line, 3/2 for a point
-contact. Speed."""
-
-DEEPER, SHALLOWER, ROUNDS = 0.05, 0.005, 12
-"""Parts of the depth by which a contact may be deeper or shallower for its columns and its window to serve a given
-approach, and how often the load may be corrected until it does. Speed."""
-
-ABOVE = 1.02
-"""Factor on a corrected load: a deeper contact serves, a shallower one has too narrow a window. Speed."""
 
 FINER = 4.0
 """By how much finer the contacts are whose difference from the nodes is stated as discretisation error."""
@@ -70,31 +62,17 @@ class Presser:
 
     def loaded(self, load: float, tilt: float) -> Contact:
         """Return the contact under a load."""
-        try:
-            case = replace(self.case, load=load, max_pressure=None, tilt=tilt)
+        with _refused(load, tilt):
+            case = changed(self.case, load=load, max_pressure=None, tilt=tilt)
             return settled_contact(case, self.accuracy, self.tolerance).contact
-        except (InvalidInputError, WindowError) as error:
-            raise InvalidInputError(
-                "tilts, approaches",
-                f"a tilt of {tilt:g} rad under {load:.3g} N",
-                "such that the contact is solved",
-                f"take smaller tilts or larger approaches ({error})",
-            ) from error
 
     def pressed(self, approach: float, tilt: float, load: float) -> Node:
         """Return the contact at an approach; `load` is a first guess of what it takes."""
-        for _ in range(ROUNDS):
-            contact = self.loaded(load, tilt)
-            touch = float(contact.shape.gap.values.min())
-            depth, wanted = contact.approach - touch, approach - touch
-            if 1 - SHALLOWER <= depth / wanted <= 1 + DEEPER:
-                break
-            load *= ABOVE * (wanted / depth) ** POWER
-        shape = contact.shape
-        prescribed = Prescribed(approach=approach).checked(shape.gap.values, shape.grid)
-        found = contact_of(shape._replace(prescribed=prescribed), Settings(self.tolerance))
-        found.warn_unless_converged(stacklevel=4)
-        return self.node(found)
+        with _refused(load, tilt):
+            found = pressed_to(changed(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
+        contact = found.settled.contact
+        contact.warn_unless_converged(stacklevel=4)
+        return self.node(contact)
 
     def node(self, contact: Contact) -> Node:
         """Load, moment about mid-length and strain energy of a contact."""
@@ -104,6 +82,20 @@ class Presser:
         sunk = np.where(contact.pressure > 0, contact.approach - contact.shape.gap.values, 0.0)
         moment = float((forces * (grid.x[:, None] - self.case.roller_middle)).sum())
         return Node(float(forces.sum()), moment, 0.5 * float((forces * sunk).sum()))
+
+
+@contextmanager
+def _refused(load: float, tilt: float) -> Iterator[None]:
+    """Say which contact of the law cannot be solved."""
+    try:
+        yield
+    except (InvalidInputError, WindowError) as error:
+        raise InvalidInputError(
+            "tilts, approaches",
+            f"a tilt of {tilt:g} rad under {load:.3g} N",
+            "such that the contact is solved",
+            f"take smaller tilts or larger approaches ({error})",
+        ) from error
 
 
 def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) -> Nodes:

@@ -34,6 +34,12 @@ SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-10, 0.5
 """Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
 means 10 Pa on steel."""
 
+SHALLOWEST = 1e-12
+"""Depth of the approach beyond first touch, over the roller's radius, below which rounding decides what touches."""
+
+TOUCH_POINTS = 2001
+"""Points along the axis among which first touch is sought."""
+
 SHORTEST, LONGEST = 1e-4, 1e10
 """Lengths of contact and body over the Hertz half-width outside which, likewise, a unit is wrong."""
 
@@ -42,8 +48,8 @@ SHORTEST, LONGEST = 1e-4, 1e10
 class Case:
     """A roller pressed on a body, rolling and sliding along y.
 
-    Exactly one of `max_pressure` and `load` is given; the other follows from the Hertz line contact of the same
-    load per length of contact.
+    Exactly one of `max_pressure`, `load` and `approach` is given. Pressure and load follow from one another by the
+    Hertz line contact of the same load per length of contact. Under an approach both follow from the solution.
 
     Parameters
     ----------
@@ -55,6 +61,9 @@ class Case:
         Peak pressure ``p0`` of the Hertz line contact, Pa.
     load : float, optional
         Normal load ``W``, N.
+    approach : float, optional
+        How far the roller is pressed down at its mid-length, from where its profile's drop of 0 touches the undeformed
+        top, metres; between free ends relative to the top far away along y, see `reference` of `approach` in results.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
@@ -75,7 +84,8 @@ class Case:
     Raises
     ------
     InvalidInputError
-        If a value is out of range, both or neither of pressure and load are given, or the roller misses the body.
+        If a value is out of range, not exactly one of pressure, load and approach is given, or the roller misses the
+        body. What needs the load raises it for a case that prescribes the approach.
 
     Warns
     -----
@@ -101,6 +111,7 @@ class Case:
     tilt: float = 0.0
     load_position: float | None = None
     motion: Motion = field(default=Sliding())
+    approach: float | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -166,11 +177,13 @@ class Case:
             )
 
     def _check_load(self) -> None:
-        """Raise unless one of pressure and load is given, and of a size that a contact can have."""
-        if (self.max_pressure is None) == (self.load is None):
-            raise InvalidInputError(
-                "max_pressure, load", (self.max_pressure, self.load), "exactly one of the two, the other None"
-            )
+        """Raise unless one of pressure, load and approach is given, and of a size that a contact can have."""
+        given = (self.max_pressure, self.load, self.approach)
+        if sum(value is not None for value in given) != 1:
+            raise InvalidInputError("max_pressure, load, approach", given, "exactly one of the three, the others None")
+        if self.approach is not None:
+            self._check_approach()
+            return
         name, unit = ("load", "N") if self.max_pressure is None else ("max_pressure", "Pa")
         value = checks.positive(name, getattr(self, name), unit)
         checks.store(self, **{name: value})
@@ -193,6 +206,41 @@ class Case:
                     f"between {SHORTEST:g} and {LONGEST:g} Hertz half-widths, {self.hertz_half_width:.3g} m",
                     "lengths are in metres, pressures and moduli in Pa, loads in N",
                 )
+
+    def _check_approach(self) -> None:
+        """Raise unless the approach is one number that presses the roller, and no more than its radius."""
+        if isinstance(self.approach, (list, tuple, np.ndarray, xr.DataArray)):
+            raise InvalidInputError(
+                "approach",
+                self.approach,
+                "one number (metres), because each approach has cells of its own",
+                "sweep a list in a Study, or tabulate loads by contactstudy.bearing.contact_law",
+            )
+        approach = checks.finite("approach", self.approach, "metres")
+        checks.store(self, approach=approach)
+        if self.load_position is not None:
+            raise InvalidInputError(
+                "load_position", self.load_position, "None where the approach is prescribed", "prescribe the load"
+            )
+        radius, touch = self.roller.radius, self.first_touch
+        if not SHALLOWEST * radius < approach - touch <= radius:
+            raise InvalidInputError(
+                "approach",
+                approach,
+                f"more than that of first touch, {touch:.3g} m, and beyond it no more than the roller's radius, "
+                f"{radius:g} m",
+                "approaches are in metres, and counted down from where the profile's drop is 0",
+            )
+
+    @property
+    def first_touch(self) -> float:
+        """Approach at which the roller touches first, metres: the least gap before deformation, along its axis."""
+        return float(self.lowest(np.linspace(*self.contact_range, TOUCH_POINTS)).min())
+
+    def lowest(self, x: FloatArray) -> FloatArray:
+        """Return the gap before deformation along the roller's axis, metres, at positions `x`; beyond it as there."""
+        half = 0.5 * self.roller.length
+        return self._clearance(np.clip(x - self.roller_middle, -half, half), np.zeros(1))[:, 0]
 
     def friction_on(self, x: FloatArray) -> float | FloatArray:
         """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
@@ -257,6 +305,13 @@ class Case:
         """Normal load ``W``, N."""
         if self.load is not None:
             return self.load
+        if self.approach is not None:
+            raise InvalidInputError(
+                "approach",
+                self.approach,
+                "None where the load has to be known before the contact is solved",
+                "solve the case, and give load = normal_load of its result instead",
+            )
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:

@@ -19,6 +19,7 @@ import numpy as np
 from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.errors import MagnitudeWarning
+from contactstudy.profiles.base import checked_drop
 
 if TYPE_CHECKING:
     from contactstudy.bodies.material import Material
@@ -49,8 +50,15 @@ USUAL = {
     "tilt": Usual(0.0, 0.01, "rad", (("deg", np.pi / 180), ("mrad", 1e-3))),  # bearings take a few mrad
     # Over the roller's radius: half-widths of 1e-5 are 1 MPa on steel, those of 0.1 yield in every metal.
     "half_width": Usual(1e-5, 0.1, "1"),
+    # Over the roller's radius: rubber that is pressed in by a tenth of its radius is at the limit of the theory.
+    "approach": Usual(0.0, 0.1, "m", (("mm", 1e-3), ("µm", 1e-6))),
+    "drop": Usual(0.0, 0.15, "m", (("mm", 1e-3), ("µm", 1e-6))),  # crowns are micrometres, balls are cut short
+    "end drop": Usual(0.0, 0.5, "m", (("mm", 1e-3), ("µm", 1e-6))),  # with corners
 }
 """What is usual for a contact of engineering, by name."""
+
+DROP_AT = {"drop": 0.4, "end drop": 0.49}
+"""Distances from mid-length over the length where a profile's drop is looked at."""
 
 
 def doubts(case: Case) -> tuple[str, ...]:
@@ -71,6 +79,7 @@ def doubts(case: Case) -> tuple[str, ...]:
         _of_material("roller.material", case.roller.material),
         _doubt("friction", "friction", _largest(case.friction)),
         _doubt("tilt", "tilt", abs(case.tilt)),
+        _of_crown(case),
         _of_load(case),
     ]
     if isinstance(case.body, FiniteLengthSpace):
@@ -111,6 +120,30 @@ def _doubt(kind: str, name: str, value: float) -> str:
     return f"{text}; {value:g} {fitting[0][0]} is {value * fitting[0][1]:g}{unit}" if fitting else text
 
 
+def _of_depth(kind: str, name: str, value: float, radius: float) -> str:
+    """Return the question on a depth, for which the roller's radius says what is usual."""
+    usual = USUAL[kind]
+    most = usual.most * radius
+    if value <= most:
+        return ""
+    text = f"{name} = {value:.3g} m, usual are up to {most:.2g} m on a roller of this radius"
+    fitting = [(unit, size) for unit, size in usual.meant if value * size <= most]
+    return f"{text}; {value:.3g} {fitting[0][0]} is {value * fitting[0][1]:.3g} m" if fitting else text
+
+
+def _of_crown(case: Case) -> str:
+    """Return the question on the depth of the roller's crown, or of its ends where it has none."""
+    roller = case.roller
+    for kind, part in DROP_AT.items():
+        x = part * roller.length
+        drop = checked_drop(roller.profile, np.array([-x, x]), roller.length)
+        deepest = float(np.max(drop, where=np.isfinite(drop), initial=0.0))
+        name = f"drop of roller.profile at {part:g} of the length from the middle"
+        if asked := _of_depth(kind, name, deepest, roller.radius):
+            return asked
+    return ""
+
+
 def _of_material(name: str, material: Material | None) -> str:
     """Return the question on a material; empty for a rigid body."""
     return "" if material is None else _doubt("young", f"{name}.young", material.young)
@@ -123,7 +156,9 @@ def _largest(friction: object) -> float:
 
 
 def _of_load(case: Case) -> str:
-    """Return the question on load or pressure: what it makes of the half-width."""
+    """Return the question on load or pressure: what it makes of the half-width; or on the approach."""
+    if case.approach is not None:
+        return _of_depth("approach", "approach", case.approach - case.first_touch, case.roller.radius)
     usual, over = USUAL["half_width"], case.hertz_half_width / case.roller.radius
     if usual.least <= over <= usual.most:
         return ""

@@ -94,11 +94,14 @@ def _second_distance(case: Case) -> list[Input]:
 
 def _load(case: Case) -> list[Input]:
     """Load, friction, tilt and motion."""
-    rows = [
-        Input("normal load W", quantity(case.normal_load, "N")),
-        Input("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
-        Input("Hertz half-width a", quantity(case.hertz_half_width, "m")),
-    ]
+    if case.approach is not None:
+        rows = [Input("approach, which takes the load that results", quantity(case.approach, "m"))]
+    else:
+        rows = [
+            Input("normal load W", quantity(case.normal_load, "N")),
+            Input("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
+            Input("Hertz half-width a", quantity(case.hertz_half_width, "m")),
+        ]
     if case.load_position is not None:
         rows.append(Input("the load acts at x =", quantity(case.load_position, "m")))
     if case.tilt:
@@ -140,7 +143,11 @@ def in_lines(case: Case) -> str:
       HalfSpace(E = 210 GPa, nu = 0.3)
       friction 0.1, full sliding along +y
     """
-    sizes = {"W": (case.normal_load, "N"), "p0": (case.hertz_max_pressure, "Pa"), "a": (case.hertz_half_width, "m")}
+    if case.approach is not None:
+        sizes = {"approach": (case.approach, "m")}
+    else:
+        p0, a = case.hertz_max_pressure, case.hertz_half_width
+        sizes = {"W": (case.normal_load, "N"), "p0": (p0, "Pa"), "a": (a, "m")}
     said = ", ".join(f"{name} = {quantity(*size)}" for name, size in sizes.items())
     motion = "full sliding along +y" if isinstance(case.motion, Sliding) else repr(case.motion)
     if isinstance(case.friction, AxialFriction):

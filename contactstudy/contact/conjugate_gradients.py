@@ -14,7 +14,6 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import optimize
 
 from contactstudy.checks import BoolArray, FloatArray
 
@@ -93,7 +92,9 @@ class Resultants:
             while reach < STEEPEST and moment(-reach) * moment(reach) > 0:
                 reach *= 2
             if moment(-reach) * moment(reach) <= 0:
-                slope = float(optimize.brentq(moment, -reach, reach, xtol=1e-15, rtol=1e-14))
+                from scipy.optimize import brentq
+
+                slope = float(brentq(moment, -reach, reach, xtol=1e-15, rtol=1e-14))
         factor = np.exp(slope * arm - (slope * own).max())
         return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
 

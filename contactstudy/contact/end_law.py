@@ -16,7 +16,6 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize
 
 from contactstudy import checks
 from contactstudy.checks import FloatArray
@@ -77,8 +76,10 @@ class EndLaw:
         row = pressure[:, int(pressure.max(axis=0).argmax())]
         width, exponent = edges[1], self.exponent
         if np.isnan(exponent):
+            from scipy.optimize import minimize_scalar
+
             bounds = (LEAST_GROWTH, 0.5)
-            found = optimize.minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
+            found = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(found.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         error = abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]

@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
 
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray
@@ -55,6 +54,8 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
     >>> creep_coefficients(1.0, 0.25).round(2).tolist()
     [4.12, 3.67, 1.47]
     """
+    from scipy.interpolate import PchipInterpolator
+
     if ratio < TABLE[0][0]:
         turning = np.pi * np.sqrt(ratio) / (3 * (1 - poisson)) * (1 + poisson * (np.log(16 / ratio) - 5))
         return np.array([np.pi**2 / (4 * (1 - poisson)), np.pi**2 / 4, turning])

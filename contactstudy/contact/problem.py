@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from scipy import ndimage
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
@@ -146,13 +145,15 @@ def _continued_square(operator: ContactOperator, problem: ContactProblem, found:
     (Johnson, Contact Mechanics, section 5.1), so the one continues the other but for a factor. Interpolated to finer
     cells its zero puts the edge within a cell.
     """
+    from scipy.ndimage import binary_dilation
+
     squared = found.pressure**2
     contact = squared > 0
     height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: found.pressure})
     opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(found.motion), 0.0))
     opening = opened**OPENING_POWER
-    inner = contact & ndimage.binary_dilation(~contact)
-    outer = (opening > 0) & ndimage.binary_dilation(contact)
+    inner = contact & binary_dilation(~contact)
+    outer = (opening > 0) & binary_dilation(contact)
     if not inner.any() or not outer.any():
         return np.asarray(squared)
     return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))

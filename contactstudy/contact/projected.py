@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from scipy.optimize import minimize
 
 from contactstudy.checks import FloatArray
 
@@ -62,6 +61,8 @@ def balanced_tractions(
     bound, shares : array (cell)
         Largest traction, Pa, and areas of the cells over their mean, with which B is symmetric.
     """
+    from scipy.optimize import minimize
+
     held = traction
 
     def descended(some: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:

@@ -188,11 +188,18 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
     return describe(result)
 
 
-def shape_on(case: Case, grid: Grid) -> Shape:
-    """Return what is pressed on what, on given cells."""
+def shape_on(case: Case, grid: Grid, prescribed: Prescribed | None = None) -> Shape:
+    """Return what is pressed on what, on given cells; under the case's load unless something else is prescribed."""
     gap = case.gap(grid)
-    prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, grid)
+    prescribed = (prescribed or prescribed_by(case)).checked(gap, grid)
     return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+
+
+def prescribed_by(case: Case) -> Prescribed:
+    """Return what a case prescribes of its contact."""
+    if case.approach is not None:
+        return Prescribed(approach=case.approach)
+    return Prescribed(case.normal_load, case.load_position)
 
 
 def with_contact(settled: SettledContact, contact: Contact, case: Case) -> SettledContact:
@@ -248,22 +255,17 @@ def _room(distance: float, near: float) -> float:
 def _axial_shape(case: Case) -> AxialShape:
     """Return what the refinement knows of a case."""
     start, stop = case.contact_range
-    middle = case.roller_middle
     low, high = case.body.extent
     half_width = case.hertz_half_width
     near = 1e-9 * (stop - start)
     end = case.roller_start + case.roller.length
-
-    def height(x: FloatArray) -> FloatArray:
-        from_middle = np.clip(x - middle, -0.5 * case.roller.length, 0.5 * case.roller.length)
-        return case.roller.clearance(from_middle, np.zeros(1))[:, 0] - case.tilt * from_middle
 
     return AxialShape(
         start,
         stop,
         half_width,
         half_width**2 / (2 * case.roller.radius),
-        height,
+        case.lowest,
         (_room(case.roller_start - low, near), _room(high - end, near)),
         stiff=case.roller.body is None or isinstance(case.roller.body, HalfSpace),
         # The factor of the body's image is not that of the roller's.

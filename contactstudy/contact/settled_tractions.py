@@ -90,7 +90,7 @@ def _on(case: Case, settled: SettledContact, rows: int, before: FrictionalContac
         pressed = before.contact
         coarser = Coarser(pressed.shape.grid, np.asarray(friction * pressed.pressure), before.tractions)
     return frictional_contact(
-        shape_on(case, grid),
+        shape_on(case, grid, contact.shape.prescribed),
         contact.settings,
         case.motion,
         friction,

@@ -12,12 +12,12 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case, small_tilt
+from contactstudy.case.settings import check_accuracy
 from contactstudy.checks import FloatArray
 from contactstudy.design.evaluations import Design, Evaluations, Measure, Range
 from contactstudy.design.search import flat_range, optimum
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Profile
-from contactstudy.solution import check_accuracy
 
 NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 """The default settings: a measure of the contact needs no stresses."""

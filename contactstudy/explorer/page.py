@@ -48,8 +48,9 @@ class Page:
     def __init__(self, cases: Cases) -> None:
         self.cases = cases
         self._columns: dict[tuple[int, ...], dict[str, str]] = {}
-        start = cases.first_solved()
-        self.choices = [self._widgets(start, side) for side in ("case", "other")]
+        # What belongs to the other case is made when it is asked for: the page opens sooner without.
+        self.choices: list[dict[str, Any]] = [self._widgets("case"), {}]
+        self._other_choices = pn.Column(visible=False, sizing_mode="stretch_width")
         self.compare = pn.widgets.Checkbox(label="compare with another case", value=False, visible=bool(cases.dims))
         self.region = pn.widgets.Select(label="along the axis", options=list(REGIONS))
         self.units = pn.widgets.RadioButtonGroup(options={"mm, MPa": False, "over a, p0": True}, value=False)
@@ -63,19 +64,25 @@ class Page:
         self.over = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
-        self.tops = [ImageFigure(), ImageFigure()]
-        self.planes = [ImageFigure(downwards=True), ImageFigure(downwards=True)]
-        figures: list[AxialFigure | ImageFigure | StudyFigure] = [self.axial, *self.tops, *self.planes, self.study]
-        self.panes = [pn.pane.Bokeh(each.figure, sizing_mode="stretch_width") for each in figures]
-        watched = [*self.choices[0].values(), *self.choices[1].values(), self.compare, self.region, self.units]
-        for widget in (*watched, self.plane, self.where, self.number, self.over):
+        self.tops, self.planes = [ImageFigure()], [ImageFigure(downwards=True)]
+        figures = (self.axial.figure, self.tops[0].figure, None, self.planes[0].figure, None, self.study.figure)
+        self.panes = [pn.pane.Bokeh(each, sizing_mode="stretch_width") for each in figures]
+        for widget in (self.compare, self.region, self.units, self.plane, self.where, self.number, self.over):
             widget.param.watch(self._changed, "value")
         self.update()
 
-    def _widgets(self, start: dict[str, int], side: str) -> dict[str, Any]:
+    def _make_other(self) -> None:
+        """Make the choices and the figures of the other case."""
+        self.choices[1] = self._widgets("other")
+        self._other_choices.objects = list(self.choices[1].values())
+        self.tops.append(ImageFigure())
+        self.planes.append(ImageFigure(downwards=True))
+        self.panes[2].object, self.panes[4].object = self.tops[1].figure, self.planes[1].figure
+
+    def _widgets(self, side: str) -> dict[str, Any]:
         """Return a slider or a list for every swept parameter."""
         prefix = "other: " if side == "other" else ""
-        found: dict[str, Any] = {}
+        start, found = self.cases.first_solved(), dict[str, Any]()
         for dim in self.cases.dims:
             scalars = self.cases.scalars
             entry = scalars[dim]
@@ -83,6 +90,7 @@ class Page:
             words = entry.dtype.kind in "UOb" or len(options) > MOST_STEPS
             kind = pn.widgets.Select if words else pn.widgets.DiscreteSlider
             found[dim] = kind(label=f"{prefix}{_called(entry)}", options=options, value=start[dim])
+            found[dim].param.watch(self._changed, "value")
         return found
 
     def _numbers(self) -> dict[str, str]:
@@ -113,10 +121,11 @@ class Page:
 
     def update(self) -> None:
         """Draw what is chosen."""
+        if self.compare.value and not self.choices[1]:
+            self._make_other()
         sides = [0, 1] if self.compare.value else [0]
         loaded = [self._loaded(side) if side in sides else None for side in (0, 1)]
-        for widget in self.choices[1].values():
-            widget.visible = bool(self.compare.value)
+        self._other_choices.visible = bool(self.compare.value)
         self.where.visible = self.plane.value != PLANES[0]
         self._show_table(loaded, sides)
         self._show_axial(loaded)
@@ -214,7 +223,7 @@ class Page:
             planes.append(plane(one, scale, shown, self.plane.value, self.where.value))
         for images, figures, what in ((tops, self.tops, "pressure"), (planes, self.planes, "von Mises stress")):
             most = max((image.most for image in images if image is not None), default=1.0)
-            for side, (image, each) in enumerate(zip(images, figures, strict=True)):
+            for side, (image, each) in enumerate(zip(images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
                 text = what if image is not None else f"{what}: not known, or at too few points"
                 each.show(image, most, f"{name}{text}{units if image is not None else ''}")
@@ -263,7 +272,7 @@ class Page:
         controls = pn.Column(
             *self.choices[0].values(),
             self.compare,
-            *self.choices[1].values(),
+            self._other_choices,
             self.units,
             self.region,
             self.plane,

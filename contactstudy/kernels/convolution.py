@@ -10,7 +10,6 @@ from __future__ import annotations
 import threading
 
 import numpy as np
-import pyfftw
 from scipy import fft
 
 from contactstudy.checks import ComplexArray, FloatArray
@@ -33,6 +32,8 @@ class _Buffers:
     """Aligned memory and the transforms planned on it, for one thread."""
 
     def __init__(self, cells_x: int, cells_y: int, padded_x: int, mirror: int) -> None:
+        import pyfftw  # which brings dask's arrays: not for those who only look at results
+
         self.real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
         self.lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
         # A plan that was measured differs from run to run, and its last bits with it.

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from scipy import special
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray, IntArray
@@ -236,9 +235,11 @@ def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1
     of which the first has no curvature there either. They stand for rigid motions (and, the first one, for pure bending
     of the body about its depth), and no more than these is to be moved.
     """
+    from scipy.special import sici
+
     distance = np.maximum(np.abs(y), 1e-30 / first)
     argument = first * distance
-    sine_integral, cosine_integral = special.sici(argument)
+    sine_integral, cosine_integral = sici(argument)
     logarithm = cosine_integral - np.log(distance / reference)
     bent = 0.75 * (reference**2 - distance**2) - 0.5 * distance**2 * logarithm
     return np.array(
@@ -253,13 +254,15 @@ def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1
 
 def sine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:
     """Likewise of ``sin(k y)``, such that where a cosine's is integrated along y, its motion is moved with it."""
+    from scipy.special import sici
+
     argument = first * y
     _, second, pole = cosine_moments(first, y, reference, 0)
     return np.array(
         [
             0.5 * y * (second + 0.5 * np.pi * reference) - 0.5 * np.sin(argument) / first**2,
             y * (1 - np.sinc(argument / np.pi) + pole),
-            special.sici(argument)[0],
+            sici(argument)[0],
             *_powers(np.sin, first, y, terms),
         ]
     )

@@ -16,7 +16,7 @@ from contactstudy.arrays.variables import DERIVED
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.singular import MARK, MEANING, mark_at_top
-from contactstudy.plots.study_map import one_value, readable
+from contactstudy.plots.study_map import one_value, readable, scale_of
 from contactstudy.plots.style import as_written, line_styles
 
 if TYPE_CHECKING:
@@ -63,9 +63,9 @@ def plot_study_lines(
     Returns
     -------
     Figure
-        Its title says at which values of the other parameters. An open triangle at the top stands for a value without
-        a limit, such as the peak pressure at a sharp end inside the face. An open marker is a largest value at the edge
-        of the points where it was looked for.
+        Its title says at which values of the other parameters. Bars are stated errors. An open triangle at the top
+        stands for a value without a limit, such as the peak pressure at a sharp end inside the face. An open marker is
+        a largest value at the edge of the points where it was looked for.
 
     Raises
     ------
@@ -104,6 +104,7 @@ def plot_study_lines(
     for ax, name in zip(axes[0], drawn, strict=True):
         values, meaning = readable(one_value(dataset[name], kept, chosen), name)
         unsure = _without_error(dataset, name, kept, chosen)
+        errors = _errors(dataset, name, kept, chosen)
         numeric = np.issubdtype(values[x].dtype, np.number)
         across, label = readable(values[x], x) if numeric else (values[x], x.replace("_", " "))
         places = across.values if numeric else np.arange(across.size)
@@ -114,6 +115,9 @@ def plot_study_lines(
             endless = np.isinf(line.values)
             shown = np.where(endless, np.nan, line.values)
             ax.plot(places, shown, **style, marker=marker, markersize=4, label=text)
+            if errors is not None:
+                bars = (errors if hue is None else errors.isel({hue: number})).values
+                ax.errorbar(places, shown, bars, fmt="none", ecolor=style["color"], elinewidth=1.0)
             if unsure is not None:
                 own = unsure if hue is None else unsure.isel({hue: number})
                 open_marks = np.where(own.values, shown, np.nan)
@@ -126,7 +130,8 @@ def plot_study_lines(
             ax.set_xticks(places, [as_written(value) for value in across.values], rotation=20)
         ax.set_xlabel(label)
         ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
-        ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(values.where(np.isfinite(values)).max())), 1e-300))
+        tops = values if errors is None else values + errors.fillna(0.0)
+        ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(tops.where(np.isfinite(tops)).max())), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
     if hue is not None:
         numeric = np.issubdtype(dataset[hue].dtype, np.number) and not _parameters_of(dataset[hue], hue)
@@ -150,6 +155,15 @@ def plot_study_lines(
         )
         figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")
     return figure
+
+
+def _errors(dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mapping[str, Any]) -> xr.DataArray | None:
+    """Stated errors of a quantity in the unit that it is drawn in, NaN where there is none; None without estimates."""
+    if f"{name}_error" not in dataset:
+        return None
+    stated = one_value(dataset[f"{name}_error"], kept, chosen)
+    factor, _ = scale_of(one_value(dataset[name], kept, chosen))
+    return stated.where(np.isfinite(stated)) / factor
 
 
 def _without_error(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +22,9 @@ SCALES = {
 }
 """Units that figures show: from which size on, how much it is in SI, and its name."""
 
+STATES = ("failed", "skipped", "excluded", "missing")
+"""What a study says of a case without a result."""
+
 MOST_NUMBERS = 80
 """Cells up to which each is labelled with its value."""
 
@@ -28,14 +32,19 @@ MOST_NUMBERS = 80
 def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or of a quantity; stresses in MPa or GPa, lengths in um or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
+    factor, unit = scale_of(array)
+    return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
+
+
+def scale_of(array: xr.DataArray) -> tuple[float, str]:
+    """Size in SI and name of the unit in which figures show values; no name for a pure number."""
     unit = str(array.attrs.get("units", "1"))
     if unit in ("", "1"):
-        return array, text
-    if unit in SCALES:
-        largest = float(abs(array).where(np.isfinite(array)).max())
-        factor, unit = next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
-        array = array / factor
-    return array, f"{text} ({unit})"
+        return 1.0, ""
+    if unit not in SCALES:
+        return 1.0, unit
+    largest = float(abs(array).where(np.isfinite(array)).max())
+    return next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
 
 
 def one_value(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
@@ -80,7 +89,7 @@ def plot_study_map(
     variable : str or DataArray
         A scalar of each case, such as `peak_von_mises`; or an array computed from the study, such as an edge factor.
     x, y : str
-        Swept parameters across and up.
+        Swept parameters across and up; of cases that are listed along one dimension two of the values that they have.
     ax : Axes, optional
         Where to draw; default: a new figure.
     selection : mapping, optional
@@ -93,8 +102,9 @@ def plot_study_map(
     Returns
     -------
     Axes
-        Steps of the parameters are drawn evenly, whatever their values; cells without a value are hatched, and those of
-        a value without a limit, such as a singular peak, have the sign of infinity as well.
+        Steps of the parameters are drawn evenly, whatever their values. Cells without a value are hatched, and the
+        legend says how many there are and what became of these cases. A value without a limit, such as a singular
+        peak, has the sign of infinity as well.
 
     Raises
     ------
@@ -114,6 +124,7 @@ def plot_study_map(
     else:
         require(dataset, variable)
         array, name = dataset[variable], variable
+    array = _spread(array, x, y)
     for parameter in (x, y):
         if parameter not in array.dims or parameter not in array.indexes or x == y:
             raise InvalidInputError("x, y", (x, y), f"two swept parameters among {', '.join(map(str, array.dims))}")
@@ -150,6 +161,7 @@ def plot_study_map(
             value = numbers[row, column]
             color = "white" if value < middle else "black"
             ax.text(column, row, f"{value:.3g}", ha="center", va="center", color=color, fontsize="small")
+    _say_missing(ax, dataset, values, selection or {})
     for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
         numeric = np.issubdtype(values[parameter].dtype, np.number)
         steps, text = readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
@@ -157,3 +169,46 @@ def plot_study_map(
         axis.set_label_text(text)
     ax.figure.colorbar(drawn, ax=ax, label=label or meaning)
     return ax
+
+
+def _spread(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
+    """Cases listed along one dimension, spread over two parameters; nothing stands where there is no case."""
+    listed = [
+        str(dim) for dim in array.dims if all(name in array.coords and array[name].dims == (dim,) for name in (x, y))
+    ]
+    if x == y or not listed or listed[0] in (x, y):
+        return array
+    (dim,) = listed
+    pairs = list(zip(array[x].values.tolist(), array[y].values.tolist(), strict=True))
+    twice = next((pair for pair in pairs if pairs.count(pair) > 1), None)
+    if twice is not None:
+        raise InvalidInputError(
+            "x, y", (x, y), "parameters that tell the cases apart", f"several have {x} = {twice[0]}, {y} = {twice[1]}"
+        )
+    others = [name for name in array.coords if name not in (x, y)]
+    attributes = {name: array[name].attrs for name in (x, y)}
+    spread = array.drop_vars(others).set_index({dim: (x, y)}).unstack(dim)
+    for name, entries in attributes.items():
+        spread[name].attrs = entries
+    return spread
+
+
+def _say_missing(ax: Axes, dataset: xr.Dataset, values: xr.DataArray, selection: Mapping[str, Any]) -> None:
+    """Say below a map how many cells are hatched, and what became of their cases."""
+    missing = values.isnull()
+    count = int(missing.sum())
+    if not count:
+        return
+    from matplotlib.patches import Patch
+
+    text = f"no value: {count} of {missing.size} cases"
+    y, x = map(str, values.dims)
+    if "status" in dataset:
+        status = _spread(dataset["status"], x, y)
+        if {x, y} <= set(status.dims):
+            chosen = {name: value for name, value in selection.items() if name in status.dims}
+            states = one_value(status, (x, y), chosen).transpose(y, x).values[missing.values]
+            known = Counter(str(state) for state in states if str(state) in STATES)
+            text += f" ({', '.join(f'{number} {state}' for state, number in known.items())})" if known else ""
+    patch = Patch(facecolor="0.85", edgecolor="0.6", hatch="//", label=text)
+    ax.legend(handles=[patch], loc="upper left", bbox_to_anchor=(0.0, -0.18), frameon=False, fontsize="small")

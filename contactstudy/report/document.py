@@ -78,8 +78,8 @@ def html(source: xr.Dataset | str | Path, *, title: str | None = None) -> str:
             return (
                 _templates().get_template("study.html").render(shared | context | ({"title": title} if title else {}))
             )
-        title = title or path.stem
         source = _opened(path)
+        title = title or _called(source, path)
     context = _case_context(source) | {"title": title or "Contact of a roller"}
     return _templates().get_template("case.html").render(shared | context)
 
@@ -135,6 +135,12 @@ def _opened(path: Path) -> xr.Dataset:
     except (OSError, ValueError) as error:
         reason = "there is no such file" if isinstance(error, FileNotFoundError) else "this file is not netCDF"
         raise InvalidInputError("source", str(path), "a netCDF file or a study's folder", reason) from None
+
+
+def _called(dataset: xr.Dataset, path: Path) -> str:
+    """Heading of a file's page: its name; of a study's case, whose name is a part of its identity, with the study's."""
+    study = attribute(dataset, RUN_ATTRIBUTE).get("study", "")
+    return f"Study {study}, case {path.stem}" if study else path.stem
 
 
 def _case_context(dataset: xr.Dataset) -> dict[str, Any]:

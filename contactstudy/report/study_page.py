@@ -29,8 +29,8 @@ SHOWN = {
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
-    "study": "Largest values of the cases over the swept parameters. An open triangle at the top: singular, there is "
-    "no largest value.",
+    "study": "Largest values of the cases over the swept parameters. Bars: stated errors. An open triangle at the top: "
+    "singular, there is no largest value.",
 }
 """What figures show, by name."""
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import dask.array as da
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -16,6 +15,9 @@ from contactstudy.checks import FloatArray
 from contactstudy.study.common_cells import OntoCommon, comment_of, common_columns, common_rows, resampled
 from contactstudy.study.cube import Cube
 from contactstudy.study.store import load_variable
+
+if TYPE_CHECKING:
+    import dask.array as da
 
 Place = tuple[int, ...]
 """Position of a case along the study's dimensions."""
@@ -204,6 +206,8 @@ def _load_block(block: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtyp
 
 def _lazy(sources: npt.NDArray[Any], name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> da.Array:
     """Dask array of a variable over all cases, one chunk per case."""
+    import dask.array as da
+
     cases = da.from_array(sources, chunks=1, name=False)
     result: da.Array = da.map_blocks(
         _load_block,

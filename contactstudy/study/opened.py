@@ -16,7 +16,7 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lazy_fields import CELLS, Fields, Place
 from contactstudy.study.parameters import PARAMETERS
-from contactstudy.study.plan import Plan
+from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.store import read_structure, scalar_attributes
 
 
@@ -127,14 +127,16 @@ def _summaries(plan: Plan, entries: list[Entry], place: Folder) -> xr.Dataset:
     variables: dict[str, Any] = {name: (cube.dims, array, attributes.get(name, {})) for name, array in scalars.items()}
     for name, text in (("status", status), ("message", message), ("case_id", identity)):
         variables[name] = (cube.dims, text.astype(np.str_))
-    return xr.Dataset(variables, coords={**_described(plan), **coordinates})
+    return xr.Dataset(variables, coords={**_described(plan, entries), **coordinates})
 
 
-def _described(plan: Plan) -> dict[str, Any]:
+def _described(plan: Plan, entries: list[Entry]) -> dict[str, Any]:
     """End distance, friction, gamma and profile of the cases, along the dimensions that they change with."""
     cube, found = plan.cube, {}
     for name in ("e_over_a", "friction", "gamma", "profile"):
-        known = {case.position: case.described[name] for case in plan.cases if case.described}
+        pairs = zip(plan.cases, entries, strict=True)
+        known = {case.position: _said(case, entry, name) for case, entry in pairs if case.described}
+        known = {position: value for position, value in known.items() if isinstance(value, str) or value == value}
         if not known:
             continue
         words = isinstance(next(iter(known.values())), str)
@@ -147,6 +149,14 @@ def _described(plan: Plan) -> dict[str, Any]:
         attributes = {"long_name": parameter.meaning, "comment": DERIVED} | units
         found[name] = (dims, table.astype(np.str_) if words else table, attributes)
     return found
+
+
+def _said(case: PlannedCase, entry: Entry, name: str) -> float | str:
+    """Return what describes a case; NaN for e over a half-width that follows from the solution, until it is known."""
+    value = case.described[name]
+    if name == "e_over_a" and "approach" in case.parameters:
+        return float(case.parameters["end_distance"]) / entry.scalars.get("hertz_half_width", np.nan)
+    return value
 
 
 def _reduced(

@@ -1,13 +1,12 @@
 """The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
 
-A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solve` has a keyword of the same name:
-its default is read from that signature, and the value is handed on. Any other parameter is used by name in
+A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
+same name: its default is read from that signature, and the value is handed on. Any other parameter is used by name in
 :func:`contactstudy.study.setup.setup_of`.
 """
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -16,13 +15,10 @@ from contactstudy.bodies.models import MODELS
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
-from contactstudy.solution import solve
+from contactstudy.case.settings import ACCURACY, solver_settings
 from contactstudy.study.motion_kinds import KINDS
 from contactstudy.study.numbers import number
 from contactstudy.study.parameter import Parameter, flag, one_of, points, profile
-
-ACCURACY = float(inspect.signature(solve).parameters["accuracy"].default)
-"""Accuracy of a case that says nothing about its cells."""
 
 UNIFORM = ("cells_x", "cells_y", "window", "margin", "error_estimate")
 """Parameters of uniform cells; a case that gives one of them has such cells."""
@@ -72,6 +68,16 @@ _WITH_CASE = (
     Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
     Parameter("max_pressure", number, "Pa", "peak pressure p0 of the Hertz line contact", Case, absent="or `load`"),
     Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`"),
+    Parameter(
+        "approach",
+        number,
+        "m",
+        "how far the roller is pressed down at its mid-length, from first touch without tilt",
+        Case,
+        absent="or `load`",
+        note="the load results, and with it a: give `end_distance`, and leave out uniform cells and stress points, "
+        "which are over a",
+    ),
     Parameter("friction", number, "1", "coefficient of friction", Case),
     Parameter("profile", profile, "", "roller profile", fallback={"kind": "cylinder"}),
     Parameter(
@@ -164,16 +170,16 @@ _WITH_SOLVER = (
         choose_grid,
         note="uniform cells",
     ),
-    Parameter("tolerance", number, "1", "tolerance of the contact iteration", solve),
+    Parameter("tolerance", number, "1", "tolerance of the contact iteration", solver_settings),
     Parameter(
         "error_estimate",
         flag,
         "1",
         "whether a contact on half the cells gives the discretisation error",
-        solve,
+        solver_settings,
         note="uniform cells",
     ),
-    Parameter("stresses", flag, "1", "whether stresses are calculated", solve),
+    Parameter("stresses", flag, "1", "whether stresses are calculated", solver_settings),
     Parameter(
         "field_x_over_a",
         points,

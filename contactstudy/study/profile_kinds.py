@@ -16,6 +16,7 @@ from typing import Any, Protocol
 from contactstudy import checks, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
+from contactstudy.study import own_profiles
 from contactstudy.study.numbers import number
 
 Table = dict[str, Any]
@@ -36,7 +37,6 @@ class Surroundings:
 
     radius: float
     modulus: float
-    max_pressure: float
     length: float
 
 
@@ -211,6 +211,20 @@ class WithoutCorners:
         return self.made(build_profile(table["profile"], around), table["effective_length"])
 
 
+class Own:
+    """Kind of a profile whose class is the user's: its table is made from the object."""
+
+    made = own_profiles.Unknown
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check what a file holds of it."""
+        return own_profiles.read_table(table)
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Return the object that this process knows."""
+        return own_profiles.own_profile(table["content"])
+
+
 def _nameless(value: object, depth: int) -> Table:
     """Table of a profile within another one, without its name."""
     return {key: entry for key, entry in profile_table(value, depth).items() if key != "name"}
@@ -235,6 +249,9 @@ PROFILES: dict[str, ProfileKind] = {
 }
 """Kinds of profile by their name in a study."""
 
+KINDS: dict[str, ProfileKind] = {**PROFILES, own_profiles.KIND: Own()}
+"""These, and the kind of those that are made in Python from a class of the user's."""
+
 KIND_OF = {kind.made: name for name, kind in PROFILES.items()}
 """Profiles may also be given as objects, because their fields are the keys of their table."""
 
@@ -245,8 +262,8 @@ def profile_table(value: object, depth: int = 0) -> Table:
     Parameters
     ----------
     value : mapping, str or Profile
-        A table with a `kind`, the name of a kind without any more keys, or a profile. Profiles within it (of a sum,
-        of two halves) likewise.
+        A table with a `kind`, the name of a kind without any more keys, or a profile, one of the user's own among
+        them. Profiles within it (of a sum, of two halves) likewise.
     depth : int
         Number of profiles that this one is within.
 
@@ -267,14 +284,16 @@ def profile_table(value: object, depth: int = 0) -> Table:
     if is_dataclass(value) and type(value) in KIND_OF:
         given = {entry.name: getattr(value, entry.name) for entry in fields(value)}
         value = {"kind": KIND_OF[type(value)], **given}
+    elif isinstance(value, Profile) and not isinstance(value, type):
+        return own_profiles.own_table(value)
     if isinstance(value, str):
         value = {"kind": value}
-    allowed = "a profile or a table with a kind, such as {kind = 'cylinder'}; one's own as Measured(x, drop)"
+    allowed = "a profile, an object with drop(x, length), or a table with a kind, such as {kind = 'cylinder'}"
     checks.instance("profile", value, Mapping, allowed)
     assert isinstance(value, Mapping)
     if not isinstance(value.get("kind"), str):
         raise InvalidInputError("profile", dict(value), f"a table with a kind: one of {', '.join(PROFILES)}")
-    kind = checks.known_name("profile.kind", value["kind"], PROFILES)
+    kind = checks.known_name("profile.kind", value["kind"], KINDS)
     table: Table = {"kind": kind}
     name = value.get("name")
     if name is None and isinstance(value.get("file"), str):
@@ -283,7 +302,7 @@ def profile_table(value: object, depth: int = 0) -> Table:
         checks.instance("profile.name", name, str, "text")
         table["name"] = name
     content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
-    return table | PROFILES[kind].read(content, depth)
+    return table | KINDS[kind].read(content, depth)
 
 
 def profile_label(table: Mapping[str, Any]) -> str:
@@ -305,6 +324,8 @@ def profile_label(table: Mapping[str, Any]) -> str:
         return f"{profile_label(table['left'])} | {profile_label(table['right'])}"
     if kind == "measured":
         return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
+    if kind == own_profiles.KIND:
+        return f"{table['class']} {table['content'][:8]}"
     if kind == "effective-length":
         return f"{profile_label(table['profile'])} over {table['effective_length']:g} m"
     values = [f"{key}={table[key]:g}" for key in sorted(table) if key != "kind"]
@@ -314,7 +335,7 @@ def profile_label(table: Mapping[str, Any]) -> str:
 def build_profile(table: Mapping[str, Any], around: Surroundings) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
-    return PROFILES[table["kind"]].build(values, around)
+    return KINDS[table["kind"]].build(values, around)
 
 
 def with_files_in(content: Any, folder: Path) -> Any:

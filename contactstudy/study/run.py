@@ -19,6 +19,7 @@ from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.executor import WAIT_SECONDS, execute
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lock import locked
+from contactstudy.study.own_profiles import pickles_of
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.work import Job, Record, Solver, differences
@@ -111,9 +112,9 @@ def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str
     for case in plan.unique:
         entry, _ = folder.state(case.id, plan.level)
         if entry.status == "missing" or (entry.status == "stale" and not entry.usable) or entry.status in again:
-            place = str(folder.path)
+            place, own = str(folder.path), pickles_of(case.parameters)
             jobs.append(
-                Job(case.id, case.name, case.parameters, place, plan.level, case.operator, case.cost, plan.name)
+                Job(case.id, case.name, case.parameters, place, plan.level, case.operator, case.cost, plan.name, own)
             )
     return jobs
 

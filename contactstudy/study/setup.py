@@ -6,6 +6,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import astuple, dataclass
 from typing import Any
 
+import numpy as np
+
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
@@ -15,15 +17,18 @@ from contactstudy.case.case import Case
 from contactstudy.case.doubts import unquestioned
 from contactstudy.case.gridding import choose_grid, widening_grids
 from contactstudy.case.roller import Roller
+from contactstudy.case.settings import check_accuracy, solver_settings
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.solution import check_accuracy, solve
 from contactstudy.study.motion_kinds import motion_of
 from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
 
 USUAL_COLUMNS, USUAL_ROWS, USUAL_DEPTHS = 120, 32, 32
 """Cells along x and y of a refined contact, and depths that the solver chooses, roughly; for forecasts only."""
+
+OVER_HALF_WIDTH = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
+"""Parameters that are positions over the half-width."""
 
 Described = dict[str, float | str]
 
@@ -43,6 +48,8 @@ class Dimensions:
     def of(cls, values: Mapping[str, Any], modulus: float) -> Dimensions:
         """Dimensions of a case; with a load, ``a`` depends on the contact's length, which may depend on ``a``.
 
+        With an approach ``a`` is NaN, because it follows from the solution.
+
         Raises
         ------
         InvalidInputError
@@ -52,6 +59,10 @@ class Dimensions:
         if "max_pressure" in values:
             pressure = checks.positive("max_pressure", values["max_pressure"], "Pa")
             found = cls._for(values, radius, modulus, hertz.line_half_width(pressure, radius, modulus))
+            found._check()
+            return found
+        if "approach" in values:
+            found = cls._for(values, radius, modulus, np.nan)
             found._check()
             return found
         load, half_width = checks.positive("load", values["load"], "N"), 0.0
@@ -84,11 +95,6 @@ class Dimensions:
             if length <= 0:
                 hint = f"e = {self.end_distance:g} m, a = {self.half_width:g} m"
                 raise InvalidInputError(name, length, "positive (metres)", hint)
-
-    @property
-    def max_pressure(self) -> float:
-        """Peak pressure ``p0`` of the Hertz line contact, Pa."""
-        return self.half_width * self.modulus / (2 * self.radius)
 
 
 @dataclass(frozen=True, eq=False)
@@ -124,7 +130,7 @@ class Setup:
     def operator(self) -> str:
         """What the solver's expensive preparation depends on: equal for cases that can share it."""
         case = self.case
-        cells = case.hertz_half_width if self.grid is None else self.grid
+        cells = (case.approach or case.hertz_half_width) if self.grid is None else self.grid
         bodies = [body and (type(body).__name__, astuple(body)) for body in (case.body, case.roller.body)]
         return repr((*bodies, cells, case.coupled, type(case.motion).__name__))
 
@@ -145,14 +151,29 @@ class Setup:
         return int(x * y * z)
 
 
-def _one_of(values: Mapping[str, Any], first: str, second: str) -> None:
-    """Raise unless exactly one of two parameters is given."""
-    if first in values and second in values:
+def _one_of(values: Mapping[str, Any], *names: str) -> None:
+    """Raise unless exactly one of some parameters is given."""
+    given = [name for name in names if name in values]
+    if len(given) != 1:
+        *others, last = names
+        count = "two" if len(names) == 2 else "three"
+        shown = tuple(values[name] for name in given) if given else "none"
         raise InvalidInputError(
-            f"{first}, {second}", (values[first], values[second]), f"given as one of the two, {first} or {second}"
+            ", ".join(given or names), shown, f"given as one of the {count}, {', '.join(others)} or {last}"
         )
-    if first not in values and second not in values:
-        raise InvalidInputError(f"{first}, {second}", "neither", f"given as one of the two, {first} or {second}")
+
+
+def _check_approach(values: Mapping[str, Any], given: Mapping[str, Any]) -> None:
+    """Raise if a case at an approach says anything over the half-width, which follows from the solution."""
+    if "approach" not in values:
+        return
+    instead = dict.fromkeys(UNIFORM, "leave it out: columns are refined, to `accuracy`") | dict.fromkeys(
+        OVER_HALF_WIDTH, "leave it out: the solver chooses the points when it knows a"
+    )
+    instead |= {"e_over_a": "give end_distance (metres)", "load_offset": "prescribe the load instead"}
+    for name, hint in instead.items():
+        if name in given:
+            raise InvalidInputError(name, given[name], "left out where the approach is prescribed", hint)
 
 
 def _body(values: Mapping[str, Any], material: Material, length: float) -> Body:
@@ -184,8 +205,7 @@ def _stress_points(
 ) -> dict[str, FloatArray | None]:
     """Stress points in metres; None where the solver chooses."""
     x, y, z = (
-        half_width * checks.coordinates(name, values[name]) if name in values else None
-        for name in ("field_x_over_a", "field_y_over_a", "field_z_over_a")
+        half_width * checks.coordinates(name, values[name]) if name in values else None for name in OVER_HALF_WIDTH
     )
     if z is not None and z.min() < 0:
         raise InvalidInputError("field_z_over_a", float(z.min() / half_width), "not below zero")
@@ -237,11 +257,12 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
     for name in ("young", "poisson", "radius"):
         if name not in values:
             raise InvalidInputError(name, None, "given")
-    for pair in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load")):
-        _one_of(values, *pair)
+    _check_approach(values, parameters)
+    for names in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load", "approach")):
+        _one_of(values, *names)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
-    around = Surroundings(sizes.radius, sizes.modulus, sizes.max_pressure, sizes.roller_length)
+    around = Surroundings(sizes.radius, sizes.modulus, sizes.roller_length)
     middle = sizes.end_distance + 0.5 * sizes.roller_length
     with unquestioned():  # the plan asks, for all cases at once
         case = Case(
@@ -259,7 +280,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
             **taken_by(Case, values),
         )
     tolerance = checks.positive("tolerance", values["tolerance"])
-    options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solve, values)
+    options = _stress_points(values, sizes.half_width, case.body.extent) | taken_by(solver_settings, values)
     described: Described = {
         "e_over_a": sizes.end_distance / sizes.half_width,
         "friction": float(values["friction"]),

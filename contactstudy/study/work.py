@@ -22,8 +22,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import named
 from contactstudy.case.gridding import first_that_holds
 from contactstudy.errors import ContactStudyError
-from contactstudy.fatigue.shakedown import shakedown_summary
-from contactstudy.solution import solve
+from contactstudy.study import own_profiles
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import Setup, build_setup
@@ -54,6 +53,8 @@ class Job:
         Expected effort.
     study : str
         Name of the study, for the file.
+    own_profiles : mapping
+        Pickles of the user's own profiles, by their content.
     """
 
     id: str
@@ -64,6 +65,7 @@ class Job:
     operator: str = ""
     cost: float = 1.0
     study: str = ""
+    own_profiles: Mapping[str, bytes] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -161,11 +163,16 @@ def perform(job: Job, solver: Solver | None = None) -> Record:
     StoreError
         If the file cannot be written.
     """
+    # Who only looks at a study, or plans one, does not wait for the solver to be imported.
+    from contactstudy.fatigue.shakedown import shakedown_summary
+    from contactstudy.solution import solve
+
     folder = Folder(job.folder)
     began = time.perf_counter()
     try:
         with single_threaded(), warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
+            own_profiles.receive(job.own_profiles)
             setup = build_setup(job.parameters)
             solve_on = partial(_solve_on, solver or solve, setup)
             dataset = first_that_holds(setup.grids, solve_on)

@@ -25,6 +25,7 @@ def test_a_settled_peak_has_its_error_and_a_cell_says_that_it_has_none(solved: x
     row = short(settled)["peak_pressure"]
     assert (row.text, row.remark) == ("1.623 ± 0.012 GPa", "")
     assert short(settled.assign(peak_pressure_error=np.inf))["peak_pressure"].remark.startswith("no error known")
+    assert short(settled.assign(normal_load=20.0, normal_load_error=0.1))["normal_load"].text == "20.00 ± 0.10 N"
     table = short(settled).to_dataframe()
     assert table.loc["peak_pressure", "error"] == 0.0121e9
 

@@ -92,7 +92,16 @@ def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: 
         ),
         (lambda: Case(body=None, roller=ROLLER, max_pressure=1e9), "body = None: must be elastic.*two rigid bodies"),
         (lambda: Material(young=np.inf, poisson=0.3), "young = inf"),
-        (lambda: Case(body=BODY, roller=ROLLER), "max_pressure, load = .*exactly one"),
+        (lambda: Case(body=BODY, roller=ROLLER), "max_pressure, load, approach = .*exactly one"),
+        (lambda: Case(body=BODY, roller=ROLLER, load=1.0, approach=1e-6), "exactly one of the three"),
+        (lambda: Case(body=BODY, roller=ROLLER, approach=[1e-6, 2e-6]), "one number .*sweep a list in a Study"),
+        (lambda: Case(body=BODY, roller=ROLLER, approach=0.0), "more than that of first touch, 0 m"),
+        (lambda: Case(body=BODY, roller=ROLLER, approach=1.0), "no more than the roller.s radius"),
+        (lambda: Case(body=BODY, roller=ROLLER, approach=1e-6, load_position=1e-3), "load_position = 0.001"),
+        (
+            lambda: Case(body=BODY, roller=ROLLER, approach=1e-6).normal_load,
+            "approach = 1e-06.*give load =",
+        ),
         (lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, load=1.0), "exactly one"),
         (lambda: Case(body=BODY, roller=ROLLER, max_pressure=-1e9), "max_pressure = -1000000000.0"),
         (

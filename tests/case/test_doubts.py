@@ -56,6 +56,7 @@ def test_usual_cases_raise_no_question() -> None:
         ({"friction": xr.DataArray([0.1, -8.0], dims="x", coords={"x": [0.0, 1e-2]})}, "friction = 8"),
         ({"tilt": 0.05}, "tilt = 0.05 rad, usual are 0 to 0.01 rad; 0.05 deg is 0.000872665 rad"),
         ({"load": None, "max_pressure": 1500}, "max_pressure = 1500 Pa is very low: Hertz pressure 0.0015 MPa"),
+        ({"load": None, "approach": 5e-3}, "approach = 0.005 m, usual are up to 0.0006 m on .*; 0.005 mm is 5e-06 m"),
         ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
     ],
 )
@@ -64,6 +65,40 @@ def test_doubtful_magnitudes_are_questioned_by_name(changes, message: str) -> No
         made(**changes)
     assert len(caught) == 1
     assert caught[0].filename == __file__
+
+
+@pytest.mark.parametrize(
+    ("crown", "message"),
+    [
+        (
+            profiles.Lundberg(8.0),
+            "0.4 of the length from the middle = 8.1.* m, usual are up to 0.0009 m .*; 8.1.* µm is 8",
+        ),
+        (profiles.Lundberg(8e-3), "= 0.008.* m, usual are up to 0.0009 m .*; 0.008.* mm is 8.*e-06 m"),
+        (profiles.Measured(1e-3 * np.array([-7, -6.5, 0, 6.5, 7]), [8.0, 0, 0, 0, 8.0]), "0.49 of .* µm is .*e-06 m"),
+    ],
+)
+def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message: str) -> None:
+    with pytest.warns(MagnitudeWarning, match=message):
+        Case(
+            body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=14e-3, profile=crown), max_pressure=1.5e9
+        )
+
+
+@pytest.mark.parametrize(
+    "crown",
+    [
+        profiles.Lundberg(8e-6),
+        profiles.Cylinder(fillet_radius=1e-3),
+        profiles.FullCrown(crown_radius=12e-3),
+        profiles.PartialCrown(4e-3, 1.2, dub_length=0.8e-3, dub_radius=0.06),
+        profiles.IsoTapered(diameter=12e-3),
+    ],
+)
+def test_usual_crowns_raise_no_question(crown: profiles.Profile) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Case(body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=10e-3, profile=crown), max_pressure=1e9)
 
 
 def test_whoever_insists_is_not_asked() -> None:

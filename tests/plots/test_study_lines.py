@@ -72,3 +72,15 @@ def test_parameters_that_change_together_are_named_together(opened):
     (legend,) = plots.plot_study_lines(together, "e_over_a", "body_and_model").legends
     assert legend.get_title().get_text() == "body and model"
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
+
+
+def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
+    steps = {"e_over_a": [0.0, 1.0, 2.0]}
+    peaks = xr.DataArray([1e9, 2e9, 3e9], steps, "e_over_a", attrs={"units": "Pa"})
+    errors = peaks.copy(data=[1e8, np.inf, 2e8])
+    figure = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks, "peak_pressure_error": errors}), "e_over_a")
+    (bars,) = figure.axes[0].collections
+    ends = [segment[:, 1].tolist() for segment in bars.get_segments() if len(segment) and np.isfinite(segment).all()]
+    assert ends == [pytest.approx([0.9, 1.1]), pytest.approx([2.8, 3.2])]
+    without = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), "e_over_a")
+    assert not without.axes[0].collections

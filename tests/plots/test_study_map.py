@@ -1,5 +1,6 @@
 import numpy as np
 import pytest
+import xarray as xr
 from matplotlib import pyplot
 
 from contactstudy import analysis, plots
@@ -15,7 +16,27 @@ def test_map_of_a_study(opened, assert_nothing_clipped):
     expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     assert [text.get_text() for text in ax.texts] == [f"{value:.3g}" for value in expected]
     assert sum(bool(collection.get_hatch()) for collection in ax.collections) == 3
+    (said,) = ax.get_legend().get_texts()
+    assert said.get_text() == "no value: 3 of 6 cases (3 failed)"
     assert_nothing_clipped(ax.figure)
+
+
+def test_listed_cases_are_spread_and_the_gaps_counted(assert_nothing_clipped):
+    listed = xr.Dataset(
+        {"peak_pressure": ("case", [1e9, 2e9, 3e9, np.nan]), "status": ("case", ["ok", "ok", "ok", "failed"])},
+        coords={"e_over_a": ("case", [0.0, 0.0, 1.0, 2.0]), "friction": ("case", [0.0, 0.1, 0.1, 0.0])},
+    )
+    ax = plots.plot_study_map(listed, "peak_pressure")
+    assert ax.get_legend().get_texts()[0].get_text() == "no value: 3 of 6 cases (1 failed)"
+    assert [text.get_text() for text in ax.texts] == ["1e+09", "2e+09", "3e+09"]
+    assert_nothing_clipped(ax.figure)
+    with pytest.raises(InvalidInputError, match=r"several have e_over_a = 0.0, friction = 0.0"):
+        plots.plot_study_map(listed.assign_coords(friction=("case", np.zeros(4))), "peak_pressure")
+
+
+def test_a_full_map_has_no_legend(opened):
+    full = opened.isel(friction=[0]).sel(body="finite-length")
+    assert plots.plot_study_map(full, "peak_von_mises").get_legend() is None
 
 
 def test_unit_is_readable(opened):

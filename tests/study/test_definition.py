@@ -173,12 +173,3 @@ def test_evenly_spaced_numbers_are_swept():
         small_study(sweep={"friction": {"start": 0.0}})
     with pytest.raises(InvalidInputError, match=r"sweep.friction.count = 100000000"):
         small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 100_000_000}})
-
-
-def test_a_profile_of_ones_own_is_told_how_to_go_in():
-    class Own:
-        def drop(self, x, length):
-            return x**2
-
-    with pytest.raises(InvalidInputError, match=r"one's own as Measured\(x, drop\)"):
-        small_study(sweep={"profile": [Own()]})

@@ -158,7 +158,7 @@ def test_extreme_cases_are_skipped_and_stop_no_plan(changes):
 
 
 def test_a_missing_one_of_two_is_said_in_words():
-    with pytest.raises(InvalidInputError, match=r"e_over_a, end_distance = 'neither': must be given as one of the two"):
+    with pytest.raises(InvalidInputError, match=r"e_over_a, end_distance = 'none': must be given as one of the two"):
         build_setup(BASE)
 
 

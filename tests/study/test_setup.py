@@ -44,6 +44,34 @@ def test_a_load_that_leaves_no_roller():
         build_setup(values | {"gamma": 0.1, "load": 1e5, "e_over_a": 5})
 
 
+AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_length")} | {
+    "approach": 1e-6,
+    "accuracy": 0.01,
+}
+
+
+def test_an_approach_leaves_the_half_width_to_the_solution():
+    setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
+    assert setup.case.approach == 1e-6
+    assert np.isnan(setup.described["e_over_a"])
+    assert setup.operator != build_setup(AT_APPROACH | {"end_distance": 1e-4, "approach": 2e-6}).operator
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"e_over_a": 1}, "e_over_a = 1.0: must be left out where the approach is prescribed; give end_distance"),
+        ({"end_distance": 0, "cells_x": 4}, "cells_x = 4.0.*leave it out: columns are refined"),
+        ({"end_distance": 0, "field_z_over_a": [0.0]}, "field_z_over_a = .*the solver chooses"),
+        ({"end_distance": 0, "load_offset": 1e-5}, "load_offset = 1e-05.*prescribe the load instead"),
+        ({"end_distance": 0, "load": 3.0}, "load, approach = .*one of the three, max_pressure, load or approach"),
+    ],
+)
+def test_what_is_over_a_is_refused_with_an_approach(changes, message):
+    with pytest.raises(InvalidInputError, match=message):
+        build_setup(AT_APPROACH | changes)
+
+
 def test_stress_points_are_over_a():
     setup = build_setup(BASE | {"e_over_a": 0})
     np.testing.assert_allclose(setup.options["x"] / setup.case.hertz_half_width, [0, 1, 2])

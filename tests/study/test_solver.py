@@ -5,7 +5,7 @@ import pytest
 
 from contactstudy import cache, solve
 from contactstudy.fields import surface
-from contactstudy.study import open_study, run_study
+from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.setup import build_setup
 from contactstudy.study.store import load_case
@@ -78,3 +78,18 @@ def test_cases_that_share_an_operator_make_it_once(tmp_path, monkeypatch):
     assert len([entry for entry in made if entry.body.model == "exact"]) == 2
     assert len(made) == len(set(made))
     assert cache.info().limit <= 2**31
+
+
+def test_a_study_over_the_approach_has_loads_with_their_errors(tmp_path) -> None:
+    base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.3e-3, "end_distance": 0.1e-3}
+    study = Study(
+        name="pressed",
+        base=base | {"body": "half-space", "stresses": False, "accuracy": 0.1},
+        sweep={"approach": [1e-6, 2e-6]},
+    )
+    assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 2}
+    opened = open_study(tmp_path)
+    assert opened.approach.dims == ("approach",)
+    assert (np.diff(opened.normal_load) > 0).all()
+    assert (opened.normal_load_error < 0.02 * opened.normal_load).all()
+    np.testing.assert_allclose(opened.e_over_a, 0.1e-3 / opened.hertz_half_width)
