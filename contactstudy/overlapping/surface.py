@@ -61,9 +61,12 @@ class EndCorrection:
     @staticmethod
     def _between(kernel: FloatArray, sources: FloatArray) -> FloatArray:
         """Apply a kernel (wavenumber, position, position) to pairs (position, wavenumber and part)."""
-        positions = sources.shape[0]
-        sunk = np.matmul(kernel, sources.reshape(positions, -1, 2).transpose(1, 0, 2))
-        return np.ascontiguousarray(sunk.transpose(1, 0, 2)).reshape(positions, -1)
+        sunk = np.empty((*kernel.shape[:2], 2))
+        pairs = sources.reshape(kernel.shape[1], -1, 2)
+        for part in (0, 1):  # a product with one column at a time is three times faster than with two
+            columns = np.ascontiguousarray(pairs[..., part].T)[..., None]
+            sunk[..., part] = np.matmul(kernel, columns)[..., 0]
+        return np.ascontiguousarray(sunk.transpose(1, 0, 2)).reshape(kernel.shape[1], -1)
 
     def _folded(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
         """Sum and difference of the cells on either side of the middle, by parity; with one end, the cells."""
