@@ -258,12 +258,13 @@ def _some(cells: BoolArray, share: float) -> BoolArray:
 def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
     """Half of the cells that stick at most, those farthest above their bound.
 
-    If no cell sticks, the rigid slip that makes a prescribed resultant has no value.
+    Were all to begin at once, the rigid slip that makes a prescribed resultant would hardly have a value. The last
+    cell may: where another rigid slip is prescribed, all cells may have to slip.
     """
-    most = int(sticks.sum()) // 2
+    most = (int(sticks.sum()) + 1) // 2
     if exceeds.sum() <= most:
         return exceeds
-    least = np.partition(excess[exceeds], -most)[-most] if most else np.inf
+    least = np.partition(excess[exceeds], -most)[-most]
     return np.asarray(exceeds & (excess >= least))
 
 
