@@ -315,8 +315,14 @@ class _Step:
         """Tractions and amplitudes of the rigid slips; what the present ones leave is taken away to an accuracy."""
         problem = self._problem
         turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
-        modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(len(problem.modes), turning.size)
-        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(modes.shape)
+        count, shape = turning.size, (len(problem.modes), turning.size)
+        # A spin counts per metre and its moment in N m: as slip, and as the slip that tractions of their size take
+        # away, one residual means something for all.
+        sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
+        modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
+        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(shape)
+        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._typical.mean())
+        works = works / unit[:, None]
         typical = np.concatenate([self._typical, self._typical[self._sticks]])
         damped = np.sqrt(typical / (typical + turning))
 
@@ -327,21 +333,18 @@ class _Step:
         def inverse(slip: FloatArray) -> FloatArray:
             return np.asarray(damped * self._gathered(problem.inverse(self._spread(damped * slip))))
 
-        count = turning.size
         lifted = np.array([inverse(mode) for mode in modes]).reshape(modes.shape)
         schur = works @ lifted.T
-        # Resultants as the slip that tractions of their size take away: one residual means something for both.
-        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._typical.mean())
 
         def whole(unknowns: FloatArray) -> FloatArray:
             own, free = unknowns[:count], unknowns[count:]
-            return np.concatenate([matrix(own) - free @ modes, (works @ own) / unit])
+            return np.concatenate([matrix(own) - free @ modes, works @ own])
 
         def precondition(residual: FloatArray) -> FloatArray:
             own = inverse(residual[:count])
             if not len(modes):
                 return own
-            free = np.linalg.lstsq(schur, unit * residual[count:] - works @ own, rcond=None)[0]
+            free = np.linalg.lstsq(schur, residual[count:] - works @ own, rcond=None)[0]
             return np.concatenate([own + free @ lifted, free])
 
         # Cells that slip carry their bound and nothing across it, so the slip is all that is left.
@@ -354,7 +357,7 @@ class _Step:
             directions=DIRECTIONS,
             restarts=RESTARTS,
         )
-        return traction + self._spread(change[:count]), amplitudes + change[count:]
+        return traction + self._spread(change[:count]), amplitudes + change[count:] / sizes
 
 
 def _typical(problem: CoulombProblem) -> FloatArray:

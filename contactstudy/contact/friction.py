@@ -10,7 +10,8 @@ import numpy as np
 from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.compliance import contact_cells, tangential_inverse
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+from contactstudy.contact.continuation import solve_continued
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation
 from contactstudy.contact.leading_edge import RollingCells, taken_together
 from contactstudy.contact.nested import Coarser, guess_from, joined
 from contactstudy.contact.rubbed import RelativeOperator, Surfaces, amplitude, check_forces, motions_of, resultant
@@ -67,7 +68,7 @@ def tractions_of(
     rolling = isinstance(motion, Rolling)
     together = taken_together(grid.x, grid.widths, grid.dy)
     cells = RollingCells.of(pressure, bound, together) if rolling else _all_cells(bound)
-    check_forces(motion, float((bound * surfaces.areas).sum()))
+    check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
         return no_tractions(motion, surfaces)
     if isinstance(motion, Rolling) and motion.model == "fastsim":
@@ -109,7 +110,7 @@ def tractions_of(
     if coarser is None:
         coarser = _solved_on_coarser(motion, surfaces, pressure, bound, cells, max_steps=max_steps, before=before)
     start = None if coarser is None else guess_from(coarser, cells, bound, modes)
-    found = _completed(problem, solve_coulomb(problem, start), motion, cells, surfaces)
+    found = _completed(problem, solve_continued(problem, start), motion, cells, surfaces)
     return replace(found, work=_rolling_work(found, surfaces, bent)) if rolling else found
 
 
