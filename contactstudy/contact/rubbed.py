@@ -104,7 +104,7 @@ def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray
     """
     modes = motion.modes
     wanted = np.array([resultant(motion, name) for name in modes])
-    if not wanted.any():
+    if not modes or (bound.any() and not wanted.any()):
         return
     names = [{"x": "force_x", "y": "force_y", "spin": "moment_z"}[name] for name in modes]
     works = weights[[("x", "y", "spin").index(name) for name in modes]]
@@ -134,7 +134,7 @@ def _largest_multiple(wanted: FloatArray, bound: FloatArray, works: FloatArray) 
     bounds, works = bound[pressed], works[:, :, pressed]
     sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in works])
     able = sizes > 0
-    if wanted[~able].any():
+    if wanted[~able].any() or not able.any():
         return 0.0
     works, target = works[able] / sizes[able, None, None], wanted[able] / sizes[able]
     along = target / (target @ target)
