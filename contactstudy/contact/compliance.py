@@ -15,7 +15,7 @@ from contactstudy.kernels.columns import ColumnsRequest
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.surface import surface_kernel
 
-LEAST_CHANGE = 4.0
+LEAST_CHANGE = 1.5
 """Change along y that stands in for that of a constant, over that of the first wavenumber. Speed."""
 
 TYPICAL_PLACE = 0.5
@@ -39,7 +39,7 @@ class TangentialInverse:
 
     def __init__(self, materials: list[Material], cells: IntArray, cell: tuple[float, float], *, rolling: bool) -> None:
         first = cells.min(axis=1)
-        self._at = tuple(cells - first[:, None])
+        self._at, self._rise = tuple(cells - first[:, None]), _rise(cells, rolling=rolling)
         size = cells.max(axis=1) - first + 1
         self._shape = tuple(fft.next_fast_len(int(2 * each), real=True) for each in size)
         xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
@@ -69,6 +69,7 @@ class TangentialInverse:
 
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Tractions (2, cell) that roughly take a slip (2, cell) away."""
+        slip = slip / self._rise
         scale = float(np.abs(slip).max()) or 1.0
         spectra = []
         for component in slip:
@@ -77,7 +78,8 @@ class TangentialInverse:
             spectra.append(fft.rfft2(layer))
         xx, xy, yy = self._inverse
         along = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
-        return scale * np.stack([fft.irfft2(each, self._shape)[self._at] for each in along]).astype(np.float64)
+        tractions = np.stack([fft.irfft2(each, self._shape)[self._at] for each in along]).astype(np.float64)
+        return scale * self._rise * tractions
 
 
 class ColumnsInverse:
@@ -100,7 +102,7 @@ class ColumnsInverse:
 
     def __init__(self, materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool) -> None:
         (first, start), (last, stop) = cells.min(axis=1), cells.max(axis=1)
-        self._at = tuple(cells - np.array([[first], [start]]))
+        self._at, self._rise = tuple(cells - np.array([[first], [start]])), _rise(cells, rolling=rolling)
         edges, count = grid.x_edges[first : last + 2], int(stop - start + 1)
         self._rows, self._padded = int(last - first + 1), 2 * count
         self._widths = np.diff(edges)
@@ -118,7 +120,7 @@ class ColumnsInverse:
     def __call__(self, slip: FloatArray) -> FloatArray:
         """Tractions (2, cell) that roughly take a slip (2, cell) away."""
         layers = np.zeros((2, self._rows, self._padded))
-        layers[:, *self._at] = slip
+        layers[:, *self._at] = slip / self._rise
         spectra = fft.rfft(layers) / self._change
         spectra[1] *= -1j
         pairs = spectra.reshape(2 * self._rows, -1).T
@@ -126,7 +128,7 @@ class ColumnsInverse:
         spectra = (found[..., 0] + 1j * found[..., 1]).T.reshape(spectra.shape)
         spectra[1] *= 1j
         tractions = fft.irfft(spectra, self._padded)[:, *self._at]
-        return np.asarray(tractions / self._widths[self._at[0]])
+        return np.asarray(self._rise * tractions / self._widths[self._at[0]])
 
 
 def tangential_inverse(
@@ -144,6 +146,21 @@ def _change(cells: int, dy: float) -> ComplexArray:
     b, turn = TYPICAL_PLACE, np.exp(1j * phase)
     change = -((b - 1.5) + (2 - 2 * b) * turn + (b - 0.5) * turn**2) / dy
     return np.asarray(change + LEAST_CHANGE * phase[1] / dy)
+
+
+def _rise(cells: IntArray, *, rolling: bool) -> FloatArray:
+    """How tractions begin behind the leading edge of each row, as a root: array (cell).
+
+    Along one line the change along y of the displacement is a Hilbert transform. Its inverse on an interval is that on
+    the whole line between this factor and its reciprocal.
+    """
+    if not rolling:
+        return np.ones(cells.shape[1])
+    row, column = cells
+    first, last = np.full(row.max() + 1, column.max()), np.zeros(row.max() + 1, dtype=np.int64)
+    np.minimum.at(first, row, column)
+    np.maximum.at(last, row, column)
+    return np.asarray(np.sqrt((last[row] + 0.5 - column) / (last[row] - first[row] + 1.0)))
 
 
 COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))

@@ -19,26 +19,27 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import linalg
 
 from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.krylov import minimal_residual
 from contactstudy.contact.projected import balanced_tractions
 
 Operator = Callable[[FloatArray], FloatArray]
 
-LINEAR_TOLERANCE = 1e-2
-"""Residual of a linear system over that of the step before. Speed."""
+ROUGHLY, CAREFULLY, FALLS = 0.1, 1e-2, 0.8
+"""Part of its residual that a linear system leaves; the part where the last step did not make the violation fall by a
+factor, and where all cells stayed what they were; that factor. Speed."""
 
 GUESSED = 1e-6
 """Part of the bound by which the traction of a cell that slips in a guess may miss it. Speed."""
 
-RESTART = 60
+DIRECTIONS = 60
 """Directions that the linear solver keeps. Speed."""
 
 ASTRAY = 15
 """Steps of Newton's method after which it has lost its way, and begins again from a descent. Speed."""
 
-LINEAR_STEPS = 5
+RESTARTS = 5
 """Restarts after which a linear system is left as it is. Speed."""
 
 
@@ -187,12 +188,12 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         sticks = size < (1 - GUESSED) * bound
         traction = start.traction * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
         slip = counted.slip(traction, amplitudes)
-    steps, converged, accuracy = 0, False, LINEAR_TOLERANCE
+    steps, converged, accuracy, violation = 0, False, ROUGHLY, np.inf
     seen, share, typical = {sticks.tobytes()}, 1.0, _typical(problem)
     while steps < problem.max_steps and not converged:
         steps += 1
         step = _Step(counted, traction, slip, sticks, typical)
-        guess, amplitudes = step.solve(traction, amplitudes, accuracy)
+        guess, amplitudes = step.solve(traction, slip, amplitudes, accuracy)
         traction, before = guess, sticks
         size = np.hypot(*traction)
         slipping = ~sticks
@@ -211,14 +212,16 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
         scale = _scale(counted, amplitudes)
         missed = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
         whole = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
-        violation = max(*law_violation(traction, slip, bound, sticks, scale), float((missed / whole).max(initial=0.0)))
+        last, violated = violation, law_violation(traction, slip, bound, sticks, scale)
+        violation = max(*violated, float((missed / whole).max(initial=0.0)))
         converged = violation <= problem.tolerance
-        if np.array_equal(sticks, before):
-            accuracy = max(LINEAR_TOLERANCE * accuracy, 1e-3 * problem.tolerance)
-        else:
+        stayed = np.array_equal(sticks, before)
+        accuracy = CAREFULLY if stayed or violation > FALLS * last else ROUGHLY
+        if not stayed:
             # Cells that go round in circles do not if fewer of them change at once (in the end one by one: Murty).
             again = sticks.tobytes() in seen
             share = 0.5 * share if again else min(1.0, 2 * share)
+            seen.add(sticks.tobytes())
         if problem.symmetric and steps % ASTRAY == 0 and not converged:
             traction, amplitudes = balanced_tractions(
                 relief,
@@ -255,12 +258,13 @@ def _some(cells: BoolArray, share: float) -> BoolArray:
 def _foremost(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
     """Half of the cells that stick at most, those farthest above their bound.
 
-    If no cell sticks, the rigid slip that makes a prescribed resultant has no value.
+    Were all to begin at once, the rigid slip that makes a prescribed resultant would hardly have a value. The last
+    cell may: where another rigid slip is prescribed, all cells may have to slip.
     """
-    most = int(sticks.sum()) // 2
+    most = (int(sticks.sum()) + 1) // 2
     if exceeds.sum() <= most:
         return exceeds
-    least = np.partition(excess[exceeds], -most)[-most] if most else np.inf
+    least = np.partition(excess[exceeds], -most)[-most]
     return np.asarray(exceeds & (excess >= least))
 
 
@@ -284,7 +288,6 @@ class _Step:
         self._root = np.sqrt(problem.shares)
         size = np.hypot(*traction)
         self._direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
-        self._base = problem.bound * self._direction
         across = np.stack([-self._direction[1], self._direction[0]])
         # Unknowns: both components where cells stick, else the component across.
         self._first = np.where(sticks, np.array([[1.0], [0.0]]), across)
@@ -306,12 +309,20 @@ class _Step:
         second = (self._second * slip[:, self._sticks]).sum(axis=0)
         return np.concatenate([first, second])
 
-    def solve(self, traction: FloatArray, amplitudes: FloatArray, accuracy: float) -> tuple[FloatArray, FloatArray]:
-        """Tractions and amplitudes of the rigid slips, beginning from the present ones."""
+    def solve(
+        self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray, accuracy: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Tractions and amplitudes of the rigid slips; what the present ones leave is taken away to an accuracy."""
         problem = self._problem
         turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
-        modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(len(problem.modes), turning.size)
-        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(modes.shape)
+        count, shape = turning.size, (len(problem.modes), turning.size)
+        # A spin counts per metre and its moment in N m: as slip, and as the slip that tractions of their size take
+        # away, one residual means something for all.
+        sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
+        modes = np.array([self._gathered(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
+        works = np.array([self._gathered(work / problem.shares) for work in problem.works]).reshape(shape)
+        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._typical.mean())
+        works = works / unit[:, None]
         typical = np.concatenate([self._typical, self._typical[self._sticks]])
         damped = np.sqrt(typical / (typical + turning))
 
@@ -322,38 +333,31 @@ class _Step:
         def inverse(slip: FloatArray) -> FloatArray:
             return np.asarray(damped * self._gathered(problem.inverse(self._spread(damped * slip))))
 
-        count = turning.size
-        start = self._gathered(np.where(self._sticks, traction, 0.0))
         lifted = np.array([inverse(mode) for mode in modes]).reshape(modes.shape)
         schur = works @ lifted.T
-        # Resultants as the slip that tractions of their size take away: one residual means something for both.
-        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._typical.mean())
 
         def whole(unknowns: FloatArray) -> FloatArray:
             own, free = unknowns[:count], unknowns[count:]
-            return np.concatenate([matrix(own) - free @ modes, (works @ own) / unit])
+            return np.concatenate([matrix(own) - free @ modes, works @ own])
 
         def precondition(residual: FloatArray) -> FloatArray:
             own = inverse(residual[:count])
             if not len(modes):
                 return own
-            free = np.linalg.lstsq(schur, unit * residual[count:] - works @ own, rcond=None)[0]
+            free = np.linalg.lstsq(schur, residual[count:] - works @ own, rcond=None)[0]
             return np.concatenate([own + free @ lifted, free])
 
-        given = self._gathered(problem.rigid - problem.relief(self._base))
-        owed = (problem.resultants - (problem.works * self._base).sum(axis=(1, 2))) / unit
-        size = count + len(modes)
-        found, _ = linalg.gmres(
-            linalg.LinearOperator((size, size), whole, dtype=np.float64),
-            np.concatenate([given, owed]),
-            np.concatenate([start, amplitudes]),
-            rtol=accuracy,
-            atol=0.0,
-            restart=RESTART,
-            maxiter=LINEAR_STEPS,
-            M=linalg.LinearOperator((size, size), precondition, dtype=np.float64),
+        # Cells that slip carry their bound and nothing across it, so the slip is all that is left.
+        owed = (problem.resultants - (problem.works * traction).sum(axis=(1, 2))) / unit
+        change = minimal_residual(
+            whole,
+            precondition,
+            np.concatenate([self._gathered(slip), owed]),
+            accuracy,
+            directions=DIRECTIONS,
+            restarts=RESTARTS,
         )
-        return self._base + self._spread(found[:count]), np.asarray(found[count:])
+        return traction + self._spread(change[:count]), amplitudes + change[count:] / sizes
 
 
 def _typical(problem: CoulombProblem) -> FloatArray:

@@ -10,9 +10,10 @@ import numpy as np
 from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.compliance import contact_cells, tangential_inverse
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, law_violation, solve_coulomb
+from contactstudy.contact.continuation import solve_continued
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation
 from contactstudy.contact.leading_edge import RollingCells, taken_together
-from contactstudy.contact.nested import Coarser, guess_from, joined
+from contactstudy.contact.nested import Coarser, guess_from, guess_of, joined
 from contactstudy.contact.rubbed import RelativeOperator, Surfaces, amplitude, check_forces, motions_of, resultant
 from contactstudy.contact.tractions import Tractions, no_tractions, tractions_of_strips
 from contactstudy.kernels.load import Load
@@ -27,6 +28,10 @@ COARSE_TOLERANCE = 1e-3
 """Tolerance of a solution that serves as a guess. Speed."""
 
 
+ROUGH_TOLERANCE = 1e-3
+"""Tolerance of the solution that tells which columns slide. Speed."""
+
+
 def tractions_of(
     motion: Shift | Rolling,
     surfaces: Surfaces,
@@ -37,6 +42,7 @@ def tractions_of(
     max_steps: int,
     before: Mapping[Load, FloatArray] | None = None,
     coarser: Coarser | None = None,
+    last: Tractions | None = None,
 ) -> Tractions:
     """Tractions under a given pressure.
 
@@ -56,6 +62,8 @@ def tractions_of(
         Pressure and tractions from which a shift begins; default: none.
     coarser : Coarser, optional
         Solution on coarser cells, to begin from. Default: on many uniform cells one is found first.
+    last : Tractions, optional
+        Tractions under almost the same pressure, to begin from; the columns in which they do not stick slide.
 
     Raises
     ------
@@ -67,7 +75,7 @@ def tractions_of(
     rolling = isinstance(motion, Rolling)
     together = taken_together(grid.x, grid.widths, grid.dy)
     cells = RollingCells.of(pressure, bound, together) if rolling else _all_cells(bound)
-    check_forces(motion, float((bound * surfaces.areas).sum()))
+    check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
         return no_tractions(motion, surfaces)
     if isinstance(motion, Rolling) and motion.model == "fastsim":
@@ -76,6 +84,39 @@ def tractions_of(
     if before is not None:
         for direction, each in surfaces.operator.displaced(before, TANGENTIAL).items():
             bent[direction] = bent[direction] - each
+
+    def solved(cells: RollingCells, tolerance: float, start: Guess | None) -> Tractions:
+        problem = _problem(motion, surfaces, bound, cells, bent, tolerance=tolerance, max_steps=max_steps)
+        found = _completed(problem, solve_continued(problem, start), motion, cells, surfaces)
+        return replace(found, work=_rolling_work(found, surfaces, bent)) if rolling else found
+
+    steps = applications = 0
+    if last is None or not rolling:
+        if coarser is None:
+            coarser = _solved_on_coarser(motion, surfaces, pressure, bound, cells, max_steps=max_steps, before=before)
+        start = None if coarser is None else guess_from(coarser, cells, bound, motion.modes)
+        last = solved(cells, max(tolerance, ROUGH_TOLERANCE) if rolling else tolerance, start)
+        if not rolling or not last.converged:
+            return last
+        steps, applications = last.steps, last.applications
+    slides = np.asarray(bound.any(axis=1) & ~last.sticks.any(axis=1))
+    cells = RollingCells.of(pressure, bound, together, slides)
+    found = solved(cells, tolerance, guess_of(last, cells, bound, motion.modes))
+    return replace(found, steps=steps + found.steps, applications=applications + found.applications)
+
+
+def _problem(
+    motion: Shift | Rolling,
+    surfaces: Surfaces,
+    bound: FloatArray,
+    cells: RollingCells,
+    bent: Mapping[Load, FloatArray],
+    *,
+    tolerance: float,
+    max_steps: int,
+) -> CoulombProblem:
+    """Coulomb's law on the cells, with what pressure and earlier tractions displace."""
+    grid, rolling = surfaces.grid, isinstance(motion, Rolling)
 
     def relative(displaced: Mapping[Load, FloatArray]) -> FloatArray:
         """Slip (2, unknown) that displacements add."""
@@ -93,7 +134,7 @@ def tractions_of(
         (amplitude(motion, name) * along[name] for name in names if name not in modes), np.zeros((2, 1))
     )
     works = np.array([cells.gathered(weights[names.index(name)]) for name in modes])
-    problem = CoulombProblem(
+    return CoulombProblem(
         relief=relief,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
         bound=bound[tuple(cells.unknown)],
@@ -106,11 +147,6 @@ def tractions_of(
         max_steps=max_steps,
         symmetric=not rolling,
     )
-    if coarser is None:
-        coarser = _solved_on_coarser(motion, surfaces, pressure, bound, cells, max_steps=max_steps, before=before)
-    start = None if coarser is None else guess_from(coarser, cells, bound, modes)
-    found = _completed(problem, solve_coulomb(problem, start), motion, cells, surfaces)
-    return replace(found, work=_rolling_work(found, surfaces, bent)) if rolling else found
 
 
 def _solved_on_coarser(

@@ -177,7 +177,7 @@ def frictional_contact(
         materials.append(shape.counterbody.body.material)
     surfaces = Surfaces(operator, shape.grid, materials, middle)
 
-    def rubbed(pressure: FloatArray) -> Tractions:
+    def rubbed(pressure: FloatArray, last: Tractions | None = None) -> Tractions:
         if isinstance(motion, Rolling) and pressure[:, -2:].any():
             raise WindowError(
                 "the contact reaches the last two cells along +y, and rolling takes the slip from the two cells ahead: "
@@ -193,6 +193,7 @@ def frictional_contact(
                 max_steps=settings.max_iterations,
                 before=before,
                 coarser=coarser,
+                last=last,
             )
 
     contact = contact_of(shape, settings)
@@ -200,11 +201,12 @@ def frictional_contact(
     if coupled:
         settled = False
         wanted = max(settings.tolerance, LEAST_ACCURACY)
-        for _ in range(ROUNDS):
+        for number in range(ROUNDS):
             bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
             last = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
-            tractions = rubbed(contact.pressure)
+            # Which columns slide is told anew by the first coupled pressure and then kept: it must not go to and fro.
+            tractions = rubbed(contact.pressure, tractions if number else None)
             change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
             if change <= wanted:
                 settled = True

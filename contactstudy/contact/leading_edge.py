@@ -12,6 +12,9 @@ vanishes if the foremost point lies 0.34 cells behind the edge, b = c - 0.84. A 
 is no unknown of its own: it carries the same part of its bound as the cell behind, and b = 0.475. Both rules were found
 from Carter's solution. At any place of the edge in its cell, and creepages from small to almost full sliding, the force
 is then right to 1e-3 of full sliding at 14 cells per half-width, 5e-4 at 22.
+
+Where all of a column slips, the traction is the bound and does not begin as a root. Then b = 0: the direction of slip,
+which may turn within few cells, would otherwise be off in the first order of the cell's length.
 """
 
 from __future__ import annotations
@@ -25,8 +28,9 @@ from contactstudy.checks import BoolArray, FloatArray, IntArray
 LEAST_PART = 0.72
 """Part of the leading cell in the contact below which it is tied to the cell behind. Accuracy."""
 
-EDGE_OFFSET, TIED_PLACE = -0.84, 0.475
-"""Place at which the slip is taken: ``EDGE_OFFSET + c``, or, where the leading cell is tied, a fixed one. Accuracy."""
+EDGE_OFFSET, TIED_PLACE, SLIDING_PLACE = -0.84, 0.475, 0.0
+"""Place at which the slip is taken: ``EDGE_OFFSET + c``, or, where the leading cell is tied or no cell sticks, a fixed
+one. Accuracy."""
 
 FEWEST = 6
 """Cells along y from which on the place of the edge is told from the pressure. Accuracy."""
@@ -64,11 +68,17 @@ class RollingCells:
     ratio: FloatArray
 
     @classmethod
-    def of(cls, pressure: FloatArray, bound: FloatArray, together: FloatArray | None = None) -> RollingCells:
+    def of(
+        cls,
+        pressure: FloatArray,
+        bound: FloatArray,
+        together: FloatArray | None = None,
+        slides: BoolArray | None = None,
+    ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction.
 
         `together` says how much each column counts in the place of each, as `taken_together` does. Default: each has
-        its own.
+        its own. `slides` (x) says in which columns no cell sticks; default: in none.
         """
         carries: BoolArray = (pressure > 0) & (bound > 0)
         ahead = np.pad(carries, ((0, 0), (0, 1)))[:, 1:]
@@ -78,6 +88,9 @@ class RollingCells:
         for row, last in leading:
             below = np.flatnonzero(~carries[row, : last + 1])
             first = int(below[-1]) + 1 if below.size else 0
+            if slides is not None and slides[row]:
+                place[row, first : last + 1] = SLIDING_PLACE
+                continue
             if last + 1 - first < FEWEST:
                 continue
             part = _part_inside(pressure[row, first : last + 1])
@@ -97,6 +110,13 @@ class RollingCells:
         numbers = np.cumsum(own).reshape(own.shape) - 1
         unknown = np.argwhere(own).T
         return cls(unknown, place[tuple(unknown)], tied_cells, numbers[tuple(tied_cells)], np.array(ratio))
+
+    def sliding(self, sticks: BoolArray, columns: int) -> BoolArray:
+        """Columns (x) of the grid in which no cell sticks, from those of the unknown cells that do."""
+        slides = np.zeros(columns, dtype=np.bool_)
+        slides[self.unknown[0]] = True
+        slides[self.unknown[0][sticks]] = False
+        return slides
 
     def on_grid(self, traction: FloatArray, shape: tuple[int, int]) -> FloatArray:
         """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""

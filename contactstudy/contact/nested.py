@@ -1,4 +1,4 @@
-"""A first guess of stick and slip from coarser cells."""
+"""A first guess of stick and slip, from coarser cells or from almost the same bound."""
 
 from __future__ import annotations
 
@@ -50,6 +50,16 @@ def guess_from(coarser: Coarser, cells: RollingCells, bound: FloatArray, modes: 
     limited = smooth * np.minimum(1.0, STICKING / np.where(size > 0, size, 1.0))
     traction = np.where(coarser.found.sticks[near], limited, own) * bound[row, column]
     return Guess(traction, np.array([coarser.found.rigid[name] for name in modes]))
+
+
+def guess_of(last: Tractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:
+    """Return a guess from tractions on the same cells under a bound (x, y) that was almost the same."""
+    on_cells = tuple(cells.unknown)
+    traction, limit = last.traction[:, *on_cells], bound[on_cells]
+    size = np.hypot(*traction)
+    held = np.where(last.sticks[on_cells], np.minimum(size, STICKING * limit), limit)
+    amplitudes = np.array([last.rigid[name] for name in modes])
+    return Guess(traction * (held / np.where(size > 0, size, 1.0)), amplitudes)
 
 
 def joined(values: FloatArray) -> FloatArray:

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
+from scipy.optimize import minimize
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
@@ -96,13 +97,56 @@ def resultant(motion: Shift | Rolling, name: str) -> float:
     return float(getattr(motion, {"x": "force_x", "y": "force_y", "spin": "moment_z"}[name]))
 
 
-def check_forces(motion: Shift | Rolling, largest: float) -> None:
-    """Raise if the forces that are prescribed exceed those of full sliding, which make the `largest` force, N."""
-    force = np.array([motion.force_x or 0.0, motion.force_y or 0.0])
-    if motion.modes and np.hypot(*force) >= ALMOST_SLIDING * largest:
-        raise InvalidInputError(
-            "force_x, force_y",
-            tuple(force.tolist()),
-            f"together less than full sliding's {largest:.6g} N",
-            "full sliding is the motion Sliding()",
-        )
+def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray) -> None:
+    """Raise if tractions within their bound (x, y) cannot make the forces and the moment that are prescribed.
+
+    `weights` are those of the resultants, as in `Surfaces`.
+    """
+    modes = motion.modes
+    wanted = np.array([resultant(motion, name) for name in modes])
+    if not modes or (bound.any() and not wanted.any()):
+        return
+    names = [{"x": "force_x", "y": "force_y", "spin": "moment_z"}[name] for name in modes]
+    works = weights[[("x", "y", "spin").index(name) for name in modes]]
+    most = _largest_multiple(wanted, bound, works)
+    if most * ALMOST_SLIDING > 1:
+        return
+    units = {"spin": "N m"}
+    carried = ", ".join(
+        f"{name} = {most * value:.6g} {units.get(mode, 'N')}"
+        for name, mode, value in zip(names, modes, wanted, strict=True)
+    )
+    raise InvalidInputError(
+        ", ".join(names),
+        tuple(wanted.tolist()),
+        f"less than full sliding's {carried}",
+        "friction times the pressure carries no more; full sliding along y is the motion Sliding()",
+    )
+
+
+def _largest_multiple(wanted: FloatArray, bound: FloatArray, works: FloatArray) -> float:
+    """Largest multiple of the resultants `wanted` that tractions within their bound (x, y) make.
+
+    Tractions along a slip ``d . works`` make the largest resultant along d. The multiple is the least of these over
+    ``d . wanted``: a convex function of the direction, which a descent finds from above.
+    """
+    pressed = bound > 0
+    bounds, works = bound[pressed], works[:, :, pressed]
+    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in works])
+    able = sizes > 0
+    if wanted[~able].any() or not able.any():
+        return 0.0
+    works, target = works[able] / sizes[able, None, None], wanted[able] / sizes[able]
+    along = target / (target @ target)
+    across = np.linalg.svd(along[None, :])[2][1:]
+
+    def most(turn: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(along + turn @ across, works, axes=1)
+        size = np.hypot(*slip)
+        gradient = (works * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
+        return float((bounds * size).sum()), across @ gradient
+
+    start = np.zeros(len(target) - 1)
+    if not start.size:
+        return most(start)[0]
+    return float(minimize(most, start, jac=True, method="BFGS").fun)

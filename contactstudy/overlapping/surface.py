@@ -37,33 +37,35 @@ class EndCorrection:
     cell: float
 
     def gathered(self, load: Load, transform: ComplexArray) -> list[FloatArray]:
-        """Per parity, a load's transform (cell, wavenumber) on the graded positions, to be seen by `displaced`."""
+        """Per parity, a load's transform (cell, wavenumber) on the graded positions, to be seen by `displaced`.
+
+        Arrays (real or imaginary part, wavenumber, position): a product of a kernel with one column at a time is three
+        times faster than with both.
+        """
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
         folded = zip(self.moments[load], self._folded(pairs, load.sign_x), strict=True)
-        return [moments @ part for moments, part in folded]
+        return [
+            np.ascontiguousarray((moments @ part).reshape(len(moments), -1, 2).transpose(2, 1, 0))
+            for moments, part in folded
+        ]
 
     def displaced(self, direction: Load, loads: Mapping[Load, list[FloatArray]], cells: int) -> ComplexArray:
         """Displacement in one direction, transformed along y (cell, wavenumber), from all `gathered` loads."""
         sunk: list[FloatArray] = []
         for number, moments in enumerate(self.moments[direction]):
-            total: FloatArray | None = None
+            total = np.zeros_like(next(iter(loads.values()))[number])
             for load, gathered in loads.items():
                 response = Response(direction, load)
-                part = self._between(self.kernels[response][number], gathered[number])
-                if response.sign_y < 0:
-                    part = np.asarray((1j * part.view(np.complex128)).view(np.float64))
-                total = part if total is None else total + part
-            assert total is not None
-            sunk.append(moments.T @ total)
+                kernel, (real, imaginary) = self.kernels[response][number], gathered[number]
+                if response.sign_y > 0:
+                    total[0] += _product(kernel, real)
+                    total[1] += _product(kernel, imaginary)
+                else:  # times i
+                    total[0] -= _product(kernel, imaginary)
+                    total[1] += _product(kernel, real)
+            sunk.append(moments.T @ np.ascontiguousarray(total.transpose(2, 1, 0)).reshape(len(moments), -1))
         return np.asarray(self._unfolded(sunk, cells, direction.sign_x).view(np.complex128) / self.cell)
-
-    @staticmethod
-    def _between(kernel: FloatArray, sources: FloatArray) -> FloatArray:
-        """Apply a kernel (wavenumber, position, position) to pairs (position, wavenumber and part)."""
-        positions = sources.shape[0]
-        sunk = np.matmul(kernel, sources.reshape(positions, -1, 2).transpose(1, 0, 2))
-        return np.ascontiguousarray(sunk.transpose(1, 0, 2)).reshape(positions, -1)
 
     def _folded(self, values: FloatArray, sign_x: int) -> list[FloatArray]:
         """Sum and difference of the cells on either side of the middle, by parity; with one end, the cells."""
@@ -125,3 +127,8 @@ class EndCorrection:
             for direction in dict.fromkeys(chain.from_iterable(ends.samples))
         }
         return cls(parities, moments, ends.samples, grid.dx)
+
+
+def _product(kernel: FloatArray, values: FloatArray) -> FloatArray:
+    """Product of a matrix for each wavenumber (wavenumber, position, position) with its column."""
+    return np.asarray(np.matmul(kernel, values[..., None])[..., 0])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -96,3 +98,22 @@ def test_violations_are_seen() -> None:
     assert law_violation(1.1 * traction, np.zeros((2, 2)), bound, sticks, 1.0)[0] == pytest.approx(0.1)
     for slip in ([[-2.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [2.0, 0.0]], [[0.0, 2.0], [0.0, 0.0]]):
         assert law_violation(traction, np.array(slip), bound, sticks, 1.0)[1] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("length", [1.0, 1e-9])
+def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(length: float) -> None:
+    """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
+    random = np.random.default_rng(3)
+    bound = random.uniform(0.2, 1.0, 12)
+    rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
+    asked = problem(rigid, bound, skew=0.5)
+    modes = np.zeros((2, 2, 12))
+    modes[0, 0] = 1.0
+    modes[1] = length * random.standard_normal((2, 12))
+    wanted = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
+    asked = replace(asked, modes=modes, works=modes, resultants=wanted)
+    found = solve_coulomb(asked)
+    assert found.converged
+    assert not found.sticks.any()
+    assert found.traction[0].sum() == pytest.approx(wanted[0], rel=1e-6)
+    assert (modes[1] * found.traction).sum() == pytest.approx(wanted[1], rel=1e-6)

@@ -239,10 +239,12 @@ def test_a_history_of_shifts() -> None:
 def test_bad_input_is_named() -> None:
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
         rolled(Rolling(), friction=-0.1)
-    with pytest.raises(InvalidInputError, match=r"force_x, force_y = .*Sliding\(\)"):
+    with pytest.raises(InvalidInputError, match=r"force_y = .* less than full sliding's force_y = .*Sliding\(\)"):
         rolled(Rolling(force_y=1.01 * FRICTION * LOAD))
-    with pytest.raises(InvalidInputError, match=r"force_x, force_y = .*full sliding"):
+    with pytest.raises(InvalidInputError, match=r"force_y = .*full sliding"):
         rolled(Rolling(force_y=0.0), friction=0.0)
+    with pytest.raises(InvalidInputError, match=r"force_y, moment_z = .*force_y = .* N, moment_z = .* N m"):
+        rolled(Rolling(force_y=0.9 * FRICTION * LOAD, moment_z=0.4 * FRICTION * LOAD))
     shifted = rolled(Shift(y=0.01))
     with pytest.raises(InvalidInputError, match="rolling is steady"):
         rolled(Rolling(), after=shifted)

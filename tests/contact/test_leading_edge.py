@@ -92,6 +92,7 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     """
     between_neighbours = 0.5 - EDGE_OFFSET
     monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: between_neighbours)
+    monkeypatch.setattr(leading_edge, "SLIDING_PLACE", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
     found = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))

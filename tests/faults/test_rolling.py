@@ -1,0 +1,23 @@
+"""A rolling study that was killed and resumed; the command compares 500 cases."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.faults import rolling
+
+
+def test_numbers_of_cases_are_what_is_asked_for() -> None:
+    assert [rolling.rolling_study(cases).size for cases in (500, 12)] == [500, 12]
+
+
+@pytest.mark.system
+def test_rolling_cases_that_were_killed_are_those_that_were_not(tmp_path: Path) -> None:
+    study = rolling.rolling_study(12)
+    calm = rolling.run(study, tmp_path / "calm", 0)
+    assert bool(calm["converged"].all())
+    assert not rolling.different(calm, rolling.run(study, tmp_path / "killed", 2, 2))
+    changed = calm.assign(force_y=calm["force_y"] + 1e-12)
+    assert rolling.different(calm, changed) == ["force_y"]
