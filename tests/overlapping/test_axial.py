@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -45,7 +47,7 @@ def test_integrals_over_cells_are_those_of_the_waves(load: Load, length: float) 
     for modes in axial_modes(length, 0.5, 0.05, Resolution()):
         found = modes.cell_integrals(load, edges)
         few = np.abs(modes.wavenumbers) < 20
-        for cell, (low, high) in enumerate(zip(edges[:-1], edges[1:], strict=True)):
+        for cell, (low, high) in enumerate(pairwise(edges)):
             nodes, weights = np.polynomial.legendre.leggauss(60)
             at = 0.5 * (high + low) + 0.5 * (high - low) * nodes
             expected = 0.5 * (high - low) * modes.wave(load, at) @ weights
