@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError, Rolling
-from contactstudy.contact.fastsim import creep_coefficients
+from contactstudy.contact.fastsim import creep_coefficients, strip_tractions
 from contactstudy.verification.friction import material, rolling_ellipse
 
 STEEL = material(82e9, 0.28)
@@ -51,6 +51,21 @@ def test_spin_of_a_narrow_contact_turns_as_kalkers_asymptote(poisson: float, tab
         expected = np.pi * ratio**0.5 / 3 * (1 + poisson * (half + np.log(4) - 5)) / (1 - poisson)
         assert creep_coefficients(ratio, poisson)[2] == pytest.approx(expected)
     assert expected == pytest.approx(table, rel=0.07)
+
+
+def test_a_strip_grows_until_it_slips_and_loses_the_rest() -> None:
+    """Material enters at the right; half a cell behind the edge, then a cell on and on."""
+    bound = np.array([[0.0, 2.2, 2.2, 2.2, 2.2, 0.0], [0.0, 0.3, 0.3, 0.3, 0.3, 0.0]])
+    growth = np.stack([np.full(bound.shape, 1.2), np.full(bound.shape, -1.6)])
+    traction, lost = strip_tractions(bound, growth, 0.5)
+    sizes, lost_sizes = np.hypot(*traction), np.hypot(*lost)
+    assert sizes[0] == pytest.approx([0, 2.2, 2.2, 1.5, 0.5, 0])
+    assert lost_sizes[0] == pytest.approx([0, 2.0, 0.6, 0, 0, 0])
+    assert sizes[1] == pytest.approx([0, 0.3, 0.3, 0.3, 0.3, 0])
+    assert lost_sizes[1] == pytest.approx([0, 2.0, 2.0, 2.0, 0.8, 0])
+    assert traction[0] == pytest.approx(0.6 * sizes)
+    assert traction[1] == pytest.approx(-0.8 * sizes)
+    assert lost[1] == pytest.approx(-0.8 * lost_sizes)
 
 
 def test_it_takes_creepages_only() -> None:

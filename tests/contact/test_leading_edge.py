@@ -42,6 +42,7 @@ def test_a_leading_cell_with_little_in_the_contact_is_tied(part: float) -> None:
     own = np.ones((2, cells.unknown.shape[1]))
     on_grid = cells.on_grid(own, pressure.shape)
     assert on_grid[0, 0, last] == pytest.approx(pressure[0, last] / pressure[0, last - 1])
+    assert cells.on_grid(3 * own, pressure.shape) == pytest.approx(3 * on_grid)
     weights = np.random.default_rng(0).random((3, *pressure.shape))
     expected = (weights * on_grid[0]).sum(axis=(1, 2))
     assert cells.gathered(weights).sum(axis=1) == pytest.approx(expected)
@@ -105,12 +106,12 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
 def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None:
     """Columns far narrower than the cells are long, and one as wide as they are long beside them."""
     pressure = np.vstack([strip(part) for part in (0.75, 1.3, 0.9)])
-    x, widths, dy = np.array([0.0, 0.01, 2.0]), np.array([0.01, 0.01, 1.0]), 1.0
+    x, widths, dy = np.array([0.0, 0.02, 2.0]), np.array([0.01, 0.03, 1.0]), 1.0
     together = taken_together(x, widths, dy)
     assert together is not None
     cells = RollingCells.of(pressure, pressure, together)
     first, second, third = (cells.place[cells.unknown[0] == row][0] for row in range(3))
     assert abs(first - second) < 0.01  # their own are 0.55 apart
-    assert first == pytest.approx(EDGE_OFFSET + 0.5 * (0.75 + 1.3), abs=0.01)
+    assert first == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
     assert third == pytest.approx(EDGE_OFFSET + 0.9)
     assert taken_together(np.arange(4.0), np.ones(4), 0.5) is None

@@ -50,6 +50,18 @@ def test_field_of_uniform_cells(load: Load, extent: str) -> None:
             assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
 
 
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
+    fields = []
+    for place in (0.0, 8.0):
+        grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
+        ends = (EXTENTS[extent][0] + place, EXTENTS[extent][1] + place)
+        cells = np.random.default_rng(2).random(grid.shape)
+        fields.append(columns_field(cells, stresses_of(load), grid, place + X, np.array([0.1]), Z, extent=ends))
+    assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
+
+
 GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
 """Edges that are kept of twenty uniform cells."""
 

@@ -44,7 +44,7 @@ def test_small_rectangle_is_boussinesqs_and_cerrutis_point_load(point):
 
 @pytest.mark.parametrize("load", list(Load))
 def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
-    x, y = np.meshgrid([-0.7, 0.2, 1.1], [-0.3, 0.4, 0.9], indexing="ij")
+    x, y = np.meshgrid([-0.7, 0.0, 0.2, 1.1], [-0.3, 0.0, 0.4, 0.9], indexing="ij")
 
     def mixed_difference(values):
         return np.diff(np.diff(values, axis=0), axis=1)

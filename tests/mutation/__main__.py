@@ -19,7 +19,7 @@ from random import Random
 from typing import Any
 
 from tests.mutation.equivalent import EQUIVALENT
-from tests.mutation.forked import Reached, Session, with_session
+from tests.mutation.forked import TESTS, Reached, Session, with_session
 from tests.mutation.mutants import PACKAGES, Mutant, all_mutants
 
 Notes = dict[str, Any]
@@ -106,6 +106,7 @@ def main() -> None:
     parser.add_argument("--notes", type=Path, required=True, help="folder of notes")
     parser.add_argument("--sample", type=int, help="so many changes, drawn by lot; default: all")
     parser.add_argument("--only", default="", help="only changes whose source or text has this in it")
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="files of tests; default: those of the core")
     parser.add_argument("--again", action="store_true", help="try those again that no test noticed")
     parser.add_argument("--seconds", type=float, default=60.0, help="processor time of tests for one change")
     parser.add_argument("--processes", type=int, default=1)
@@ -126,7 +127,7 @@ def main() -> None:
         shared(trials.tried, rest, tried, asked.processes)
         print(summary(read(tried, "change")))
 
-    with_session(work)
+    with_session(work, asked.tests)
 
 
 if __name__ == "__main__":

@@ -74,7 +74,7 @@ class Session:
     """
 
     items: dict[str, list[pytest.Item]]
-    functions: dict[tuple[str, str, int], list[FunctionType]] = field(default_factory=dict)
+    functions: dict[tuple[str, str, int], list[FunctionType]] = field(init=False)
 
     def __post_init__(self) -> None:
         found = defaultdict(list)
@@ -211,7 +211,7 @@ def _write(file: int, said: bytes) -> None:
         said = said[os.write(file, said) :]
 
 
-def with_session(work: Callable[[Session], None], tests: Iterable[str] = TESTS) -> None:
+def with_session(work: Callable[[Session], None], tests: Iterable[str]) -> None:
     """Collect tests and do something with them instead of running them."""
 
     class Loop:

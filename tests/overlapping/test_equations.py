@@ -86,10 +86,11 @@ def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) 
     found = ON_END[load](axial.astype(complex), depth, lateral, nu)
     for i, j in np.ndindex(found.shape):
         k = np.hypot(axial[j], lateral)
-        stress = ON_THE_END[load]
-        integral = integrate.quad(
-            lambda z: stress(axial[j], lateral, k, z, nu) * np.exp(-k * z) * np.cos(depth[i] * z), 0, 60 / k, limit=200
-        )[0]
+
+        def transformed(z: float, i: int = i, j: int = j, k: float = k) -> float:
+            return float(ON_THE_END[load](axial[j], lateral, k, z, nu) * np.exp(-k * z) * np.cos(depth[i] * z))
+
+        integral = integrate.quad(transformed, 0, 60 / k, limit=200)[0]
         assert found[i, j] == pytest.approx(-2 / np.pi * integral, abs=1e-9)
 
 
