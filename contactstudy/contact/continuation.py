@@ -22,15 +22,7 @@ SHORTEST = 1e-3
 
 
 def solve_continued(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
-    """Solve for tractions, slip and the unknown rigid slips, as `solve_coulomb` does, with more patience.
-
-    Parameters
-    ----------
-    problem : CoulombProblem
-        What is asked for.
-    start : Guess, optional
-        What to begin from. Default: all cells stick.
-    """
+    """Solve as `solve_coulomb` does, with more patience where resultants are prescribed."""
     if not len(problem.modes) or problem.max_steps <= PATIENCE:
         return solve_coulomb(problem, start)
     found = solve_coulomb(replace(problem, max_steps=PATIENCE), start)
