@@ -11,6 +11,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import traceback
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable
 from dataclasses import asdict
@@ -32,7 +33,13 @@ def read(file: Path, key: str) -> dict[str, Notes]:
 
 
 def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
-    """Do jobs in some processes and append what each returns to a file."""
+    """Do jobs in some processes and append what each returns to a file.
+
+    Raises
+    ------
+    RuntimeError
+        If a process ended before it had done its jobs.
+    """
     for number in range(processes):
         if os.fork():
             continue
@@ -41,10 +48,14 @@ def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes:
                 line = json.dumps(work(job))
                 with file.open("a", encoding="utf-8") as notes:
                     notes.write(f"{line}\n")
-        finally:
             os._exit(0)
-    for _ in range(processes):
-        os.wait()
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(1)
+    ended = [os.wait()[1] for _ in range(processes)]
+    if any(ended):
+        raise RuntimeError("a process ended early: begin again, what was tried is kept")
 
 
 class Trials:
@@ -109,7 +120,7 @@ def main() -> None:
     parser.add_argument("--tests", nargs="+", default=TESTS, help="files of tests; default: those of the core")
     parser.add_argument("--again", action="store_true", help="try those again that no test noticed")
     parser.add_argument("--seconds", type=float, default=60.0, help="processor time of tests for one change")
-    parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--processes", type=int, default=1, help="processes that share the work")
     asked = parser.parse_args()
     asked.notes.mkdir(parents=True, exist_ok=True)
     reached, tried = asked.notes / "reached.jsonl", asked.notes / "tried.jsonl"

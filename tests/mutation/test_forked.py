@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from tests.mutation.__main__ import read
+from tests.mutation.equivalent import EQUIVALENT
 from tests.mutation.mutants import ROOT, all_mutants
 
 
@@ -23,5 +24,5 @@ def test_changes_of_a_closed_form_are_noticed_in_forks(tmp_path: Path) -> None:
     assert not any(
         note["lines"].get("contactstudy/overlapping/slab.py") for test, note in reached.items() if "quad" in test
     )
-    assert set(tried) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key}
+    assert set(tried) == {mutant.key for mutant in all_mutants() if "slab_factors" in mutant.key} - set(EQUIVALENT)
     assert all("test_slab" in note["by"] for note in tried.values())
