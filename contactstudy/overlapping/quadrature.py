@@ -78,7 +78,7 @@ Accuracy: below it lies 1e-7 of that scale."""
 
 @dataclass(frozen=True)
 class Resolution:
-    """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 1e-5 of a load.
+    """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 2e-5 of a load.
 
     Reaches are over the smallest distance from a loaded corner that is asked for: points nearer to it refine them.
 
