@@ -281,31 +281,32 @@ def _between(
     far = np.tril(apart > FAR_COLUMNS * np.maximum.outer(widths, widths))
     # Edges of columns that are not all far from each other.
     near = np.zeros((count, count), bool)
-    for rows, columns in product((slice(None, -1), slice(1, None)), repeat=2):
-        near[rows, columns] |= np.tril(~far)
+    for corner in product((slice(None, -1), slice(1, None)), repeat=2):
+        near[corner] |= np.tril(~far)
     i, j = np.nonzero(np.tril(near | near.T))
-    table = np.zeros((lateral.cells + 1, count, count))
-    values = np.empty((lateral.cells + 1, i.size))
-    for start in range(0, i.size, CHUNK):
-        part = slice(start, start + CHUNK)
-        values[:, part] = (strip.double_primitive(distances[i[part], j[part], None], lateral.edges) @ matrix).T
-    table[:, i, j] = values
     backwards = 1 if image else strip.sign_x
-    table[:, j, i] = values if backwards > 0 else -values
-    kernel = table[:, 1:, :-1] + table[:, :-1, 1:]
-    kernel -= table[:, 1:, 1:] + table[:, :-1, :-1]
-    if image:  # it runs backwards
-        np.negative(kernel, out=kernel)
-    kernel /= widths[:, None] * widths[None, :]
+    # Wavenumbers last until the end: they lie side by side in memory.
+    table = np.zeros((count, count, lateral.cells + 1))
+    for start in range(0, i.size, CHUNK):
+        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
+        values = strip.double_primitive(distances[rows, columns, None], lateral.edges) @ matrix
+        table[columns, rows] = backwards * values
+        table[rows, columns] = values
+    kernel = table[1:, :-1] + table[:-1, 1:]
+    kernel -= table[1:, 1:]
+    kernel -= table[:-1, :-1]
+    # That of an image runs backwards.
+    kernel *= ((-1 if image else 1) / (widths[:, None] * widths[None, :]))[..., None]
     i, j = np.nonzero(far)
     for start in range(0, i.size, CHUNK):
-        a, b = i[start : start + CHUNK], j[start : start + CHUNK]
-        x, squares = apart[a, b, None], (widths[a] ** 2 + widths[b] ** 2)[:, None]
+        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
+        x, squares = apart[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
         # Expanded about their centres, to fourth order.
         expanded = strip.kernel(x, lateral.edges) + squares / 24 * strip.curvature(x, lateral.edges)
-        kernel[:, a, b] = (expanded @ matrix).T
-        kernel[:, b, a] = backwards * kernel[:, a, b]
-    return kernel
+        values = expanded @ matrix
+        kernel[rows, columns] = values
+        kernel[columns, rows] = backwards * values
+    return np.ascontiguousarray(kernel.transpose(2, 0, 1))
 
 
 def _far_images(

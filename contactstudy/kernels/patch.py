@@ -25,6 +25,14 @@ def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: FloatArray 
     return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(other, z), 1e-30)))
 
 
+def _together(*components: FloatArray) -> FloatArray:
+    """Components over ``2 pi`` as one array (component, ...)."""
+    together = np.empty((len(components), *components[0].shape))
+    for one, own in zip(together, components, strict=True):
+        np.multiply(own, 1 / (2 * np.pi), out=one)
+    return together
+
+
 def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of the six stresses under unit pressure, in the order xx, yy, zz, xy, xz, yz.
 
@@ -59,17 +67,14 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     v_xx, v_yy = -xy * along_x, -xy * along_y
     free = 1 - 2 * poisson
-    corner = np.stack(
-        [
-            2 * poisson * v_z - free * chi_xx - z * v_xx,
-            2 * poisson * v_z - free * chi_yy - z * v_yy,
-            v_z + z * (v_xx + v_yy),
-            -free * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
-            z * z * y * along_x,
-            z * z * x * along_y,
-        ]
+    return _together(
+        2 * poisson * v_z - free * chi_xx - z * v_xx,
+        2 * poisson * v_z - free * chi_yy - z * v_yy,
+        v_z + z * (v_xx + v_yy),
+        -free * np.log(np.maximum(r + z, TINY)) - z / np.maximum(r, TINY),
+        z * z * y * along_x,
+        z * z * x * along_y,
     )
-    return np.asarray(corner / (2 * np.pi))
 
 
 def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
@@ -87,17 +92,15 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poiss
     safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
     v_y = _inverse_sinh_ratio(x, y, z)
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
-    corner = np.stack(
-        [
-            2 * poisson * (v_y - x / r_z) - z * x / (safe_r * r_z),
-            2 * v_y + 2 * poisson * x / r_z + z * x / (safe_r * r_z) - z * z * x * along_y,
-            z * z * x * along_y,
-            _inverse_sinh_ratio(y, x, z) - 2 * poisson * y / r_z - z * y / (safe_r * r_z),
-            -z / safe_r,
-            -np.arctan2(x * y, z * r) + z * x * y * along_y,
-        ]
+    x_r, y_r, last = x / r_z, y / r_z, z * x * along_y
+    return _together(
+        2 * poisson * (v_y - x_r) - z / safe_r * x_r,
+        2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * last,
+        z * last,
+        _inverse_sinh_ratio(y, x, z) - 2 * poisson * y_r - z / safe_r * y_r,
+        -z / safe_r,
+        -np.arctan2(x * y, z * r) + y * last,
     )
-    return np.asarray(corner / (2 * np.pi))
 
 
 def axial_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
