@@ -188,13 +188,12 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
     body, grid, loads, cells, keys, smooth = request
     places = [Place(*(axis.values for axis in key)) for key in keys]
     poisson = body.material.poisson
-    fields = {
-        load: [
-            _mirrored_stress(_MirroredRequest(load, poisson, part.extent, grid, cells, key, smooth)).copy("K")
-            for key in keys
-        ]
+    mirrored = {
+        load: [_mirrored_stress(_MirroredRequest(load, poisson, part.extent, grid, cells, key, smooth)) for key in keys]
         for load in loads
     }
+    # What is kept must not be changed.
+    fields: dict[Load, list[FloatArray]] = {load: [] for load in loads}
     if part.freed and cells.values.any():
         length, mirrored_once = part.freed
         seen, seen_on = seen_by_ends(cells.values, grid, length, smooth=smooth)
@@ -205,7 +204,10 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
                 # The two auxiliary bodies leave no traction on the top, by construction.
                 for component in (2, 4, 5):
                     from_ends[component][..., place.z == 0] = 0.0
-                fields[load][number] += from_ends
+                from_ends += mirrored[load][number]
+                fields[load].append(from_ends)
+    else:
+        fields = {load: [field.copy("K") for field in own] for load, own in mirrored.items()}
     if part.weight != 1:
         for own in fields.values():
             for field in own:
