@@ -113,7 +113,6 @@ class Jumps:
 
     edges: FloatArray
     values: FloatArray
-    spectrum: ComplexArray | None
     folded: FloatArray | None
     size: int
     least: float
@@ -126,28 +125,33 @@ class Jumps:
         loaded = jumps.any(axis=1)
         backwards, corners = jumps[loaded, ::-1], layer.corners
         size = fft.next_fast_len(jumps.shape[1] + int(layer.at.max()), real=True)
-        spectrum = folded = None
-        if layer.at.size > FEW_POINTS:
-            spectrum = fft.rfft(backwards, size, axis=1).conj()
-        elif corners.index is not None:
+        folded = None
+        if layer.at.size <= FEW_POINTS and corners.index is not None:
             folded = np.stack([corners.folded(backwards, place) for place in layer.at.tolist()], axis=1)
             folded = folded.reshape(-1, 2 * layer.at.size)
-        return cls(edges[loaded], backwards, spectrum, folded, size, least)
+        return cls(edges[loaded], backwards, folded, size, least)
 
     def field(self, influence: Influence, corners: EvenOffsets, x: float, at: IntArray) -> FloatArray:
         """Field (component, depth, point) of corners that see points at `x`."""
         distances = snapped(x - self.edges, self.least)
         step = max(1, TOGETHER_AT // max(1, distances.size * corners.along_y.size))
+        spectrum = None if at.size <= FEW_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
         parts = [
-            self._at_depths(influence, corners, corners.z[start : start + step], distances, at)
+            self._at_depths(influence, corners, corners.z[start : start + step], distances, at, spectrum)
             for start in range(0, corners.z.size, step)
         ]
         return np.concatenate(parts, axis=1)
 
     def _at_depths(
-        self, influence: Influence, corners: EvenOffsets, z: FloatArray, distances: FloatArray, at: IntArray
+        self,
+        influence: Influence,
+        corners: EvenOffsets,
+        z: FloatArray,
+        distances: FloatArray,
+        at: IntArray,
+        spectrum: ComplexArray | None,
     ) -> FloatArray:
-        """Return the field at some of the depths."""
+        """Return the field at some of the depths; for many points along y from the jumps' `spectrum`."""
         values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
         # A primitive is even where its kernel is odd, and odd where it is even.
         odd = np.array(influence.sign_along_y) > 0
@@ -155,16 +159,16 @@ class Jumps:
             both = values.reshape(*values.shape[:2], -1) @ self.folded
             return np.where(odd[:, None, None], both[..., 1::2], both[..., ::2])
         values, count = corners.on_both_sides(values, odd), self.values.shape[1]
-        if self.spectrum is None:
+        if spectrum is None:
             places = (values[..., place : place + count] for place in at.tolist())
             return np.stack([np.einsum("czef,ef->cz", seen, self.values) for seen in places], axis=2)
-        summed = np.einsum("czek,ek->czk", fft.rfft(values, self.size, axis=3), self.spectrum)
+        summed = np.einsum("czek,ek->czk", fft.rfft(values, self.size, axis=3), spectrum)
         return np.asarray(fft.irfft(summed, self.size, axis=2)[..., at])
 
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
-        arrays = (self.edges, self.values, self.spectrum, self.folded)
+        arrays = (self.edges, self.values, self.folded)
         return sum(array.nbytes for array in arrays if array is not None)
 
 
