@@ -221,8 +221,9 @@ class _Surroundings(NamedTuple):
     highest: int
 
     def within(self, edges: FloatArray, x: float, reach: float) -> tuple[int, int]:
-        """First of the columns within `reach` of `x` or replaced, and the one behind the last."""
-        near = np.flatnonzero(np.maximum(edges[:-1] - x, x - edges[1:]) <= reach)
+        """First of the columns within `reach` of `x`, or the nearest one, or replaced, and the one behind the last."""
+        distances = np.maximum(edges[:-1] - x, x - edges[1:])
+        near = np.flatnonzero(distances <= max(reach, float(distances.min())))
         return min(int(near[0]), self.lowest), max(int(near[-1]) + 1, self.highest)
 
     def received(self, fine: FineCells) -> FloatArray:

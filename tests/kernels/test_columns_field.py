@@ -154,6 +154,18 @@ def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
         assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
 
 
+@pytest.mark.parametrize("load", Load)
+def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
+    graded = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
+    cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
+    point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
+    force = float((cells * graded.widths[:, None]).sum() * graded.dy)
+    influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
+    found = smooth_columns_field(cells, influence, graded, x, y, z, extent=EXTENTS["none"])
+    expected = columns_field(np.full((1, 1), force / 0.01), influence, point, x, y, z, extent=EXTENTS["none"])
+    assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
+
+
 def test_nothing_loaded_leaves_nothing() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
     field = columns_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
