@@ -123,13 +123,17 @@ class _Folded:
                 field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
         loads, count, _, *rest = next(iter(fields.values())).shape
-        result = np.zeros((loads, count, self._size, *rest))
-        for parity, field in fields.items():
+        result = np.empty((loads, count, self._size, *rest))
+        for number, (parity, field) in enumerate(fields.items()):
             for component in range(count):
                 spread = self._spread(-parity if component in odd_along_x else parity)
                 for load in range(loads):
                     own = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
-                    result[load, component] += (spread @ own).reshape(-1, *rest)
+                    place = result[load, component].reshape(self._size, -1)
+                    if number:
+                        place += spread @ own
+                    else:
+                        np.matmul(spread, own, out=place)
         return np.asarray(result.swapaxes(3, 4))
 
     @property
