@@ -249,6 +249,8 @@ class _Surroundings(NamedTuple):
 
     def added(self, edges: FloatArray, loads: FloatArray, layer: Layer, inserted: FloatArray) -> Jumps:
         """Jumps of what the inserted columns add to those that they replace."""
+        if self.lowest == self.highest:
+            return Jumps.of(edges, np.zeros(loads.shape), layer)
         new, old = self.inserted, edges[self.lowest : self.highest + 1]
         both = np.unique(np.concatenate([new, old]))
         middles = 0.5 * (both[1:] + both[:-1])

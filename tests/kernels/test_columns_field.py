@@ -166,6 +166,16 @@ def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
     assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
 
 
+def test_splitting_columns_that_are_all_narrow_adds_nothing() -> None:
+    grid = Grid((0.0, 1.0), (-1.0, 1.0), 10, 16)
+    cells = np.ones((10, 1)) * np.sqrt(np.maximum(1 - (grid.y / 0.8) ** 2, 0))
+    x, extent = np.array([0.1, 0.53]), EXTENTS["none"]
+    deep = smooth_columns_field(
+        cells, stresses_of(Load.NORMAL), grid, x, X[:1], np.array([2.0]), extent=extent, added=True
+    )
+    assert not deep.any()
+
+
 def test_nothing_loaded_leaves_nothing() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
     field = columns_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
