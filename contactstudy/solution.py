@@ -21,10 +21,10 @@ from contactstudy.case.motion import Sliding
 from contactstudy.case.roughness import heights_on
 from contactstudy.case.settings import ACCURACY, TOLERANCE, check_accuracy
 from contactstudy.checks import FloatArray
-from contactstudy.contact.at_approach import ROUGH_TOLERANCE, AtApproach, load_error, settled_at_approach
+from contactstudy.contact.at_approach import ROUGH_TOLERANCE, ROUGHLY, AtApproach, load_error, settled_at_approach
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact, labelled
-from contactstudy.contact.settled import ROUGHLY, prescribed_by, settled_contact, settled_values
+from contactstudy.contact.settled import prescribed_by, settled_contact, settled_values
 from contactstudy.contact.settled_tractions import settled_tractions
 from contactstudy.contact.solve import contact_dataset
 from contactstudy.errors import InvalidInputError, WindowError

@@ -15,7 +15,7 @@ from contactstudy.case.gridding import columns_of
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, contact_of
 from contactstudy.contact.prescribed import Prescribed
-from contactstudy.contact.settled import ROUGHLY, SettledContact, settled_contact, shape_on, with_contact
+from contactstudy.contact.settled import SettledContact, settled_contact, shape_on, with_contact
 
 POWER, POWERS = 1.2, (1.0, 2.0)
 """Of the depth from first touch that the load is taken to follow while it is sought, at first and at least and at most:
@@ -28,8 +28,8 @@ approach, and how often the load may be corrected until it does. Speed."""
 ABOVE = 1.02
 """Factor on a corrected load: a deeper contact serves, a shallower one has too narrow a window. Speed."""
 
-ROUGH_TOLERANCE = 1e-4
-"""Tolerance of contacts that say how large a load is. Speed."""
+ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4
+"""Accuracy and tolerance of contacts that say how large a load is. Speed."""
 
 ROOMIER = 1.5
 """Window over that of the contact where half as many cells along y are tried. Speed."""

@@ -15,10 +15,10 @@ FIRST_COLUMN = 0.1
 WIDEST = 16
 """Least number of columns over the length. Accuracy."""
 
-BENT = 0.3
+BENT = 0.1
 """Depth, over ``a**2 / 2R``, by which the shape may leave its chord inside a first column. Accuracy."""
 
-NARROWEST_BENT = 0.2
+NARROWEST_BENT = 0.1
 """Width over the half-width below which a first column is not split for its shape. Speed."""
 
 STEEPEST = 2.6

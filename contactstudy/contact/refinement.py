@@ -11,13 +11,14 @@ from __future__ import annotations
 import logging
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 
-from contactstudy.arrays.across import largest_across
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
+from contactstudy.contact.end_values import Laws, end_loads, from_end, read_ends
 from contactstudy.contact.problem import between_columns
 
 LOGGER = logging.getLogger(__name__)
@@ -30,6 +31,9 @@ LESSER_HALF = 0.1
 
 FIRST_THETA, SHRINK, LOOSEST = 0.5, 0.7, 0.26
 """Threshold of the jumps at first, its reduction, and the largest at which the refinement may end. Accuracy."""
+
+SECOND_THETA = SHRINK * FIRST_THETA
+"""Threshold to which columns are refined roughly. Speed."""
 
 THETA_PER_ERROR = 50.0
 """Threshold over the least error that is stated with it. Accuracy: at 100 it covered 96 to 99 % of the ends."""
@@ -48,9 +52,6 @@ SHARPEST, SMALLEST = 2e-3, 2e-4
 
 ROUGH, POLISHED = 1e-2, 1e-5
 """Tolerances of the contact at the levels and where values are read. Speed and accuracy."""
-
-Pair = tuple[float, float]
-Laws = tuple[EndLaw | None, EndLaw | None]
 
 Solve = Callable[[FloatArray, FloatArray | None, float], FloatArray]
 """From edges, a first guess of the pressure (or none) and a tolerance to the pressure (column, y)."""
@@ -104,10 +105,26 @@ class Refined:
         return self.peak_errors[int(np.argmax(self.peaks))]
 
 
+class Rough(NamedTuple):
+    """A contact on the columns of the first thresholds: edges, pressure (column, y), and laws of its singular ends."""
+
+    edges: FloatArray
+    pressure: FloatArray
+    laws: Laws
+
+
+def rough_contact(solve: Solve, shape: AxialShape) -> Rough:
+    """Columns on which to begin, whose peak is within some percent; `refined_contact` says what is raised."""
+    state = _State(solve, shape, first_edges(shape))
+    for theta in (FIRST_THETA, SECOND_THETA):
+        state.refine(theta)
+    return Rough(state.edges, state.pressure, (state.laws[0], state.laws[1]))
+
+
 def refined_contact(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> Refined:
     """Refine the columns of a contact until its peak and end pressures are settled to `accuracy` of the peak.
 
-    They begin with those between the edges `begin`; without these with few.
+    They begin with those between the edges `begin`, of a rough contact; without these with few.
 
     Raises
     ------
@@ -115,7 +132,7 @@ def refined_contact(solve: Solve, shape: AxialShape, accuracy: float, begin: Flo
         If `solve` finds that the contact reaches the edge of its window.
     """
     state = _State(solve, shape, first_edges(shape) if begin is None else begin)
-    theta = FIRST_THETA
+    theta = FIRST_THETA if begin is None else SECOND_THETA
     while True:
         state.refine(theta)
         state.read()
@@ -164,7 +181,7 @@ class _State:
     def _sample(self) -> None:
         """Note the outermost columns wherever they have been split, and decide on their law."""
         for side, samples in enumerate(self.samples):
-            edges, pressure = _from_end(side, self.edges, self.pressure)
+            edges, pressure = from_end(side, self.edges, self.pressure)
             width = float(edges[1] - edges[0])
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
@@ -206,10 +223,10 @@ class _State:
 
     def read(self) -> None:
         """Note the peak of either half, and the pressure and the load at either end."""
-        peaks, ends, self.along_y = _read(self.edges, self.pressure, (self.laws[0], self.laws[1]))
+        peaks, ends, self.along_y = read_ends(self.edges, self.pressure, (self.laws[0], self.laws[1]))
         self.peaks.append(peaks)
         self.ends.append(ends)
-        self.loads.append(_end_loads(self.edges, self.pressure, self.shape.half_width))
+        self.loads.append(end_loads(self.edges, self.pressure, self.shape.half_width))
 
     def _unknown_law(self, side: int) -> bool:
         """Whether an end is pressed whose pressure does not settle, and its law did not show.
@@ -238,7 +255,7 @@ class _State:
         load_errors = [_moved([loads[side] for loads in self.loads], usual * floor / scale) for side in (0, 1)]
         settled = max(errors, default=floor) <= accuracy * scale and max(load_errors) <= accuracy * usual
         laws = [
-            law.with_intensity(*_from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
+            law.with_intensity(*from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
             for side, law in enumerate(self.laws)
         ]
         return Refined(
@@ -261,11 +278,11 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
 
     The errors grow with the peak.
     """
-    peaks, ends, _ = _read(refined.edges, pressure, refined.laws)
+    peaks, ends, _ = read_ends(refined.edges, pressure, refined.laws)
     largest = max(peaks)
     factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())
     first, last = (
-        law.with_intensity(*_from_end(side, refined.edges, pressure), shape.room[side]) if law else None
+        law.with_intensity(*from_end(side, refined.edges, pressure), shape.room[side]) if law else None
         for side, law in enumerate(refined.laws)
     )
     return replace(
@@ -275,36 +292,9 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
         peak_errors=(factor * refined.peak_errors[0], factor * refined.peak_errors[1]),
         ends=ends,
         end_errors=(factor * refined.end_errors[0], factor * refined.end_errors[1]),
-        loads=_end_loads(refined.edges, pressure, shape.half_width),
+        loads=end_loads(refined.edges, pressure, shape.half_width),
         laws=(first, last),
     )
-
-
-def _read(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
-    """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
-    top = largest_across(pressure)
-    along_y = float(top.max() / pressure.max()) - 1
-    half = 0.5 * (edges[-1] - edges[0])
-    peaks, ends = [], []
-    for side in (0, 1):
-        distances, row = _from_end(side, edges, top)
-        end = _extrapolated(distances, row)
-        own = row[centres_of(distances) < half]
-        largest = float(own.max())
-        # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
-        peaks.append(np.inf if laws[side] else max(largest, end) if own.argmax() == 0 else largest)
-        ends.append(np.inf if laws[side] else end)
-    return (peaks[0], peaks[1]), (ends[0], ends[1]), along_y
-
-
-def _end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
-    """Load on the last half-width at either end, over the width of a cell along y."""
-    sums = pressure.sum(axis=1)
-    loads = []
-    for side in (0, 1):
-        distances, row = _from_end(side, edges, sums)
-        loads.append(float(row @ np.diff(np.minimum(distances, half_width))))
-    return loads[0], loads[1]
 
 
 def _moved(values: list[float], floor: float) -> float:
@@ -319,11 +309,6 @@ def _moved(values: list[float], floor: float) -> float:
     return max(half, floor)
 
 
-def _from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Distances of the edges from an end of the shape, and the values counted from there."""
-    return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
-
-
 def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
     left = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
@@ -331,12 +316,3 @@ def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     top = np.maximum(top, LESSER_HALF * pressure.max())
     steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
     return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (top / pressure.max()) ** power)
-
-
-def _extrapolated(edges: FloatArray, row: FloatArray) -> float:
-    """Pressure at the end, from the means of the three outermost columns."""
-    if row[0] <= 0:
-        return 0.0
-    sums = np.cumsum(row[:3] * np.diff(edges[:4]))
-    at = edges[1:4]
-    return max(float(np.linalg.solve(np.stack([at, at**2, at**3], axis=1), sums)[0]), 0.0)

@@ -22,7 +22,7 @@ from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement import Refined, read_again, refined_contact
+from contactstudy.contact.refinement import Refined, read_again, refined_contact, rough_contact
 from contactstudy.errors import WindowError
 from contactstudy.threads import one_blas_thread
 
@@ -36,9 +36,6 @@ the contact is solved on half of the cells too, and the slip of rolling is taken
 WINDOW_STEP = 2 ** (1 / 6)
 """Ratio of the windows that are taken, from the Hertz half-width on: cases of a study share them, and with them the
 kernels of the ends. Speed."""
-
-ROUGHLY = 0.1
-"""Accuracy of the contact to which the window is fitted. Speed."""
 
 CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
 """Numbers of cells along y, of which the first that suffices is taken, and that of the first contact. Accuracy."""
@@ -117,7 +114,7 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
         body = case.body
         mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
         first = _Solver(changed(case, body=mirrored), half_window, ROUGH_CELLS_Y)
-        rough = refined_contact(first, shape, ROUGHLY)
+        rough = rough_contact(first, shape)
         touched = np.flatnonzero(rough.pressure.any(axis=0))
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[touched]).max()) + 0.5 * cells.dy
@@ -127,7 +124,7 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
         solver = _Solver(case, window, _cells_across(float(at_peak.sum()) * cells.dy / (2 * window), accuracy))
         # The law of an end shows in how its outermost columns are split, one by one.
         singular = any(rough.laws) or any(shape.sharp(side) and rough.pressure[-side].any() for side in (0, 1))
-        refined = refined_contact(solver, shape, accuracy, None if singular else rough.first)
+        refined = refined_contact(solver, shape, accuracy, None if singular else rough.edges)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
     if whole.coupled_friction:

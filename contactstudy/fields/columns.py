@@ -57,7 +57,7 @@ class ColumnsOperator:
                 request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
                 ends = end_kernel(request)
                 for response, kernel in kernels.items():
-                    kernel += ends.between(response, edges)
+                    ends.add_to(kernel, response, edges)
         return cls(part.extent, grid, kernels)
 
     @property

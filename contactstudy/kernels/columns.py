@@ -7,32 +7,23 @@ collocation along y). With forces ``f = w p`` per length of y (w: width of a col
 
 for the normal displacement under a pressure the same for (i, j) and (j, i) to the last bit. The integrals are mixed
 differences over the columns' edges of a double primitive ``F'' = k`` of the kernel ``k`` of a strip of load,
-differenced over the cell along y as well. With ``R**2 = X**2 + Y**2`` all nine displacements are made of five kernels:
-
-    of 1 / R:        k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y X**2 / (2 R + 2 |Y|)
-    of X**2 / R**3:  k = Y / R,           F = X Y asinh(X / |Y|) - Y R
-    of Y / R**2:     k = ln R,            F = X**2 / 2 ln R + X Y atan(X / Y) - Y**2 / 4 ln(1 + X**2 / Y**2)
-    of X / R**2:     k = atan(Y / X),     F = X**2 / 2 atan(Y / X) + X Y ln R + Y**2 / 2 atan(X / Y)
-    of X Y / R**3:   k = -X / R,          F = -X R / 2 - Y**2 / 2 asinh(X / |Y|)
-
-(Love's rectangle integrated once more; terms that cancel in the differences are left out). The first three are even in
-X, the last two odd, so distances between edges and their sign are enough. A mirrored column is one at the sum of the
+differenced over the cell along y as well (strips.py). A mirrored column is one at the sum of the
 distances from the mirror.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.images import FAR_LIMIT, NEAR_IMAGES
-from contactstudy.kernels.load import Load, Response
-from contactstudy.kernels.patch import TINY
+from contactstudy.kernels.load import Response
+from contactstudy.kernels.strips import Strip, strips_of
 
 FAR_COLUMNS = 24.0
 """Widths of the wider column from which on two columns are expanded about their centres. Accuracy: there the difference
@@ -41,133 +32,8 @@ of F loses more digits than the expansion leaves out."""
 IMAGE_POINTS = 16
 """Chebyshev points along x, for both columns, from which farther images are interpolated. Accuracy."""
 
-CHUNK = 2048
-"""Distances whose primitives are evaluated at once. Speed."""
-
-Function = Callable[[FloatArray, FloatArray], FloatArray]
-
-
-@dataclass(frozen=True)
-class Strip:
-    """Kernel of a strip of load along y, at ``X >= 0`` and ``Y > 0``, and what its integrals need.
-
-    Attributes
-    ----------
-    kernel : callable
-        ``k(X, Y)``, up to terms that do not depend on Y.
-    curvature : callable
-        ``d2k / dX2``.
-    slope : callable
-        ``dk / dX``.
-    primitive : callable
-        Primitive of k in X.
-    double_primitive : callable
-        Double primitive of k in X, up to terms that cancel in the differences.
-    sign_x, sign_y : int
-        1 or -1 if what the strip is made of is even or odd in X and in Y.
-    row : float or None
-        For one whose row of images grows without end: its integral over X is ``2 ln(2 X / Y) + row``.
-    """
-
-    kernel: Function
-    curvature: Function
-    slope: Function
-    primitive: Function
-    double_primitive: Function
-    sign_x: int
-    sign_y: int
-    row: float | None = None
-
-
-def _squared(x: FloatArray, y: FloatArray) -> FloatArray:
-    return np.asarray(x * x + y * y)
-
-
-def _log(x: FloatArray, y: FloatArray) -> FloatArray:
-    return np.asarray(0.5 * np.log(np.maximum(_squared(x, y), TINY)))
-
-
-INVERSE = Strip(
-    kernel=lambda x, y: np.arcsinh(y / x),
-    curvature=lambda x, y: y * (2 * x * x + y * y) / (x * x * _squared(x, y) * np.hypot(x, y)),
-    slope=lambda x, y: -y / (x * np.hypot(x, y)),
-    primitive=lambda x, y: x * np.arcsinh(y / x) + y * np.arcsinh(x / y),
-    double_primitive=lambda x, y: (
-        0.5 * x * x * np.arcsinh(y / np.maximum(x, TINY))
-        + x * y * np.arcsinh(x / y)
-        - 0.5 * y * x * x / (np.hypot(x, y) + y)
-    ),
-    sign_x=1,
-    sign_y=1,
-    row=0.0,
-)
-"""Of 1 / R."""
-
-ACROSS = Strip(
-    kernel=lambda x, y: y / np.hypot(x, y),
-    curvature=lambda x, y: y * (2 * x * x - y * y) / np.hypot(x, y) ** 5,
-    slope=lambda x, y: -x * y / np.hypot(x, y) ** 3,
-    primitive=lambda x, y: y * np.arcsinh(x / y),
-    # less its value at X = 0, which cancels
-    double_primitive=lambda x, y: x * y * np.arcsinh(x / y) - y * x * x / (np.hypot(x, y) + y),
-    sign_x=1,
-    sign_y=1,
-    row=-2.0,
-)
-"""Of X**2 / R**3."""
-
-AHEAD = Strip(
-    kernel=_log,
-    curvature=lambda x, y: (y * y - x * x) / _squared(x, y) ** 2,
-    slope=lambda x, y: x / _squared(x, y),
-    primitive=lambda x, y: x * _log(x, y) + y * np.arctan2(x, y),
-    double_primitive=lambda x, y: (
-        0.5 * x * x * _log(x, y) + x * y * np.arctan2(x, y) - 0.25 * y * y * np.log1p((x / y) ** 2)
-    ),
-    sign_x=1,
-    sign_y=-1,
-)
-"""Of Y / R**2."""
-
-BESIDE = Strip(
-    kernel=lambda x, y: np.arctan2(y, x),
-    curvature=lambda x, y: 2 * x * y / _squared(x, y) ** 2,
-    slope=lambda x, y: -y / _squared(x, y),
-    primitive=lambda x, y: x * np.arctan2(y, x) + y * _log(x, y),
-    double_primitive=lambda x, y: 0.5 * x * x * np.arctan2(y, x) + x * y * _log(x, y) + 0.5 * y * y * np.arctan2(x, y),
-    sign_x=-1,
-    sign_y=1,
-)
-"""Of X / R**2."""
-
-DIAGONAL = Strip(
-    kernel=lambda x, y: -x / np.hypot(x, y),
-    curvature=lambda x, y: 3 * x * y * y / np.hypot(x, y) ** 5,
-    slope=lambda x, y: -y * y / np.hypot(x, y) ** 3,
-    primitive=lambda x, y: -x * x / (np.hypot(x, y) + y),
-    double_primitive=lambda x, y: -0.5 * x * np.hypot(x, y) - 0.5 * y * y * np.arcsinh(x / y),
-    sign_x=-1,
-    sign_y=-1,
-)
-"""Of X Y / R**3."""
-
-P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
-
-
-def strips_of(response: Response, poisson: float) -> tuple[tuple[float, Strip], ...]:
-    """Return strips, with factors, whose sum is ``4 pi G u`` (surface.py)."""
-    free = 1 - 2 * poisson
-    return {
-        Response(P, P): ((2 * (1 - poisson), INVERSE),),
-        Response(X, X): ((2 * (1 - poisson), INVERSE), (2 * poisson, ACROSS)),
-        Response(Y, Y): ((2.0, INVERSE), (-2 * poisson, ACROSS)),
-        Response(P, X): ((free, BESIDE),),
-        Response(P, Y): ((free, AHEAD),),
-        Response(X, P): ((-free, BESIDE),),
-        Response(Y, P): ((-free, AHEAD),),
-        Response(X, Y): ((2 * poisson, DIAGONAL),),
-        Response(Y, X): ((2 * poisson, DIAGONAL),),
-    }[response]
+TOGETHER = 16_384
+"""Distances along x and y that are evaluated at once. Speed: what they make stays in the processor's cache."""
 
 
 @dataclass(frozen=True)
@@ -237,76 +103,106 @@ class ColumnsRequest:
 
         All mirror images in the ends of `extent` are included; a kernel odd along y lacks its factor i.
         """
-        image = response.load.sign_x
-        parts = (factor * self.influence(strip, image) for factor, strip in strips_of(response, poisson))
-        total = next(parts)
-        for part in parts:
-            total += part
-        return total
+        return self.influence(strips_of(response, poisson), response.load.sign_x)
 
-    def influence(self, strip: Strip, image: int) -> FloatArray:
-        """Influence of one strip with its images, whose sign is `image`: array (wavenumber, cell, cell)."""
+    def influence(self, strips: tuple[tuple[float, Strip], ...], image: int) -> FloatArray:
+        """Influence of strips, each with its factor, and of their images, whose sign is `image`: array likewise."""
         edges, (low, high) = self.edges, self.extent
-        lateral = Lateral(self.dy, self.cells_y, strip.sign_y > 0)
-        matrix = lateral.matrix
-        kernel = _between(strip, np.subtract.outer(edges, edges), edges, lateral, matrix)
-        if np.isfinite(low):
-            kernel += image * _between(
-                strip, np.add.outer(edges - low, edges - low), edges, lateral, matrix, image=True
-            )
-        if np.isfinite(high):
-            from_high = np.add.outer(high - edges, high - edges)
-            kernel += image * strip.sign_x * _between(strip, from_high, edges, lateral, matrix, image=True)
+        lateral = Lateral(self.dy, self.cells_y, strips[0][1].sign_y > 0)
+        pairs = _Pairs.of(edges, lateral)
+        for factor, strip in strips:
+            pairs.add(factor, strip, np.subtract.outer(edges, edges))
+            if np.isfinite(low):
+                pairs.add(image * factor, strip, np.add.outer(edges - low, edges - low), image=True)
+            if np.isfinite(high):
+                from_high = np.add.outer(high - edges, high - edges)
+                pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
+        kernel = pairs.transformed()
         if np.isfinite(low) and np.isfinite(high):
-            far, means = _far_images(strip, image, edges - low, high - low, lateral, matrix, self.reference)
-            kernel += means.T @ far @ means
+            for factor, strip in strips:
+                far, means = _far_images(strip, image, edges - low, high - low, lateral, self.reference)
+                for total, own in zip(kernel, far, strict=True):
+                    total += factor * (means.T @ own @ means)
         return kernel
 
 
-def _between(
-    strip: Strip,
-    distances: FloatArray,
-    edges: FloatArray,
-    lateral: Lateral,
-    matrix: FloatArray,
-    *,
-    image: bool = False,
-) -> FloatArray:
-    """Averaged influence between columns with edges at `distances` (edge, edge): array (wavenumber, cell, cell).
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Influence between columns that is summed up, before it is transformed along y.
 
-    Those of an image are sums of distances, none negative; else they are signed.
+    Attributes
+    ----------
+    widths : array
+        Widths of the columns, metres.
+    lateral : Lateral
+        Cells along y.
+    total : array (cell, cell, offset)
+        The sum. The offsets along y lie side by side in memory.
+    table : array (edge, edge, offset)
+        Room for double primitives.
     """
-    count, widths = edges.size, np.diff(edges)
-    apart = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
-    far = np.tril(apart > FAR_COLUMNS * np.maximum.outer(widths, widths))
-    # Edges of columns that are not all far from each other.
-    near = np.zeros((count, count), bool)
-    for corner in product((slice(None, -1), slice(1, None)), repeat=2):
-        near[corner] |= np.tril(~far)
-    i, j = np.nonzero(np.tril(near | near.T))
-    backwards = 1 if image else strip.sign_x
-    # Wavenumbers last until the end: they lie side by side in memory.
-    table = np.zeros((count, count, lateral.cells + 1))
-    for start in range(0, i.size, CHUNK):
-        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
-        values = strip.double_primitive(distances[rows, columns, None], lateral.edges) @ matrix
-        table[columns, rows] = backwards * values
-        table[rows, columns] = values
-    kernel = table[1:, :-1] + table[:-1, 1:]
-    kernel -= table[1:, 1:]
-    kernel -= table[:-1, :-1]
-    # That of an image runs backwards.
-    kernel *= ((-1 if image else 1) / (widths[:, None] * widths[None, :]))[..., None]
-    i, j = np.nonzero(far)
-    for start in range(0, i.size, CHUNK):
-        rows, columns = i[start : start + CHUNK], j[start : start + CHUNK]
-        x, squares = apart[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
-        # Expanded about their centres, to fourth order.
-        expanded = strip.kernel(x, lateral.edges) + squares / 24 * strip.curvature(x, lateral.edges)
-        values = expanded @ matrix
-        kernel[rows, columns] = values
-        kernel[columns, rows] = backwards * values
-    return np.ascontiguousarray(kernel.transpose(2, 0, 1))
+
+    widths: FloatArray
+    lateral: Lateral
+    total: FloatArray
+    table: FloatArray
+
+    @classmethod
+    def of(cls, edges: FloatArray, lateral: Lateral) -> _Pairs:
+        """Columns with these edges, without any influence yet."""
+        count, offsets = edges.size, lateral.edges.size
+        total, table = (np.zeros((size, size, offsets)) for size in (count - 1, count))
+        return cls(np.diff(edges), lateral, total, table)
+
+    def add(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
+        """Add `factor` times the averaged influence of columns with edges at `distances` (edge, edge).
+
+        Those of an image are sums of distances, none negative; else they are signed.
+        """
+        widths, total, table, y = self.widths, self.total, self.table, self.lateral.edges
+        apart = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
+        far = np.tril(apart > FAR_COLUMNS * np.maximum.outer(widths, widths))
+        # Edges of columns that are not all far from each other.
+        near = np.zeros(distances.shape, bool)
+        for corner in product((slice(None, -1), slice(1, None)), repeat=2):
+            near[corner] |= np.tril(~far)
+        backwards = 1 if image else strip.sign_x
+        for rows, columns in _together(near | near.T, y.size):
+            values = strip.double_primitive(distances[rows, columns, None], y)
+            table[columns, rows] = backwards * values
+            table[rows, columns] = values
+        # That of an image runs backwards.
+        factors = np.where(far | far.T, 0.0, -factor if image else factor) / (widths[:, None] * widths)
+        step = max(1, TOGETHER // (widths.size * y.size))
+        for start in range(0, widths.size, step):
+            stop = min(start + step, widths.size)
+            here, behind = slice(start, stop), slice(start + 1, stop + 1)
+            part = table[behind, :-1] + table[here, 1:]
+            part -= table[behind, 1:]
+            part -= table[here, :-1]
+            part *= factors[here, :, None]
+            total[here] += part
+        for rows, columns in _together(far, y.size):
+            x, squares = apart[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
+            # Expanded about their centres, to fourth order.
+            values = factor * (strip.kernel(x, y) + squares / 24 * strip.curvature(x, y))
+            total[rows, columns] += values
+            above = rows > columns  # an image may be far from the column itself
+            total[columns[above], rows[above]] += backwards * values[above]
+
+    def transformed(self) -> FloatArray:
+        """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
+        cells = self.widths.size
+        flat = self.total.reshape(cells**2, -1)
+        return np.asarray((self.lateral.matrix.T @ flat.T).reshape(-1, cells, cells))
+
+
+def _together(marked: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield marked pairs below the diagonal and on it, as many at once as are evaluated together."""
+    rows, columns = np.nonzero(np.tril(marked))
+    step = max(1, TOGETHER // offsets)
+    for start in range(0, rows.size, step):
+        yield rows[start : start + step], columns[start : start + step]
 
 
 def _far_images(
@@ -315,7 +211,6 @@ def _far_images(
     edges: FloatArray,
     length: float,
     lateral: Lateral,
-    matrix: FloatArray,
     reference: float,
 ) -> tuple[FloatArray, FloatArray]:
     """Influence of all images but the three nearest between points, and the columns' shares in these points.
@@ -348,7 +243,7 @@ def _far_images(
     if strip.row is not None and image > 0:
         # The images make a line load along x; its logarithm is set to zero at the reference.
         total -= y * (2 / length) * (np.log(2 * FAR_LIMIT * length / reference) + 0.5 * strip.row)
-    far = np.ascontiguousarray((total @ matrix).transpose(2, 0, 1))
+    far = np.ascontiguousarray((total @ lateral.matrix).transpose(2, 0, 1))
     from_points = np.linalg.inv(chebyshev.chebvander(chebyshev.chebpts1(IMAGE_POINTS), IMAGE_POINTS - 1))
     scaled = 2 * edges / length - 1
     primitives = np.array([chebyshev.chebval(scaled, chebyshev.chebint(row)) for row in np.eye(IMAGE_POINTS)])

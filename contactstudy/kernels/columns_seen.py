@@ -30,7 +30,7 @@ MOST_PARTS = 6
 """Parts of the shortest distance between positions along y that are tried as a step of all, and parts of a cell that
 such a step is at least. Speed."""
 
-BATCH = 64
+BATCH = 16
 """Positions along x whose surroundings are made smooth at once. Speed."""
 
 FAR, LEFT_OF_FAR = 3.0, 1e-6

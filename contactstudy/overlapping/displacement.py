@@ -6,8 +6,8 @@ import numpy as np
 
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Harmonics, Place, end_fields, real_product
+from contactstudy.overlapping.equations import EquationSet, real_product
+from contactstudy.overlapping.field import Harmonics, Place, end_fields
 from contactstudy.overlapping.problem import EndProblem
 
 

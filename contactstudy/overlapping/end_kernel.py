@@ -25,6 +25,7 @@ from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
+from scipy import linalg
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
@@ -133,15 +134,14 @@ class EndKernel:
     positions: FloatArray
     samples: Mapping[Response, list[FloatArray]]
 
-    def between(self, response: Response, cell_edges: FloatArray) -> FloatArray:
-        """Displacement averaged over cells from forces on cells: array (wavenumber, cell, cell)."""
+    def add_to(self, kernel: FloatArray, response: Response, cell_edges: FloatArray) -> None:
+        """Add the displacement averaged over cells from forces on cells to an array (wavenumber, cell, cell)."""
         widths = np.diff(cell_edges)
         sides = self.moments(cell_edges)
-        total: FloatArray = np.zeros(())
-        for parity, kernel in zip(self.request.parities, self.samples[response], strict=True):
+        for parity, samples in zip(self.request.parities, self.samples[response], strict=True):
             seen, loaded = (seen_alike(sides, parity * direction.sign_x) / widths for direction in response)
-            total = total + seen.T @ kernel @ loaded
-        return total
+            for total, sampled in zip(kernel, samples, strict=True):
+                total += seen.T @ sampled @ loaded
 
     def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
         """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
@@ -172,15 +172,12 @@ class Waves:
         The modes.
     positions : array
         Positions within their reach, metres.
-    beyond : int
-        Number of those farther away, which see nothing.
     by_load : dict of Load to array (mode, position)
         Weighted spectra of unit loads at the positions.
     """
 
     modes: AxialModes
     positions: FloatArray
-    beyond: int
     by_load: Mapping[Load, ComplexArray]
 
     @classmethod
@@ -192,15 +189,11 @@ class Waves:
         )
         weights = modes.load_weights[:, None]
         by_load = {load: weights * modes.wave(load, within) for load in directions}
-        return cls(modes, within, positions.size - within.size, by_load)
-
-    def padded(self, kernel: FloatArray) -> FloatArray:
-        """Kernel between all positions from that between those within reach."""
-        return np.pad(kernel, (0, self.beyond))
+        return cls(modes, within, by_load)
 
 
 def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
-    """Correction between the graded positions at one wavenumber, for each of the responses."""
+    """Correction between the graded positions within reach at one wavenumber, for each of the responses."""
     modes, material, responses = waves.modes, request.material, request.responses
     factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
     system = EquationSet.build(modes, wavenumber, material.poisson, shortest, request.resolution)
@@ -209,15 +202,16 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
         k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)
         sunk = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
         top = {load: system.on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
-        return [waves.padded(np.real(sunk.T @ top[response.load])) for response in responses]
+        return [np.real(sunk.T @ top[response.load]) for response in responses]
     left = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
     freed = {load: system.solve(left[load]) for load in loads}
     kernels = []
     for displacement, load in responses:
         kernel = left[displacement].T @ freed[load]
         if displacement in freed:  # rounding is all that reciprocity lacks, but between two ends it is amplified
-            kernel = 0.5 * (kernel + (left[load].T @ freed[displacement]).T)
-        kernels.append(waves.padded(factor * _phase(Response(displacement, load)) * kernel))
+            back = kernel if displacement is load else left[load].T @ freed[displacement]
+            kernel = 0.5 * (kernel + back.T)
+        kernels.append(factor * _phase(Response(displacement, load)) * kernel)
     return kernels
 
 
@@ -239,16 +233,25 @@ def end_kernel(request: EndRequest) -> EndKernel:
     half = 0.5 * length if np.isfinite(length) else request.span
     edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
     spread: dict[Response, list[FloatArray]] = {}
-    beyond: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
+    known: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
         first = ALONE[poles] / min(length, 4 * max(request.span, window))
         panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles)
-        samples = np.stack(list(_samples(request, panels, positions, shortest, beyond)), axis=2)
-        even, odd = _lateral_transforms(panels, request.dy, request.cells_y)
-        for i, response in enumerate(request.responses):
-            if _poles(response) == poles:
-                matrix = even if response.sign_y > 0 else odd
-                spread[response] = [np.tensordot(matrix, each, axes=1) for each in samples[:, i]]
+        own = [response for response in request.responses if _poles(response) == poles]
+        numbers = [request.responses.index(response) for response in own]
+        size, parities = positions.size, len(request.parities)
+        totals = np.zeros((len(own), parities, request.cells_y + 1, size**2))
+        for panel, even, odd in _lateral_transforms(panels, request.dy, request.cells_y):
+            samples = np.zeros((len(own), parities, panel.nodes.size, size, size))
+            for at, sampled in enumerate(_samples(request, panel, positions, shortest, known)):
+                reach = sampled.shape[-1]
+                samples[:, :, at, :reach, :reach] = sampled[:, numbers].swapaxes(0, 1)
+            for response, total, own_samples in zip(own, totals, samples, strict=True):
+                for sums, each in zip(total, own_samples, strict=True):
+                    add_product(sums, even if response.sign_y > 0 else odd, each.reshape(-1, size**2))
+        shape = (request.cells_y + 1, size, size)
+        for response, total in zip(own, totals, strict=True):
+            spread[response] = [sums.reshape(shape) for sums in total]
     return EndKernel(request, edges, positions, spread)
 
 
@@ -258,45 +261,53 @@ def _poles(response: Response) -> int:
 
 
 def _samples(
-    request: EndRequest,
-    panels: Sequence[LateralPanel],
-    positions: FloatArray,
-    shortest: float,
-    known: dict[float, FloatArray],
+    request: EndRequest, panel: LateralPanel, positions: FloatArray, shortest: float, known: dict[float, FloatArray]
 ) -> Iterator[FloatArray]:
-    """Kernel at each of the panels' wavenumbers, if not yet `known`: arrays (parity, response, position, position)."""
+    """Kernel at each of a panel's wavenumbers, if not yet `known`: arrays (parity, response, position, position).
+
+    The positions are those within reach of either end.
+    """
     length, mirrored_once = request.freed
-    for panel in panels:
-        smallest = float(panel.nodes[0])
-        modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
-        waves = [Waves.of(mode, positions, request.responses) for mode in modes]
-        for wavenumber in panel.nodes.tolist():
-            if wavenumber not in known:
-                sampled = np.array([sampled_kernel(each, wavenumber, request, shortest) for each in waves])
-                # Ends that know nothing of each other: both parities see half of either quarter space.
-                alone = len(request.parities) > len(modes)
-                known[wavenumber] = 0.5 * np.repeat(sampled, 2, axis=0) if alone else sampled
-            yield known[wavenumber]
+    smallest = float(panel.nodes[0])
+    modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
+    waves = [Waves.of(mode, positions, request.responses) for mode in modes]
+    shared = len({_poles(response) for response in request.responses}) > 1
+    for wavenumber in panel.nodes.tolist():
+        sampled = known.get(wavenumber)
+        if sampled is None:
+            sampled = np.array([sampled_kernel(each, wavenumber, request, shortest) for each in waves])
+            # Ends that know nothing of each other: both parities see half of either quarter space.
+            if len(request.parities) > len(modes):
+                sampled = 0.5 * np.repeat(sampled, 2, axis=0)
+            if shared:
+                known[wavenumber] = sampled
+        yield sampled
 
 
-def _lateral_transforms(panels: Sequence[LateralPanel], dy: float, cells_y: int) -> tuple[FloatArray, FloatArray]:
-    """Matrices from samples over the wavenumber along y to the zero-padded grid's transform.
+def _lateral_transforms(
+    panels: Sequence[LateralPanel], dy: float, cells_y: int
+) -> Iterator[tuple[LateralPanel, FloatArray, FloatArray]]:
+    """Each panel, with matrices from samples at its wavenumbers along y to the zero-padded grid's transform.
 
-    Returns the one for even kernels and the one for odd kernels: arrays (grid wavenumber, sample).
+    They are for even and for odd kernels: arrays (grid wavenumber, sample).
     """
     offsets: FloatArray = dy * np.arange(cells_y + 1.0)
-    columns: tuple[list[FloatArray], list[FloatArray]] = ([], [])
-    for panel in panels:
-        averaged = dy * np.sinc(panel.fine * dy / (2 * np.pi))
-        for waves, gathered in zip(panel.waves(offsets), columns, strict=True):
-            cells = waves.T * averaged
-            gathered.append(cells if panel.interpolation is None else cells @ panel.interpolation)
-    cosine, sine = (np.concatenate(gathered, axis=1) for gathered in columns)
-    size = cells_y
-    turns = np.cos(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
-    twists = np.sin(np.pi * np.outer(np.arange(size + 1), np.arange(size + 1)) / size)
-    ends = np.full(size + 1, 2.0)
+    phase = np.pi * np.outer(np.arange(cells_y + 1), np.arange(cells_y + 1)) / cells_y
+    ends = np.full(cells_y + 1, 2.0)
     ends[0] = ends[-1] = 1.0
     # An odd kernel -sin(k y) has the transform 2i sum sin sin; with its factor i taken outside, +2 sum sin sin.
-    ends_odd = np.where(ends == 1.0, 0.0, 2.0)
-    return (turns * ends) @ cosine, (twists * ends_odd) @ sine
+    transforms = np.cos(phase) * ends, np.sin(phase) * np.where(ends == 1.0, 0.0, 2.0)
+    for panel in panels:
+        averaged = dy * np.sinc(panel.fine * dy / (2 * np.pi))
+        even, odd = (
+            transform @ (waves.T * averaged) for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
+        )
+        if panel.interpolation is not None:
+            even, odd = even @ panel.interpolation, odd @ panel.interpolation
+        yield panel, even, odd
+
+
+def add_product(total: FloatArray, left: FloatArray, right: FloatArray) -> None:
+    """Add ``left @ right`` to `total`, a contiguous array, in its place."""
+    # Of arrays in Fortran's order, as their transposes are, none is copied.
+    linalg.blas.dgemm(1.0, right.T, np.ascontiguousarray(left).T, 1.0, total.T, overwrite_c=True)

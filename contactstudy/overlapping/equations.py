@@ -34,35 +34,45 @@ from contactstudy.overlapping.quadrature import (
 )
 
 
+def inverse_square(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float) -> ComplexArray:
+    """``1 / D``, which all couplings share: array (depth, axial)."""
+    return np.asarray(1.0 / ((axial * axial + lateral**2)[None, :] + (depth * depth)[:, None]))
+
+
 def coupling_core(
-    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
-    """Core ``M(k_x, k_z)``: array (depth, axial)."""
-    axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
-    inverse = 1.0 / (axial2 + depth2 + lateral**2)
-    return np.asarray((axial2 * depth2 * inverse + poisson * lateral**2) * inverse)
+    """Core ``M(k_x, k_z)``, from ``1 / D``: array (depth, axial)."""
+    core = (depth * depth)[:, None] * inverse
+    core *= axial * axial
+    core += poisson * lateral**2
+    core *= inverse
+    return core
 
 
 def normal_on_end(
-    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
-    """Face load that frees the end from a unit top pressure: array (depth, axial)."""
+    """Face load that frees the end from a unit top pressure, from ``1 / D``: array (depth, axial)."""
     k = np.sqrt(axial * axial + lateral**2)
-    return np.asarray(coupling_core(axial, depth, lateral, poisson) * (4 / np.pi / k))
+    return np.asarray(coupling_core(inverse, axial, depth, lateral, poisson) * (4 / np.pi / k))
 
 
 def lateral_on_end(
-    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
     """Face load that frees the end from a unit top traction along y, without its factor i: array (depth, axial)."""
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     k2 = axial2 + lateral**2
-    inverse = 1.0 / (k2 + depth2)
-    bracket = 2 * poisson * lateral**2 * inverse - axial2 * (k2 - depth2) * inverse**2
-    return np.asarray(-(2 / np.pi) * lateral / k2 * bracket)
+    bracket = 2 * poisson * lateral**2 - axial2 * (k2 - depth2) * inverse
+    bracket *= inverse
+    bracket *= -(2 / np.pi) * lateral / k2
+    return np.asarray(bracket)
 
 
-def axial_on_end(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float) -> ComplexArray:
+def axial_on_end(
+    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+) -> ComplexArray:
     """Face load that frees the end from a unit top traction along x, a sine series: array (depth, axial).
 
     The traction leaves ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (the column of
@@ -70,13 +80,22 @@ def axial_on_end(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral:
     """
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     k2 = axial2 + lateral**2
-    inverse = 1.0 / (k2 + depth2)
-    bracket = 2 * (k2 + poisson * lateral**2) * inverse - axial2 * (k2 - depth2) * inverse**2
-    return np.asarray(-(2 / np.pi) * axial / k2 * bracket)
+    bracket = 2 * (k2 + poisson * lateral**2) - axial2 * (k2 - depth2) * inverse
+    bracket *= inverse
+    bracket *= -(2 / np.pi) * axial / k2
+    return np.asarray(bracket)
 
 
 ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_X: axial_on_end, Load.ALONG_Y: lateral_on_end}
 """Face load that frees the end from a unit load on the top, by its direction."""
+
+
+def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
+    """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
+    # Real and imaginary parts lie side by side in memory; those of the conjugate are reversed where they multiply.
+    flat_left = np.ascontiguousarray(left).reshape(-1, left.shape[-1]).view(np.float64)
+    flat_right = np.ascontiguousarray(right.reshape(right.shape[0], -1).T.conj()).view(np.float64)
+    return np.asarray((flat_left @ flat_right.T).reshape(*left.shape[:-1], *right.shape[1:]))
 
 
 class AuxiliaryLoads(NamedTuple):
@@ -140,12 +159,12 @@ class EquationSet:
         kappa = np.sqrt(depth**2 + lateral**2)
         scale = np.real(modes.face_factor(kappa)) * weights / kappa
         axial = modes.wavenumbers
-        core = coupling_core(axial, depth, lateral, poisson)
+        core = coupling_core(inverse_square(axial, depth, lateral), axial, depth, lateral, poisson)
         k = np.sqrt(axial**2 + lateral**2)
         top = modes.left_on_top(core, depth, lateral, poisson)
         end = core * (4 / np.pi / k * modes.on_end)
-        mutual = end.real @ top.real - end.imag @ top.imag
-        return cls(modes, lateral, poisson, depth, scale, core, top, linalg.lu_factor(np.diag(1 / scale) - mutual))
+        matrix = np.diag(1 / scale) - real_product(end, top)
+        return cls(modes, lateral, poisson, depth, scale, core, top, linalg.lu_factor(matrix))
 
     @property
     def nbytes(self) -> int:
@@ -166,11 +185,9 @@ class EquationSet:
         if load is Load.NORMAL:  # as normal_on_end, from the core that is at hand
             operator = self.core * (4 / np.pi / np.sqrt(axial**2 + self.lateral**2))
         else:
-            operator = ON_END[load](axial, self.depth, self.lateral, self.poisson)
-        # The real part alone takes half the products.
-        return np.asarray(
-            np.ascontiguousarray(operator.real) @ spectrum.real - np.ascontiguousarray(operator.imag) @ spectrum.imag
-        )
+            inverse = inverse_square(axial, self.depth, self.lateral)
+            operator = ON_END[load](inverse, axial, self.depth, self.lateral, self.poisson)
+        return real_product(operator, spectrum)
 
     def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
         """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
@@ -204,8 +221,9 @@ class EquationSet:
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
         for k, normal, asis in ((axial, total, spectrum), (axial.conj(), total.conj(), spectrum.conj())):
-            face_load += 0.5 * normal_on_end(k, depth, self.lateral, self.poisson) @ normal
+            given = inverse_square(k, depth, self.lateral), k, depth, self.lateral, self.poisson
+            face_load += 0.5 * (normal_on_end(*given) @ normal)
             for load, place in own.items():
                 if load is not Load.NORMAL:
-                    face_load[:, place] += 0.5 * ON_END[load](k, depth, self.lateral, self.poisson) @ asis
+                    face_load[:, place] += 0.5 * (ON_END[load](*given) @ asis)
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)

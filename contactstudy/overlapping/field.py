@@ -274,15 +274,3 @@ def _amplitudes(
                 for i in range(count):
                     found[i][:, rows, depths, number, view.columns] = by_load[:, :, :, i]
     return amplitudes
-
-
-def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
-    """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
-    # Real and imaginary parts lie side by side in memory; beside the right ones they are paired by rows.
-    flat_left = np.ascontiguousarray(left).reshape(-1, left.shape[-1]).view(np.float64)
-    flat_right = right.reshape(right.shape[0], -1)
-    paired = np.empty((right.shape[0], 2, flat_right.shape[1]))
-    paired[:, 0] = flat_right.real
-    np.negative(flat_right.imag, out=paired[:, 1])
-    product = flat_left @ paired.reshape(-1, flat_right.shape[1])
-    return np.asarray(product.reshape(*left.shape[:-1], *right.shape[1:]))

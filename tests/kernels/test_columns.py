@@ -15,17 +15,9 @@ from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.fields.columns import ColumnsOperator
 from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
-from contactstudy.kernels.columns import (
-    ACROSS,
-    AHEAD,
-    BESIDE,
-    DIAGONAL,
-    FAR_COLUMNS,
-    INVERSE,
-    ColumnsRequest,
-    Strip,
-)
+from contactstudy.kernels.columns import FAR_COLUMNS, ColumnsRequest
 from contactstudy.kernels.load import SINKS, Load
+from contactstudy.kernels.strips import ACROSS, AHEAD, BESIDE, DIAGONAL, INVERSE, Strip
 from contactstudy.overlapping.quadrature import Resolution
 
 WHOLE, ONE_END, TWO_ENDS = (-np.inf, np.inf), (0.0, np.inf), (0.0, 3.0)
@@ -43,7 +35,7 @@ def influence(
     image: int = 1,
 ) -> FloatArray:
     """Influence of a strip (wavenumber, cell, cell)."""
-    return ColumnsRequest(edges, dy, cells_y, extent, reference).influence(strip, image)
+    return ColumnsRequest(edges, dy, cells_y, extent, reference).influence(((1.0, strip),), image)
 
 
 def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:

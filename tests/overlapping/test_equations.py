@@ -13,7 +13,7 @@ from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import SINKS, Load
 from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
-from contactstudy.overlapping.equations import ON_END, EquationSet
+from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_square
 from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -83,7 +83,8 @@ ON_THE_END = {
 def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) -> None:
     nu, lateral = 0.3, 0.7
     axial, depth = np.array([0.0, 0.4, 2.0]), np.array([0.2, 1.5])
-    found = ON_END[load](axial.astype(complex), depth, lateral, nu)
+    waves = axial.astype(complex)
+    found = ON_END[load](inverse_square(waves, depth, lateral), waves, depth, lateral, nu)
     for i, j in np.ndindex(found.shape):
         k = np.hypot(axial[j], lateral)
 
