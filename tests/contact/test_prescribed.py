@@ -51,8 +51,10 @@ def test_the_resultant_acts_where_it_was_prescribed(offset: float):
 
 
 def test_the_tilt_that_follows_from_the_position_gives_the_position():
-    free = solve(case_with(load_position=0.5 * LENGTH + HALF_WIDTH), stresses=False)
-    held = solve(case_with(tilt=float(free.tilt)), stresses=False)
+    case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
+    grid = choose_grid(case, cells_x=8, cells_y=8)
+    free = solve(case, grid, stresses=False)
+    held = solve(case_with(tilt=float(free.tilt)), grid, stresses=False)
     np.testing.assert_allclose(held.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
     assert float(held.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
 
