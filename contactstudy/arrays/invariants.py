@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import AXES, STRESSES, describe, named
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 PRINCIPAL = "principal"
@@ -38,9 +41,13 @@ def von_mises(stress: xr.Dataset) -> xr.DataArray:
     1.732051
     """
     require(stress, *STRESSES, argument="stress")
-    xx, yy, zz, xy, xz, yz = (stress[name] for name in STRESSES)
+    return named("von_mises", xr.apply_ufunc(_von_mises, *(stress[name] for name in STRESSES), dask="allowed"))
+
+
+def _von_mises(xx: FloatArray, yy: FloatArray, zz: FloatArray, xy: FloatArray, xz: FloatArray, yz: FloatArray) -> Any:
+    """Equivalent stress of arrays of components."""
     squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    return named("von_mises", squared**0.5)
+    return squared**0.5
 
 
 def principal_stresses(stress: xr.Dataset) -> xr.Dataset:
