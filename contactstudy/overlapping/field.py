@@ -125,16 +125,33 @@ class _Folded:
         loads, count, _, *rest = next(iter(fields.values())).shape
         result = np.empty((loads, count, self._size, *rest))
         for number, (parity, field) in enumerate(fields.items()):
-            for component in range(count):
-                spread = self._spread(-parity if component in odd_along_x else parity)
-                for load in range(loads):
-                    own = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
-                    place = result[load, component].reshape(self._size, -1)
-                    if number:
-                        place += spread @ own
-                    else:
-                        np.matmul(spread, own, out=place)
+            signs = np.array([-parity if component in odd_along_x else parity for component in range(count)])
+            (self._interpolate if self.interpolation is not None else self._copy)(field, signs, result, bool(number))
         return np.asarray(result.swapaxes(3, 4))
+
+    def _copy(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:
+        """Copy or add a sum to a result at the same positions, beyond mid-length with the `signs` of its components."""
+        beyond = np.where(signs == 0, 1, signs)[:, None, None]
+        for row, (number, far) in enumerate(zip(self.where.tolist(), self.beyond.tolist(), strict=True)):
+            own = field[:, :, number]
+            if added:
+                result[:, :, row] += beyond * own if far else own
+            elif far:
+                np.multiply(beyond, own, out=result[:, :, row])
+            else:
+                result[:, :, row] = own
+
+    def _interpolate(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:
+        """Likewise to the place's own positions."""
+        for component, sign in enumerate(signs.tolist()):
+            spread = self._spread(sign)
+            for load in range(field.shape[0]):
+                own = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
+                place = result[load, component].reshape(self._size, -1)
+                if added:
+                    place += spread @ own
+                else:
+                    np.matmul(spread, own, out=place)
 
     @property
     def _size(self) -> int:
@@ -146,9 +163,10 @@ class _Folded:
 
         0 stands for one end only, which has no image.
         """
+        assert self.interpolation is not None
         spread = np.zeros((self.where.size, self.x.size))
         spread[np.arange(self.where.size), self.where] = np.where(self.beyond, sign or 1, 1)
-        return spread if self.interpolation is None else np.asarray(self.interpolation @ spread)
+        return np.asarray(self.interpolation @ spread)
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,6 +68,26 @@ def test_symmetry_changes_nothing(
     np.testing.assert_allclose(by_symmetry, whole, atol=tolerance * np.abs(whole).max())
 
 
+@pytest.mark.parametrize("each", [Load.NORMAL, Load.ALONG_Y])
+@pytest.mark.parametrize("cells_x", [20, 21])
+@pytest.mark.parametrize("rows", [slice(None), [1, 4, 12], [17]])
+@pytest.mark.parametrize("other_half", [1.0, 1 + 1e-6, -1.0])
+def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
+    each: Load, cells_x: int, rows: slice | list[int], other_half: float
+) -> None:
+    """Of the halves alone no wavenumber is zero."""
+    grid = Grid((0.0, 2.0), (-1.0, 1.0), cells_x, 16)
+    half = np.random.default_rng(0).random(grid.shape)
+    half[(cells_x + 1) // 2 :] = 0.0
+    x = np.atleast_1d(grid.x[rows])
+    influence = Influence.of(STRESS_CORNERS[each], 0.3, each, stress.UNDER_PRESSURE)
+    parts = (half, other_half * half[::-1], half + other_half * half[::-1])
+    one, other, both = (
+        field.half_space_field(cells, influence, grid, x, grid.y, Z, extent=(0.0, 2.0)) for cells in parts
+    )
+    np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
+
+
 def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)
