@@ -69,11 +69,15 @@ class EndLaw:
     def with_intensity(self, edges: FloatArray, pressure: FloatArray, room: float) -> EndLaw:
         """Return the law with the intensity fitted to the pressure (column, y), at distances from the end.
 
-        The law holds for distances much smaller than the `room` from the end to the body's own.
+        The law holds for distances much smaller than the `room` from the end to the body's own. Where friction has
+        lifted the end, the intensity is 0 with an infinite error.
         """
         if self.kind != "power":
             return self
-        row = pressure[:, int(pressure.max(axis=0).argmax())]
+        # Friction moves the contact along y, and not alike at both ends.
+        row = pressure[:, int(pressure[0].argmax())]
+        if row[0] <= 0:
+            return replace(self, intensity=0.0, intensity_error=np.inf)
         width, exponent = edges[1], self.exponent
         if np.isnan(exponent):
             from scipy.optimize import minimize_scalar

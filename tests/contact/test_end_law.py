@@ -34,6 +34,17 @@ def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, ben
     assert 0 < law.intensity_error < 5e-3 * intensity
 
 
+def test_intensity_is_read_where_the_end_itself_is_pressed_most() -> None:
+    # Random case 4007234: friction pressed both ends at different places along y, the other end more.
+    edges = graded_edges(1e-3)
+    end = column_means(edges, 0.5, 2.0, 0.0)
+    elsewhere = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
+    law = EndLaw("power", 0.5).with_intensity(edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf)
+    assert law.intensity == pytest.approx(2.0, rel=1e-6)
+    lifted = law.with_intensity(edges, np.stack([elsewhere, elsewhere], axis=1), np.inf)
+    assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
+
+
 @pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
     edges = graded_edges(1e-3)
