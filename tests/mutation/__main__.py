@@ -74,6 +74,11 @@ class Trials:
                 for line in lines:
                     self.by_line[file, line].add(each.test)
 
+    def learn(self, notes: dict[str, Notes]) -> None:
+        """Count which tests noticed changes that were tried before."""
+        for change, note in notes.items():
+            self.noticed[change.split(":")[0]][note["by"].split(" (")[0]] += 1
+
     def tests(self, mutant: Mutant) -> list[tuple[str, float]]:
         """Tests that run a changed statement, with their seconds: the most promising first."""
         reaching = set().union(*(self.by_line[mutant.file, line] for line in mutant.lines))
@@ -131,6 +136,7 @@ def main() -> None:
         shared(lambda test: asdict(session.reached(test)), tests, reached, asked.processes)
         trials = Trials(session, (Reached(**note) for note in read(reached, "test").values()), asked.seconds)
         notes = read(tried, "change")
+        trials.learn(notes)
         done = {key for key, note in notes.items() if note["by"] or not asked.again}
         mutants = [each for each in all_mutants() if asked.only in each.key]
         Random(0).shuffle(mutants)
