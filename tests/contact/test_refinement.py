@@ -149,3 +149,55 @@ def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
     assert not found.settled
     assert found.edges.size <= 2 * MOST_COLUMNS
     assert found.peak_error > 0.001 * found.peak
+
+
+def power_law(x: FloatArray) -> FloatArray:
+    """A pressure that is singular at the first end."""
+    return np.asarray(0.7 / np.sqrt(x))
+
+
+FOLLOWED = BUMPS | {
+    "singular": power_law,
+    "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
+    "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
+    "rises to one end": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2),
+}
+
+
+@pytest.mark.parametrize(
+    ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
+)
+@pytest.mark.parametrize("name", FOLLOWED)
+def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float, place: float, side: int) -> None:
+    """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
+    pressure, along = 2.0**37 if unit < 1 else 1.0, averaged(FOLLOWED[name])
+
+    def own(x: FloatArray) -> FloatArray:
+        """Distances from the first end, in the plain unit."""
+        return x / unit - place if side == 0 else LENGTH - (x / unit - place)
+
+    def height(x: FloatArray) -> FloatArray:
+        return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
+
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+        back = slice(None, None, 1 - 2 * side)
+        return np.asarray(pressure * along(own(edges)[back], None, tolerance)[back])
+
+    room = (3.0, 0.0)
+    plain = refined_contact(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room), 0.02)
+    limits, beyond = unit * (place + np.array([0.0, LENGTH])), (unit * room[side], unit * room[1 - side])
+    elsewhere = AxialShape(*limits, unit * HALF_WIDTH, unit * 0.05, lambda x: unit * height(own(x)), beyond)
+    other = refined_contact(solve, elsewhere, 0.02)
+    assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
+    assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
+    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads", "load_errors"):
+        factor = pressure * unit if key.startswith("load") else pressure
+        values = np.array(getattr(other, key)) / factor
+        assert (values if side == 0 else values[::-1]) == pytest.approx(getattr(plain, key), rel=1e-6), key
+    for found, law in zip(other.laws if side == 0 else other.laws[::-1], plain.laws, strict=True):
+        assert (found is None) == (law is None)
+        if found and law:
+            factor = pressure * unit**law.exponent
+            assert (found.kind, found.exponent) == (law.kind, pytest.approx(law.exponent))
+            for key in ("intensity", "intensity_error"):
+                assert getattr(found, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)

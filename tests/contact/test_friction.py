@@ -1,0 +1,92 @@
+"""Tractions under a given pressure: how much work they take, and that no unit decides anything."""
+
+from __future__ import annotations
+
+from dataclasses import fields, replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid, HalfSpace, Material, Rolling, Shift
+from contactstudy.bodies import Counterbody
+from contactstudy.cache import ArrayKey
+from contactstudy.contact.contact import Settings, Shape
+from contactstudy.contact.frictional import FrictionalContact, frictional_contact
+from contactstudy.contact.prescribed import Prescribed
+
+FRICTION, LOAD = 0.3, 0.06
+MOTIONS = {
+    "longitudinal": Rolling(longitudinal_creepage=0.01),
+    "lateral": Rolling(lateral_creepage=0.01),
+    "spin": Rolling(spin=0.02),
+    "all": Rolling(longitudinal_creepage=0.005, lateral_creepage=-0.007, spin=0.01),
+    "forces": Rolling(force_y=0.5 * FRICTION * LOAD, force_x=-0.3 * FRICTION * LOAD),
+    "moment": Rolling(longitudinal_creepage=0.005, moment_z=0.03 * FRICTION * LOAD),
+    "shift": Shift(y=0.012, x=0.005),
+    "shifting force": Shift(force_x=0.7 * FRICTION * LOAD),
+}
+EDGES = {
+    "uniform": np.linspace(-1.3, 1.3, 27),
+    "graded": np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]),
+    "nested": np.linspace(-1.3, 1.3, 49),
+}
+LENGTH, PRESSURE = 2.0**-17, 2.0**37
+"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+
+POWERS = {"spin": (-1, 0), "force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1)}
+"""Powers of both that what a motion prescribes has; creepages have none, shifts are lengths."""
+
+
+def scaled(motion: Rolling | Shift) -> Rolling | Shift:
+    """Return a motion in the other units."""
+    changes: dict[str, Any] = {}
+    for each in fields(motion):
+        value = getattr(motion, each.name)
+        if isinstance(value, float):
+            length, pressure = POWERS.get(each.name, (1, 0) if isinstance(motion, Shift) else (0, 0))
+            changes[each.name] = value * LENGTH**length * PRESSURE**pressure
+    return replace(motion, **changes)
+
+
+def rubbed(motion: Rolling | Shift, edges: str, *, other_units: bool = False, **named: Any) -> FrictionalContact:
+    """A ball on a body of its material, a little off the origin."""
+    length, pressure = (LENGTH, PRESSURE) if other_units else (1.0, 1.0)
+    count = 48 if edges == "nested" else 26
+    grid = Grid.between(length * EDGES[edges], (-1.3 * length, 1.3 * length), count)
+    gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
+    body = HalfSpace(material=Material(0.91 * pressure, 0.3))
+    prescribed = Prescribed(LOAD * pressure * length**2)
+    shape = Shape(body, grid, ArrayKey(gap), prescribed, Counterbody(body))
+    motion = scaled(motion) if other_units else motion
+    return frictional_contact(shape, Settings(), motion, FRICTION, 0.1 * length, **({"coupled": False} | named))
+
+
+@pytest.mark.parametrize(("edges", "most"), [("uniform", (356, 53)), ("graded", (510, 64)), ("nested", (415, 41))])
+def test_the_compliance_is_applied_a_few_times_only(edges: str, most: tuple[int, int]) -> None:
+    sums = {Rolling: 0, Shift: 0}
+    for motion in MOTIONS.values():
+        found = rubbed(motion, edges).tractions
+        assert found.converged
+        sums[type(motion)] += found.applications
+    assert sums[Rolling] < most[0]
+    assert sums[Shift] < most[1]
+
+
+@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
+@pytest.mark.parametrize("edges", EDGES)
+def test_units_decide_nothing(edges: str, motion: Rolling | Shift) -> None:
+    plain, other = rubbed(motion, edges).tractions, rubbed(motion, edges, other_units=True).tractions
+    assert (plain.steps, plain.applications) == (other.steps, other.applications)
+    rolls = isinstance(motion, Rolling)
+    units = {"traction": (0, 1), "slip": (0, 0) if rolls else (1, 0), "work": (2, 1) if rolls else (3, 1)}
+    for name, (length, pressure) in (units | {key: POWERS[key] for key in ("force_x", "force_y", "moment_z")}).items():
+        value, unit = getattr(plain, name), LENGTH**length * PRESSURE**pressure
+        least = 1e-9 * np.abs(value).max() if np.ndim(value) else 1e-9 * FRICTION * LOAD
+        assert getattr(other, name) / unit == pytest.approx(value, rel=1e-6, abs=least), name
+    for name, amount in plain.rigid.items():
+        length, pressure = POWERS.get(name, (0, 0) if rolls else (1, 0))
+        assert other.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
+    assert np.array_equal(plain.sticks, other.sticks)
+    for name in ("bound_error", "slip_error", "force_error"):
+        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-3, abs=1e-12)
