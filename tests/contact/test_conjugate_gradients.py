@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy import optimize
 
 from contactstudy import FiniteLengthSpace, Grid, Material
-from contactstudy.contact.conjugate_gradients import Resultants, solve_complementarity
+from contactstudy.contact.conjugate_gradients import Resultants, _part_that_descends, _State, solve_complementarity
 from contactstudy.fields.surface import OperatorRequest, surface_operator
 from contactstudy.kernels.load import Load
 
@@ -85,3 +85,160 @@ def test_a_prescribed_load_meets_the_conditions_of_contact(
         opening = opening - found.motion[1] * LEVER
     assert np.abs(opening[found.pressure > 0]).max() < 1e-6 * np.ptp(sunk)
     assert opening.min() > -1e-6 * np.ptp(sunk)
+
+
+def met(resultants: Resultants, pressure: np.ndarray) -> None:
+    assert resultants.total is not None
+    assert pressure.sum() == pytest.approx(resultants.total)
+    if resultants.lever is not None:
+        assert abs(float((pressure * resultants.lever).sum())) < 1e-9 * resultants.total
+
+
+@given(rng=random, at=st.floats(0.1, 2.9), unit=st.sampled_from([1e-12, 1.0, 1e9]))
+def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random.Generator, at: float, unit: float):
+    arm = GRID.x[:, None] - at
+    resultants = Resultants(50.0 * unit, arm / np.abs(arm).max())
+    pressure = unit * np.where(rng.random(GRID.shape) < 0.3, rng.random(GRID.shape) ** 4, 0.0)
+    sides = arm[pressure.any(axis=1)]
+    if not sides.min() < 0 < sides.max():
+        return
+    found = resultants.restored(pressure)
+    met(resultants, found)
+    assert ((found > 0) == (pressure > 0)).all()
+    # What has the resultants stays, and a small moment is taken away by a factor that is linear in the arm.
+    assert resultants.restored(found) == pytest.approx(found, rel=1e-6)
+    nearly = found * (1 + 0.1 * resultants.lever)
+    again = resultants.restored(nearly)
+    met(resultants, again)
+    factor = (again / np.where(found > 0, nearly, 1.0)).max(axis=1)
+    loaded = factor > 0
+    line = np.polynomial.polynomial.polyfit(arm[loaded, 0], factor[loaded], 1)
+    assert np.polynomial.polynomial.polyval(arm[loaded, 0], line) == pytest.approx(factor[loaded], rel=1e-6)
+
+
+def test_one_column_of_cells_keeps_its_moment() -> None:
+    pressure = np.zeros(GRID.shape)
+    pressure[3] = 2.0
+    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restored(pressure)
+    assert found.sum() == pytest.approx(50.0)
+    assert found[3] == pytest.approx(50.0 / GRID.cells_y)
+
+
+def test_almost_all_pressure_on_one_side_is_balanced_without_overflow() -> None:
+    """The few cells on the other side have to carry 1e9 times what they did."""
+    arm = np.where(GRID.x[:, None] < 1.0, GRID.x[:, None] - 1.0, 1e-3 * (GRID.x[:, None] - 1.0))
+    for side in (arm, -arm):
+        resultants = Resultants(50.0, side / np.abs(side).max())
+        pressure = np.where(side > 0, 1.0, 1e-9) if side is -arm else np.where(side < 0, 1.0, 1e-9)
+        found = resultants.restored(pressure)
+        met(resultants, found)
+        assert np.isfinite(found).all()
+        assert (found > 0).all()
+
+
+def test_pressure_that_cannot_be_balanced_keeps_its_sum() -> None:
+    pressure = np.where(LEVER > 0.1, 1.0, 0.0) * np.ones(GRID.shape)
+    found = Resultants(50.0, LEVER / np.abs(LEVER).max()).restored(pressure)
+    assert found.sum() == pytest.approx(50.0)
+    assert ((found > 0) == (pressure > 0)).all()
+
+
+def state(gap: np.ndarray, resultants: Resultants, start: np.ndarray) -> _State:
+    return _State(operator, BODY_OPERATOR.precondition, gap, resultants, start)
+
+
+@given(rng=random)
+def test_a_guess_on_one_side_of_the_load_gets_a_little_pressure_everywhere(rng: np.random.Generator):
+    gap = rough_gap(rng, True)
+    start = np.where(LEVER < -0.3, rng.random(GRID.shape), 0.0)
+    found = state(gap, TILTING, start).pressure
+    assert ((found > 0) == np.isfinite(gap)).all()
+    met(TILTING, found)
+    both = np.where(np.isfinite(gap), rng.random(GRID.shape), 0.0)
+    assert state(gap, Resultants(50.0), start).pressure == pytest.approx(start * 50.0 / start.sum())
+    met(TILTING, state(gap, TILTING, both).pressure)
+
+
+@given(rng=random, sharp=st.booleans(), far=st.booleans())
+def test_a_guess_is_scaled_to_the_approach(rng: np.random.Generator, sharp: bool, far: bool):
+    """Of all its multiples the one with the least energy; one that lies where nothing overlaps is replaced."""
+    gap = rough_gap(rng, sharp) - 0.5
+    start = np.where((gap > 0.5) & np.isfinite(gap) if far else gap < 0, 1.0 + rng.random(GRID.shape), 0.0)
+    begun = state(gap, Resultants(None), start)
+    height = np.where(np.isfinite(gap), gap, 0.0) + operator(begun.pressure)
+    assert begun.sunk == pytest.approx(operator(begun.pressure))
+    assert float((begun.pressure * height).sum()) == pytest.approx(0.0, abs=1e-9 * float(begun.pressure.sum()))
+    assert ((begun.pressure > 0) == (gap < 0)).all()
+    if not far:
+        assert begun.pressure / start.clip(1e-9) == pytest.approx(
+            np.where(gap < 0, begun.pressure.max() / start[begun.pressure == begun.pressure.max()].max(), 0.0)
+        )
+
+
+def energy(gap: np.ndarray, pressure: np.ndarray) -> float:
+    return float((pressure * (np.where(np.isfinite(gap), gap, 0.0) + 0.5 * operator(pressure))).sum())
+
+
+@given(rng=random, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), TILTING, Resultants(None)]))
+def test_no_change_of_the_area_raises_the_energy_or_loses_the_resultants(
+    rng: np.random.Generator, sharp: bool, resultants: Resultants
+):
+    gap = rough_gap(rng, sharp) - (0.5 if resultants.total is None else 0.0)
+    begun = state(gap, resultants, bad_guess(rng, gap) + np.where(gap < 0, 1e-3, 0.0))
+    before = energy(gap, begun.pressure)
+    for number in range(8):
+        opening = begun.opening()
+        step, along, _ = begun.search(np.where(begun.contact, opening, 0.0))
+        if number % 2:
+            begun._go_to_the_border(step, along)
+        else:
+            closed = ~begun.contact & (opening < 0)
+            begun.change_area(begun.pressure - step * begun.direction, closed, opening, step, along)
+        begun.contact, begun.fresh = begun.pressure > 0, True
+        assert begun.pressure.min() >= 0
+        assert begun.sunk == pytest.approx(operator(begun.pressure), rel=1e-9)
+        if resultants.total is not None:
+            met(resultants, begun.pressure)
+        if number % 2 or closed.any():
+            after = energy(gap, begun.pressure)
+            assert after <= before + 1e-9 * abs(before)
+        before = energy(gap, begun.pressure)
+
+
+@given(slope=st.floats(-2.0, 2.0), curvature=st.floats(0.01, 5.0))
+def test_the_part_of_a_change_that_descends(slope: float, curvature: float):
+    """The energy over the part taken is a parabola: all of it if that is below the start, else its least value."""
+    change, opening = np.array([2.0, 0.0]), np.array([-0.5 * slope, np.inf])
+    part = _part_that_descends(change, np.array([0.5 * curvature, 1.0]), opening)
+
+    def at(taken: float) -> float:
+        return -slope * taken + 0.5 * curvature * taken**2
+
+    if slope <= 0:
+        assert part == 0.0
+    elif at(1.0) < 0:
+        assert part == 1.0
+    else:
+        assert part == pytest.approx(min(slope / curvature, 1.0))
+        assert at(part) <= min(at(0.99 * part), at(1.01 * part))
+
+
+@given(rng=random)
+def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.Generator):
+    gap = rough_gap(rng, False)
+    for unit in (1e-9, 1e9):
+        found = solve_complementarity(
+            operator,
+            BODY_OPERATOR.precondition,
+            unit * gap,
+            Resultants(50.0 * unit),
+            unit * bad_guess(np.random.default_rng(1), gap),
+            tolerance=1e-6,
+            max_iterations=500,
+        )
+        assert found.converged
+        assert len(found.history) <= found.applications
+        assert 0 < found.history[-1] <= 1e-6 < max(found.history[:-1])
+        sunk = operator(found.pressure)
+        off = np.abs(unit * gap + sunk - found.motion[0])[found.pressure > 0].max() / np.ptp(sunk)
+        assert off <= 2e-6
