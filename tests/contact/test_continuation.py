@@ -47,3 +47,36 @@ def test_what_cannot_be_reached_says_so() -> None:
     bound = np.ones(6)
     asked = problem(np.zeros((2, 6)), bound, forces=np.array([0.0, 6.5]))
     assert not solve_continued(replace(asked, max_steps=200)).converged
+
+
+def test_steps_go_along_a_line_and_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the resultants without unknown slips to the prescribed ones: longer steps after success, else shorter."""
+    bound = np.random.default_rng(5).uniform(0.2, 1.0, 12)
+    random = np.random.default_rng(6)
+    wanted = 0.5 * bound.sum() * np.array([0.6, 0.8])
+    asked = replace(problem(random.standard_normal((2, 12)), bound, forces=wanted), max_steps=500)
+    parts: list[float] = []
+    counts: list[tuple[int, int]] = []
+    fails = [True, True, False, False, True, True, True, False, False]
+    first = np.zeros(2)
+
+    def told(each: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+        nonlocal first
+        steps, applications = random.integers(1, 5), random.integers(1, 9)
+        counts.append((int(steps), int(applications)))
+        found = solve_coulomb(each, start)
+        if not len(each.modes):
+            first = found.traction.sum(axis=1)
+            return replace(found, steps=int(steps), applications=int(applications))
+        if len(counts) > 1:
+            along = (each.resultants - first) @ (wanted - first) / ((wanted - first) @ (wanted - first))
+            assert each.resultants == pytest.approx(first + along * (wanted - first))
+            parts.append(float(along))
+        failed = fails.pop(0) if fails else False
+        return replace(found, steps=int(steps), applications=int(applications), converged=not failed)
+
+    monkeypatch.setattr(continuation, "solve_coulomb", told)
+    found = solve_continued(asked)
+    assert found.converged
+    assert parts == pytest.approx([0.5, 0.25, 0.75, 1.0, 1.0, 1.0, 0.875, 1.0])
+    assert (found.steps, found.applications) == tuple(np.sum(counts, axis=0).tolist())

@@ -8,7 +8,16 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation, solve_coulomb
+from contactstudy.contact.coulomb import (
+    CoulombProblem,
+    CoulombSolution,
+    Guess,
+    _foremost,
+    _some,
+    _within,
+    law_violation,
+    solve_coulomb,
+)
 
 
 def problem(
@@ -117,3 +126,57 @@ def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(leng
     assert not found.sticks.any()
     assert found.traction[0].sum() == pytest.approx(wanted[0], rel=1e-6)
     assert (modes[1] * found.traction).sum() == pytest.approx(wanted[1], rel=1e-6)
+
+
+def test_tractions_beyond_their_bound_are_put_back_onto_it() -> None:
+    traction = np.array([[3.0, 0.3, 0.0, 0.0], [4.0, 0.4, 0.0, -2.0]])
+    found = _within(np.array([1.0, 1.0, 1.0, 0.5]), traction)
+    assert found == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
+
+
+@pytest.mark.parametrize("sticking", [1, 2, 5, 6, 12])
+def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bound(sticking: int) -> None:
+    excess = np.random.default_rng(sticking).uniform(0.5, 2.0, 12)
+    sticks = np.arange(12) < sticking
+    begins = (excess > 1) & sticks
+    found = _foremost(begins, excess, sticks)
+    assert found.sum() == min(begins.sum(), (sticking + 1) // 2)
+    assert not (found & ~begins).any()
+    assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
+
+
+def test_a_share_of_some_cells_is_the_first_of_them_and_one_at_least() -> None:
+    cells = np.array([False, True, True, False, True, True, True])
+    assert _some(cells, 1.0) is cells
+    for share, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
+        assert np.flatnonzero(_some(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
+
+
+def test_what_a_guess_slips_is_on_its_bound_and_where_it_sticks_stays() -> None:
+    """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
+    random = np.random.default_rng(7)
+    bound = random.uniform(0.2, 1.0, 40)
+    asked = replace(problem(random.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
+    plain = solve_coulomb(replace(asked, max_steps=40))
+    nearly = np.where(plain.sticks, 1.0, 1 - 1e-7) * plain.traction
+    for guess in (plain.traction, nearly):
+        found = solve_coulomb(asked, Guess(guess, plain.amplitudes))
+        assert found.converged
+        assert found.traction == pytest.approx(plain.traction, abs=1e-6)
+        assert np.array_equal(found.sticks, plain.sticks)
+
+
+@pytest.mark.parametrize(("forces", "most"), [(False, (83, 405)), (True, (94, 450))])
+def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) -> None:
+    """Of many small problems, from partial slip to almost full sliding; cells that go round in circles among them."""
+    steps = applications = 0
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        bound = random.uniform(0.2, 1.0, 24)
+        wanted = random.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        rigid = random.uniform(0.1, 2.0) * random.standard_normal((2, 24))
+        found = solve_coulomb(problem(rigid, bound, forces=wanted, skew=0.2 * (seed % 6), seed=seed))
+        assert found.converged
+        steps, applications = steps + found.steps, applications + found.applications
+    assert steps <= most[0]
+    assert applications <= most[1]

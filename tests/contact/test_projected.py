@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from contactstudy.contact import coulomb
-from contactstudy.contact.coulomb import solve_coulomb
+from contactstudy.contact.coulomb import CoulombProblem, solve_coulomb
 from contactstudy.contact.projected import balanced_tractions, projected_tractions
 from tests.contact.test_coulomb import holds, problem
 
@@ -67,3 +67,52 @@ def test_newton_begins_again_from_a_descent(monkeypatch: pytest.MonkeyPatch, pre
     assert found.converged
     assert descents
     holds(asked, found)
+
+
+def symmetric(seed: int, *, unit: float = 1.0, forces: bool = False) -> CoulombProblem:
+    """Cells of different sizes in some unit of slip, on which the compliance times the areas is symmetric."""
+    random = np.random.default_rng(seed)
+    bound, shares = random.uniform(0.2, 1.0, CELLS), random.uniform(0.2, 2.0, CELLS)
+    wanted = 0.6 * float((shares * bound).sum()) * np.array([0.6, -0.8]) if forces else None
+    asked = problem(0.3 * unit * random.standard_normal((2, CELLS)), bound, forces=wanted, seed=seed)
+    both = np.tile(shares, 2)
+    inner = np.stack([asked.relief(each.reshape(2, CELLS)).ravel() for each in np.eye(2 * CELLS)], axis=1)
+    matrix = unit * inner * both
+    inverse = np.linalg.inv(matrix)
+    return replace(
+        asked,
+        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
+        works=0.01 * shares * asked.works,
+        resultants=0.01 * asked.resultants,
+        shares=shares,
+        symmetric=True,
+    )
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e3])
+@pytest.mark.parametrize("forces", [False, True])
+def test_cells_of_different_sizes_in_any_unit_of_slip(unit: float, *, forces: bool) -> None:
+    asked = symmetric(8, unit=unit, forces=forces)
+    applied: list[int] = []
+
+    def counted(traction: np.ndarray) -> np.ndarray:
+        applied.append(1)
+        return asked.relief(traction)
+
+    expected = solve_coulomb(replace(asked, max_steps=14))
+    assert expected.converged
+    found, amplitudes = balanced_tractions(
+        counted,
+        asked.rigid_slip,
+        asked.works,
+        asked.resultants,
+        np.zeros((2, CELLS)),
+        np.zeros(2 if forces else 0),
+        unit,
+        asked.bound,
+        asked.shares,
+    )
+    assert np.abs(found - expected.traction).max() < 1e-3
+    assert amplitudes == pytest.approx(expected.amplitudes, abs=1e-3 * unit)
+    assert len(applied) < (330 if forces else 84)
