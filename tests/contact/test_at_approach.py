@@ -21,7 +21,11 @@ from contactstudy import (
     solve,
 )
 from contactstudy.analysis import solved_case
-from contactstudy.contact.at_approach import settled_at_approach
+from contactstudy.case.case import SMALLEST_HALF_WIDTH
+from contactstudy.case.case import Case as AnyCase
+from contactstudy.contact import at_approach
+from contactstudy.contact.at_approach import ABOVE, WIDTH_PART, _first_guess, pressed_to, settled_at_approach
+from contactstudy.contact.settled import SettledContact, settled_contact
 
 STEEL = Material(210e9, 0.3)
 RADIUS, APPROACH = 5e-3, 2e-6
@@ -96,3 +100,59 @@ def test_results_keep_what_was_asked_and_what_needs_a_load_says_so() -> None:
     assert "approach" in case._repr_html_()
     with pytest.raises(InvalidInputError, match="give load = normal_load of its result"):
         _ = BALL.hertz_half_width
+
+
+CYLINDER = Case(
+    body=FiniteLengthSpace(length=5e-3, material=STEEL),
+    roller=Roller(radius=RADIUS, length=2e-3),
+    end_distance=1.5e-3,
+    approach=3e-6,
+)
+
+
+def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() -> None:
+    """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
+    part = np.pi / 2 * WIDTH_PART**2 * STEEL.plane_strain_modulus
+    assert _first_guess(CYLINDER) == pytest.approx(part * 3e-6 * 2e-3)
+    start, stop = BALL.contact_range
+    x = np.linspace(start, stop, 20001)
+    depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
+    assert _first_guess(BALL) == pytest.approx(part * depth.mean() * (stop - start), rel=0.01)
+    # Of a contact between two slices: the least load that a case may have, or a little more.
+    tilted = replace(BALL, tilt=4e-4)
+    least = _first_guess(replace(tilted, approach=tilted.first_touch + 1e-11))
+    assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * SMALLEST_HALF_WIDTH * RADIUS)
+
+
+@pytest.mark.parametrize(("case", "most"), [(BALL, 4), (SHORT, 4)])
+def test_few_loads_are_tried(case: Case, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[float] = []
+
+    def noted(loaded: AnyCase, accuracy: float, tolerance: float) -> SettledContact:
+        tried.append(loaded.normal_load)
+        return settled_contact(loaded, accuracy, tolerance)
+
+    monkeypatch.setattr(at_approach, "settled_contact", noted)
+    settled_at_approach(case, 0.1, 1e-4)
+    assert len(tried) <= most
+
+
+def test_loads_follow_the_power_of_the_depth_that_the_last_two_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a contact whose depth is made up: as a ball's."""
+    own = settled_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
+    tried: list[float] = []
+
+    def made_up(loaded: AnyCase, accuracy: float, tolerance: float) -> SettledContact:
+        tried.append(loaded.normal_load)
+        touch = float(own.contact.shape.gap.values.min())
+        depth = (APPROACH - touch) * (loaded.normal_load / HERTZ) ** (2 / 3)
+        return replace(own, contact=replace(own.contact, approach=touch + depth))
+
+    monkeypatch.setattr(at_approach, "settled_contact", made_up)
+    pressed_to(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
+    factors = np.array(tried) / HERTZ
+    assert factors[:2] == pytest.approx([0.2, 0.2 * ABOVE * (0.2 ** (-2 / 3)) ** 1.2])
+    assert factors[2:] == pytest.approx([ABOVE])
+    tried.clear()
+    pressed_to(BALL, APPROACH, 1.06 * HERTZ, 0.1, 1e-4)
+    assert len(tried) == 1

@@ -10,7 +10,7 @@ import pytest
 from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.cache import ArrayKey
-from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.contact import Contact, Settings, Shape, _off_position, contact_of
 from contactstudy.contact.prescribed import Prescribed
 
 LENGTH, PRESSURE = 2.0**-17, 2.0**37
@@ -124,3 +124,15 @@ def test_a_warning_points_at_who_asked() -> None:
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as said:
         found.warn_unless_converged(1)
     assert said[0].filename == __file__
+
+
+def test_distance_of_the_resultant_from_its_place_over_the_length_of_the_contact() -> None:
+    """Of two columns with the resultant halfway between: each weighted by its width, and in any place."""
+    for place in (0.0, 5.0):
+        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
+        pressure = np.zeros(grid.shape)
+        pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
+        for at in (2.0, 3.5):
+            off = _off_position(Prescribed(1.0, place + at), grid, pressure)
+            assert off == pytest.approx(abs(2.75 - at) / 4.0)
+    assert _off_position(Prescribed(1.0), grid, pressure) == 0.0

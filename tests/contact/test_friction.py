@@ -8,12 +8,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from contactstudy import Grid, HalfSpace, Material, Rolling, Shift
+from contactstudy import ConvergenceWarning, Grid, HalfSpace, Material, Rolling, Shift
 from contactstudy.bodies import Counterbody
 from contactstudy.cache import ArrayKey
+from contactstudy.contact import friction
 from contactstudy.contact.contact import Settings, Shape
+from contactstudy.contact.continuation import solve_continued
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact
 from contactstudy.contact.prescribed import Prescribed
+from contactstudy.fields.surface import SurfaceOperator
+from contactstudy.kernels.load import Load
 
 FRICTION, LOAD = 0.3, 0.06
 MOTIONS = {
@@ -90,3 +95,70 @@ def test_units_decide_nothing(edges: str, motion: Rolling | Shift) -> None:
     assert np.array_equal(plain.sticks, other.sticks)
     for name in ("bound_error", "slip_error", "force_error"):
         assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-3, abs=1e-12)
+
+
+@pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
+def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
+    """Spin and moment are about the middle, wherever that is."""
+
+    def found(place: float) -> FrictionalContact:
+        grid = Grid.between(place + EDGES["uniform"], (-1.3, 1.3), 26)
+        gap = 0.05 * ((grid.x[:, None] - place - 0.02) ** 2 + grid.y**2)
+        body = HalfSpace(material=Material(0.91, 0.3))
+        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD), Counterbody(body))
+        return frictional_contact(shape, Settings(), motion, FRICTION, place + 0.1, coupled=False)
+
+    plain, other = found(0.0).tractions, found(8.0).tractions
+    assert other.traction == pytest.approx(plain.traction, abs=1e-6 * plain.traction.max())
+    for name in ("force_x", "force_y", "moment_z", "work"):
+        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-5), name
+
+
+@pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
+def test_work_is_what_tractions_lose_on_the_slip(motion: Rolling) -> None:
+    """Of a rigid ball on a soft body, which the pressure moves along the surface as well."""
+    grid = Grid((-1.3, 1.3), (-1.3, 1.3), 40, 40)
+    gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
+    body = HalfSpace(material=Material(0.91, 0.1))
+    for model in ("exact", "fastsim"):
+        asked = replace(motion, model=model)
+        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD))
+        found = frictional_contact(shape, Settings(), asked, FRICTION, 0.0, coupled=False).tractions
+        lost = float((found.traction * found.slip).sum() * grid.cell_area)
+        assert found.work == pytest.approx(lost, rel=1e-9 if model == "fastsim" else 0.03)
+        pushed = found.rigid["x"] * found.force_x + found.rigid["y"] * found.force_y
+        pushed += found.rigid["spin"] * found.moment_z
+        if model == "exact":  # the rest is done on what the pressure displaces
+            assert abs(found.work - pushed) > 0.2 * pushed
+
+
+@pytest.mark.parametrize("name", ["all", "shift", "forces"])
+def test_applications_and_steps_are_counted(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    calls = {"displaced": 0}
+    original = SurfaceOperator.displaced
+
+    def counted(self: SurfaceOperator, loads: Any, directions: Any) -> Any:
+        calls["displaced"] += Load.ALONG_X in loads
+        return original(self, loads, directions)
+
+    steps: list[int] = []
+
+    def noted(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+        found = solve_continued(problem, start)
+        steps.append(found.steps)
+        return found
+
+    monkeypatch.setattr(SurfaceOperator, "displaced", counted)
+    monkeypatch.setattr(friction, "solve_continued", noted)
+    found = rubbed(MOTIONS[name], "uniform").tractions
+    # Beside those of the iteration, the slip that the certificate is of is computed once more in each of them.
+    assert calls["displaced"] == found.applications + len(steps)
+    assert found.steps == sum(steps)
+
+
+def test_a_warning_points_at_who_asked() -> None:
+    found = rubbed(MOTIONS["all"], "uniform")
+    unsettled = replace(found, tractions=replace(found.tractions, converged=False))
+    with pytest.warns(ConvergenceWarning, match="stick and slip did not converge") as said:
+        unsettled.warn_unless_converged(1)
+    assert said[0].filename == __file__
