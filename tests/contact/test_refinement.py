@@ -11,7 +11,18 @@ from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
-from contactstudy.contact.refinement import SHARPEST, refined_contact
+from contactstudy.contact.refinement import (
+    END_COLUMN,
+    LAST_COLUMNS,
+    LESSER_HALF,
+    SHARPEST,
+    _jumps,
+    _moved,
+    _State,
+    read_again,
+    refined_contact,
+    rough_contact,
+)
 
 HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
@@ -201,3 +212,134 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
             assert (found.kind, found.exponent) == (law.kind, pytest.approx(law.exponent))
             for key in ("intensity", "intensity_error"):
                 assert getattr(found, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
+
+
+def outermost(name: str, room: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+    """Widths of the first and the last column of a refined pressure, over the half-width."""
+    widths = np.diff(refined_contact(averaged(FOLLOWED[name]), shape(room=room), 0.02).edges) / HALF_WIDTH
+    return float(widths[0]), float(widths[-1])
+
+
+def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
+    for width in outermost("falls to the end"):
+        assert SHARPEST < 0.3 * END_COLUMN < width <= END_COLUMN
+    assert 0.3 * SHARPEST < outermost("rises to one end")[1] <= SHARPEST
+    for room in ((2.0, 0.0), (0.0, 2.0)):
+        widths = outermost("falls to the end", room)
+        sharp = room.index(2.0)
+        assert 0.1 * SHARPEST < widths[sharp] <= SHARPEST
+        assert 0.3 * END_COLUMN < widths[1 - sharp] <= END_COLUMN
+    assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN  # neither is pressed
+
+
+def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
+    found = refined_contact(averaged(FOLLOWED["contact's end"]), shape(), 0.05)
+    edges, widths = found.edges, np.diff(found.edges)
+    touched = np.flatnonzero(found.pressure.any(axis=1))
+    for end in (edges[touched[0]], edges[touched[-1] + 1]):
+        near = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
+        assert near.sum() > 4
+        assert widths[near].max() <= LAST_COLUMNS * HALF_WIDTH
+    assert widths.max() > 2 * LAST_COLUMNS * HALF_WIDTH
+
+
+@pytest.mark.parametrize("lesser", [0.5, 0.02])
+def test_jumps_are_over_the_largest_of_a_half(lesser: float) -> None:
+    """Of a power of the pressure, to either neighbour and in any row; a half that is hardly pressed does not count."""
+    random = np.random.default_rng(0)
+    edges = np.array([3.0, 4.0, 4.5, 5.5, 6.0, 7.0, 8.0, 9.0, 10.0])
+    left = np.array([0, 1, 2, 3])  # the middle, 6.5, lies in the fifth column, whose centre it is
+    pressure = random.uniform(0.5, 1.0, (8, 5))
+    pressure[left] *= lesser
+    found = _jumps(edges, pressure, 2.0)
+    for i in range(8):
+        own = pressure[left] if i in left else pressure[4:]
+        top = max(own.max(), LESSER_HALF * pressure.max())
+        steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
+        assert found[i] == pytest.approx(max(steps) / top**2)
+
+
+def test_half_of_the_last_changes_is_the_error() -> None:
+    assert _moved([5.0, 1.0, 1.2, 1.25], 0.0) == pytest.approx(0.5 * 0.25)
+    assert _moved([1.0, 1.25, 1.2], 0.2) == 0.2
+    assert _moved([1.0, np.inf, 1.2], 0.0) == pytest.approx(0.1)
+    assert _moved([1.2], 0.0) == _moved([1.2, np.inf], 0.0) == np.inf
+    assert _moved([3.0, 0.0, 0.0, 0.0], 0.2) == 0.0
+
+
+@pytest.mark.parametrize("length", [20.0, 0.5])
+def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(length: float) -> None:
+    found = refined_contact(averaged(BUMPS["even"]), shape(length), 0.02)
+    usual = float(found.pressure[0].sum()) * min(HALF_WIDTH, length)
+    assert found.loads == pytest.approx((usual, usual))
+    for load_error, peak_error, peak in zip(found.load_errors, found.peak_errors, found.peaks, strict=True):
+        assert load_error / usual == pytest.approx(peak_error / peak)
+
+
+@pytest.mark.parametrize("name", ["lesser peak", "singular"])
+def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name: str) -> None:
+    asked = shape(room=(3.0, 0.0))
+    found = refined_contact(averaged(FOLLOWED[name]), asked, 0.02)
+    other = read_again(found, 1.25 * found.pressure, asked)
+    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads"):
+        assert getattr(other, key) == pytest.approx([1.25 * each for each in getattr(found, key)]), key
+    assert other.load_errors == found.load_errors
+    for law, again in zip(found.laws, other.laws, strict=True):
+        assert (law is None) == (again is None)
+        if law and again:
+            assert again.intensity == pytest.approx(1.25 * law.intensity)
+
+
+def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
+    state = _State(averaged(FOLLOWED["rises to one end"]), shape(), first_edges(shape()))
+    with caplog.at_level("INFO"):
+        for theta in (0.5, 0.3, 0.2):
+            state.refine(theta)
+    assert caplog.messages[-1] == f"refined to {state.edges.size - 1} columns"
+    for side, samples in enumerate(state.samples):
+        widths = np.array([sample.width for sample in samples])
+        assert len(samples) > 3
+        assert widths[:-1] / widths[1:] == pytest.approx(2.0)
+        assert widths[-1] == pytest.approx(np.diff(state.edges)[-side])
+        assert samples[-1].pressure == pytest.approx(state.pressure[-side].max(), rel=1e-3)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
+    """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
+
+    def along(x: FloatArray) -> FloatArray:
+        place = x if side == 0 else LENGTH - x
+        return np.asarray(np.where(place > 0.06, 1.0, 0.0) * (1 - 0.2 * place / LENGTH))
+
+    room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
+    found = refined_contact(averaged(along), shape(room=room), 0.05)
+    assert found.laws == (None, None)
+    assert found.ends[side] == 0.0
+    assert np.isfinite(found.end_errors).all()
+    assert np.isfinite(found.peak_errors).all()
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_pressed_sharp_end_whose_law_did_not_show_has_no_error(side: int) -> None:
+    def along(x: FloatArray) -> FloatArray:
+        place = x if side == 0 else LENGTH - x
+        return np.asarray(1 + 0.5 * place / LENGTH)
+
+    room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
+    found = refined_contact(averaged(along), shape(room=room), 0.05)
+    assert np.isinf(found.end_errors[side])
+    assert np.isfinite(found.end_errors[1 - side])
+    assert np.isfinite(found.peak_errors).all()  # the half is largest elsewhere
+    rising = refined_contact(averaged(lambda x: 2 - along(x)), shape(room=room), 0.05)
+    assert np.isinf(rising.peak_errors[side])
+
+
+def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
+    solve, asked = averaged(FOLLOWED["lesser peak"]), shape()
+    rough, fine = rough_contact(solve, asked), refined_contact(solve, asked, 0.02)
+    assert np.isin(rough.edges, fine.edges).all()
+    again = refined_contact(solve, asked, 0.02, rough.edges)
+    assert again.edges == pytest.approx(fine.edges)
+    assert again.first == pytest.approx(rough.edges)
+    assert rough.laws == (None, None)
