@@ -16,6 +16,7 @@ from contactstudy.analysis import single_case
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
+from contactstudy.explorer.looked import Looked
 from contactstudy.study.lazy_fields import Place
 from contactstudy.study.opened import summaries
 from contactstudy.study.store import load_variables
@@ -36,13 +37,13 @@ class Cases:
     scalars : Dataset
         Scalars over the swept parameters.
     load : callable
-        Takes the place of a case; returns its surfaces, or raises InvalidInputError.
+        Takes the place of a case; returns it, or raises InvalidInputError.
     title : str
         Name of the study.
     """
 
     scalars: xr.Dataset
-    load: Callable[[Place], xr.Dataset]
+    load: Callable[[Place], Looked]
     title: str
 
     @property
@@ -103,10 +104,10 @@ def of_folder(folder: str | Path) -> Cases:
     scalars, files = summaries(folder)
 
     @lru_cache(maxsize=KEPT)
-    def load(place: Place) -> xr.Dataset:
+    def load(place: Place) -> Looked:
         if place not in files:
             raise InvalidInputError("case", place, "one that is solved")
-        return load_variables(files[place], LOOKED_AT)
+        return Looked(load_variables(files[place], LOOKED_AT))
 
     return Cases(scalars, load, _title(scalars, Path(folder).name))
 
@@ -124,7 +125,8 @@ def of_dataset(opened: xr.Dataset) -> Cases:
         one = single_case(opened)
         made = one[[name for name, entry in one.data_vars.items() if entry.ndim == 0]].reset_coords(drop=True)
         made = made.assign(status=xr.DataArray("ok"), message=xr.DataArray(""))
-        return Cases(made, lambda place: one, str(opened.attrs.get("title", "result")))
+        looked = Looked(one)
+        return Cases(made, lambda place: looked, str(opened.attrs.get("title", "result")))
     dims = opened["status"].dims
     kept = [name for name, entry in opened.data_vars.items() if set(entry.dims) <= set(dims)]
     scalars = opened[kept]
@@ -132,13 +134,13 @@ def of_dataset(opened: xr.Dataset) -> Cases:
     names = [name for name in opened.data_vars if name in LOOKED_AT or name in scalars]
 
     @lru_cache(maxsize=KEPT)
-    def load(place: Place) -> xr.Dataset:
+    def load(place: Place) -> Looked:
         at = dict(zip(dims, place, strict=True))
         if str(opened["status"].isel(at).item()) not in ("ok", "stale"):
             raise InvalidInputError("case", place, "one that is solved")
         one = opened[names].isel(at)
         words = [name for name in one.data_vars if one[name].dtype.kind in "UO"]
-        return single_case(one.drop_vars(words)).compute()
+        return Looked(single_case(one.drop_vars(words)).compute())
 
     return Cases(scalars.load(), load, _title(opened, "study"))
 

@@ -5,13 +5,10 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import xarray as xr
 
-from contactstudy.analysis import axial_pressure, in_plane, positions
-from contactstudy.analysis.axes import dimension_along
 from contactstudy.checks import FloatArray
-from contactstudy.explorer.pixels import Span, pixels
-from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.explorer.looked import Looked
+from contactstudy.explorer.pixels import Span, between, pixels
 
 PIXELS = (360, 150)
 """Pixels of a picture across and up."""
@@ -52,51 +49,46 @@ class Image(NamedTuple):
     names: tuple[str, str]
 
 
-def scale_of(one: xr.Dataset, *, relative: bool) -> Scale:
+def scale_of(one: Looked, *, relative: bool) -> Scale:
     """Return mm and MPa, or the half-width and the pressure of Hertz' line contact."""
-    if relative and "hertz_half_width" in one:
-        return Scale(float(one["hertz_half_width"]), float(one["hertz_max_pressure"]), "/a", "/p0")
+    if relative and one.hertz is not None:
+        return Scale(*one.hertz, "/a", "/p0")
     return Scale(1e-3, 1e6, " (mm)", " (MPa)")
 
 
-def region(one: xr.Dataset, name: str) -> Span:
+def region(one: Looked, name: str) -> Span:
     """Positions along the axis that a region shows, metres."""
-    x = positions(one["pressure"], "x").values
+    x, _ = one.cells
     low, high = float(x.min()), float(x.max())
-    loaded = x[one["pressure"].max(dimension_along(one["pressure"], "y")).values > 0]
-    if name == REGIONS[0] or not loaded.size or "hertz_half_width" not in one:
+    loaded = x[one.along > 0]
+    if name == REGIONS[0] or not loaded.size or one.hertz is None:
         return low, high
-    near = NEAR * float(one["hertz_half_width"])
+    near = NEAR * one.hertz[0]
     if name == REGIONS[1]:
         return max(low, loaded[0] - 0.25 * near), min(high, loaded[0] + 0.75 * near)
     return max(low, loaded[-1] - 0.75 * near), min(high, loaded[-1] + 0.25 * near)
 
 
-def axial(one: xr.Dataset, scale: Scale) -> Line:
+def axial(one: Looked, scale: Scale) -> Line:
     """Largest pressure across the contact, along the axis; not drawn beside a singular end."""
-    along = axial_pressure(one)
-    x = positions(along, "x").values
-    ends = singular_ends(one)
-    values = np.where(near_singular(one, ends, x), np.nan, along.values / scale.stress)
-    return Line(x / scale.length, values, [end / scale.length for end in ends])
+    x, _ = one.cells
+    values = np.where(one.near(x), np.nan, one.along / scale.stress)
+    return Line(x / scale.length, values, [end / scale.length for end in one.ends])
 
 
-def top(one: xr.Dataset, scale: Scale, shown: Span) -> Image:
+def top(one: Looked, scale: Scale, shown: Span) -> Image:
     """Pressure on the top of the body."""
-    pressure = one["pressure"].transpose(*(dimension_along(one["pressure"], axis) for axis in "xy"))
-    x, y = (positions(pressure, axis).values for axis in "xy")
-    near = near_singular(one, singular_ends(one), x)
-    most = float(pressure.values[~near].max(initial=0.0)) if not near.all() else float(pressure.max())
+    _, y = one.cells
     span = (float(y[0]), float(y[-1]))
-    return _image(pressure.values, (x, y), (shown, span), most, scale, ("x", "y"))
+    return _image(one.pressure, one.cells, (shown, span), one.most_pressure, scale, ("x", "y"))
 
 
-def plane(one: xr.Dataset, scale: Scale, shown: Span, kind: str, part: float) -> Image | None:
+def plane(one: Looked, scale: Scale, shown: Span, kind: str, part: float) -> Image | None:
     """Von Mises stress in a plane; None if there are no stresses, or too few points for it.
 
     Parameters
     ----------
-    one : Dataset
+    one : Looked
         A single case.
     scale : Scale
         Units.
@@ -107,25 +99,19 @@ def plane(one: xr.Dataset, scale: Scale, shown: Span, kind: str, part: float) ->
     part : float
         Where the plane is, from the first to the last of the positions.
     """
-    if "von_mises" not in one or bool(one["von_mises"].isnull().all()):
+    if not one.has_stress:
         return None
-    field = one["von_mises"]
-    axes = {axis: positions(field, axis).values for axis in "xyz"}
+    axes = one.points
     at = kind[0]
     across, up = (axis for axis in "xyz" if axis != at)
     if min(axes[across].size, axes[up].size) < 2 or (at == "y" and not axes["y"][0] <= 0 <= axes["y"][-1]):
         return None
     first, last = shown if at == "x" else (float(axes[at][0]), float(axes[at][-1]))
-    place = float(np.clip(0.0 if at == "y" else first + part * (last - first), axes[at][0], axes[at][-1]))
-    values = in_plane(one[["von_mises"]], variables="von_mises", **{at: place})["von_mises"]
-    values = values.transpose(*(dimension_along(values, axis) for axis in (across, up)))
-    near = near_singular(one, singular_ends(one), axes["x"]) if "pressure" in one else np.zeros(axes["x"].size, bool)
-    kept = field.isel({dimension_along(field, "x"): ~near}) if not near.all() else field
+    values = between(one.stress, axes[at], 0.0 if at == "y" else first + part * (last - first), "xyz".index(at))
     spans = [(float(axes[axis][0]), float(axes[axis][-1])) for axis in (across, up)]
     if across == "x":
         spans[0] = (max(spans[0][0], shown[0]), min(spans[0][1], shown[1]))
-    most = float(kept.max())
-    return _image(values.values, (axes[across], axes[up]), (spans[0], spans[1]), most, scale, (across, up))
+    return _image(values, (axes[across], axes[up]), (spans[0], spans[1]), one.most_stress, scale, (across, up))
 
 
 def _image(

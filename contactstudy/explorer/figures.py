@@ -113,6 +113,7 @@ class StudyFigure:
         self.figure.scatter("x", "v", source=self._endless, line_color=NEUTRAL, **mark)
         self.figure.scatter("x", "v", source=self._chosen, color="color", size=11)
         self.figure.y_range = Range1d(0, 1)
+        self._plain, self._words = self.figure.xaxis[0].ticker, dict[float, str]()
 
     def show(
         self,
@@ -140,10 +141,14 @@ class StudyFigure:
             "color": [color for _, _, color in chosen],
         }
         self.figure.y_range.update(start=low, end=high)
-        axis = self.figure.xaxis[0]
-        if ticks is not None:
-            axis.ticker, axis.major_label_overrides = list(ticks), ticks
-            axis.major_label_orientation = 0.5
-        else:
-            axis.ticker, axis.major_label_overrides, axis.major_label_orientation = BasicTicker(), {}, "horizontal"
+        self._name_ticks(ticks or {})
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names
+
+    def _name_ticks(self, words: dict[float, str]) -> None:
+        """Put words in the place of numbers; only where they change, for a new ticker costs as much as all the rest."""
+        if words == self._words:
+            return
+        axis, self._words = self.figure.xaxis[0], words
+        axis.ticker = list(words) if words else self._plain
+        axis.major_label_overrides = words
+        axis.major_label_orientation = 0.5 if words else "horizontal"

@@ -18,6 +18,7 @@ from contactstudy.errors import ContactStudyError
 from contactstudy.explorer.cases import Cases
 from contactstudy.explorer.drawn import PLANES, REGIONS, Image, axial, plane, region, scale_of, top
 from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
+from contactstudy.explorer.looked import Looked
 
 PREFERRED = ("peak_pressure", "peak_von_mises", "end_pressure_over_p0", "end_load_first", "approach")
 """Numbers that are offered first for the figure of the whole study."""
@@ -132,14 +133,14 @@ class Page:
         self._show_fields(loaded)
         self._show_study(sides)
 
-    def _loaded(self, side: int) -> xr.Dataset | None:
-        """Surfaces of a chosen case; None if it is not solved or keeps none."""
+    def _loaded(self, side: int) -> Looked | None:
+        """Return a chosen case; None if it is not solved."""
         try:
             return self.cases.load(self.place(side))
         except ContactStudyError:
             return None
 
-    def _show_table(self, loaded: list[xr.Dataset | None], sides: list[int]) -> None:
+    def _show_table(self, loaded: list[Looked | None], sides: list[int]) -> None:
         """Show the main numbers of the cases side by side, and whether they are real."""
         columns = [self._column(loaded[side], side) for side in sides]
         rows = list(dict.fromkeys(name for column in columns for name in column))
@@ -153,13 +154,13 @@ class Page:
             body += f"<tr><td>{html.escape(name)}</td>{cells}</tr>"
         self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>"
 
-    def _column(self, one: xr.Dataset | None, side: int) -> dict[str, str]:
+    def _column(self, one: Looked | None, side: int) -> dict[str, str]:
         """Numbers of one case, by their meaning."""
         place = self.place(side)
         if one is None:
             return {"state": html.escape(self.cases.state(place))}
         if place not in self._columns:
-            self._columns[place] = self._numbers_of(one)
+            self._columns[place] = self._numbers_of(one.dataset)
         return self._columns[place]
 
     def _numbers_of(self, one: xr.Dataset) -> dict[str, str]:
@@ -187,9 +188,9 @@ class Page:
             found[f"edge factor, {place} over the middle"] = "singular" if endless else f"{value:.3f}"
         return found
 
-    def _show_axial(self, loaded: list[xr.Dataset | None]) -> None:
+    def _show_axial(self, loaded: list[Looked | None]) -> None:
         """Pressure along the axis."""
-        present = [one for one in loaded if one is not None and "pressure" in one]
+        present = [one for one in loaded if one is not None and one.has_pressure]
         if not present:
             self.axial.show([None, None], (0.0, 1.0), ("", "no pressure is kept"))
             return
@@ -200,20 +201,20 @@ class Page:
             max(high / scale.length for (_, high), scale in zip(spans, scales, strict=True)),
         )
         lines = [
-            None if one is None or "pressure" not in one else axial(one, scale_of(one, relative=self.units.value))
+            None if one is None or not one.has_pressure else axial(one, scale_of(one, relative=self.units.value))
             for one in loaded
         ]
         scale = scales[0]
         names = (f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}")
         self.axial.show(lines, span, names)
 
-    def _show_fields(self, loaded: list[xr.Dataset | None]) -> None:
+    def _show_fields(self, loaded: list[Looked | None]) -> None:
         """Pressure on the top and von Mises stress, with one scale of colours for both cases."""
         tops: list[Image | None] = []
         planes: list[Image | None] = []
         units = ""
         for one in loaded:
-            if one is None or "pressure" not in one:
+            if one is None or not one.has_pressure:
                 tops.append(None)
                 planes.append(None)
                 continue

@@ -46,3 +46,31 @@ def pixels(
         part = part[:, None] if axis == 0 else part
         values = (1 - part) * values.take(lower, axis) + part * values.take(lower + 1, axis)
     return np.ascontiguousarray(values.T)
+
+
+def between(values: FloatArray, at: FloatArray, wanted: float, axis: int) -> FloatArray:
+    """Values in a plane across an axis, interpolated linearly between points and held beyond the outermost.
+
+    Parameters
+    ----------
+    values : array
+        Field.
+    at : array
+        Increasing positions of the points along the axis.
+    wanted : float
+        Position of the plane.
+    axis : int
+        Which axis of the field.
+
+    Examples
+    --------
+    >>> between(np.array([[0.0, 1.0], [2.0, 3.0]]), np.array([0.0, 1.0]), 0.25, 0).tolist()
+    [0.5, 1.5]
+    """
+    lower = int(np.clip(np.searchsorted(at, wanted) - 1, 0, max(at.size - 2, 0)))
+    upper = min(lower + 1, at.size - 1)
+    part = float(np.clip((wanted - at[lower]) / (at[upper] - at[lower]), 0.0, 1.0)) if upper > lower else 0.0
+    first, last = (np.asarray(values.take(number, axis)) for number in (lower, upper))
+    if part in (0.0, 1.0):  # a plane of points does not take NaN from its neighbour
+        return last if part else first
+    return (1 - part) * first + part * last

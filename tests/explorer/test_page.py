@@ -17,8 +17,9 @@ from contactstudy.analysis import in_plane
 from contactstudy.explorer import show
 from contactstudy.explorer.cases import Cases, of_dataset, of_folder
 from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, scale_of, top
+from contactstudy.explorer.looked import Looked
 from contactstudy.explorer.page import Page
-from contactstudy.explorer.pixels import pixels
+from contactstudy.explorer.pixels import between, pixels
 
 SOURCES: dict[str, Callable[[Path], Cases]] = {
     "files": of_folder,
@@ -85,20 +86,26 @@ def test_planes_are_those_of_the_analysis(folder: Path) -> None:
     whole = region(one, REGIONS[0])
     image = plane(one, scale, whole, PLANES[0], 0.5)
     assert image is not None
-    expected = in_plane(one[["von_mises"]], y=0.0, variables="von_mises")["von_mises"]
+    expected = in_plane(one.dataset[["von_mises"]], y=0.0, variables="von_mises")["von_mises"]
     assert float(image.values.max()) == pytest.approx(float(expected.max()) / 1e6, rel=0.02)
     for kind in PLANES[1:]:
         found = plane(one, scale, whole, kind, 0.0)
         assert found is not None
         assert found.names[1].startswith("depth" if kind[0] == "x" else "position along rolling")
-    assert plane(one.drop_vars("von_mises"), scale, whole, PLANES[0], 0.5) is None
+    depth = 0.3 * float(one.points["z"][0]) + 0.7 * float(one.points["z"][1])
+    expected = in_plane(one.dataset[["von_mises"]], z=depth, variables="von_mises")["von_mises"]
+    found = between(one.stress, one.points["z"], depth, 2)
+    assert found == pytest.approx(expected.transpose(*one.dataset["von_mises"].dims[:2]).values, rel=1e-9)
+    assert plane(Looked(one.dataset.drop_vars("von_mises")), scale, whole, PLANES[0], 0.5) is None
 
 
 def test_no_singular_height_is_drawn(solved: xr.Dataset) -> None:
     singular = solved[["pressure", "hertz_half_width", "hertz_max_pressure"]].assign(end_pressure_first=np.inf)
     half_width = float(solved["hertz_half_width"])
-    fine = singular.interp(x=np.linspace(float(solved.x[0]), float(solved.x[-1]), 400)).drop_vars(
-        "x_bounds", errors="ignore"
+    fine = Looked(
+        singular.interp(x=np.linspace(float(solved.x[0]), float(solved.x[-1]), 400)).drop_vars(
+            "x_bounds", errors="ignore"
+        )
     )
     scale = scale_of(fine, relative=True)
     line = axial(fine, scale)
@@ -107,6 +114,22 @@ def test_no_singular_height_is_drawn(solved: xr.Dataset) -> None:
     limit = top(fine, scale, region(fine, REGIONS[1])).most
     assert limit <= float(np.nanmax(line.pressure)) * (1 + 1e-9)
     assert region(fine, REGIONS[2])[1] - region(fine, REGIONS[2])[0] <= 8 * half_width
+
+
+def test_a_step_along_numbers_makes_no_new_model(page: Page) -> None:
+    axis = page.study.figure.xaxis[0]
+    plain = axis.ticker
+    page.choices[0]["max_pressure"].value = 1
+    assert axis.ticker is plain
+    page.over.value = "profile"
+    words = axis.ticker
+    assert list(words.ticks) == [0.0, 1.0]
+    assert axis.major_label_overrides == {0.0: "cylinder", 1.0: "rounded"}
+    page.choices[0]["profile"].value = 1
+    assert axis.ticker is words
+    page.over.value = "max_pressure"
+    assert axis.ticker is plain
+    assert axis.major_label_overrides == {}
 
 
 def test_pixels_keep_lines_and_hold_the_ends() -> None:
