@@ -20,6 +20,7 @@ from contactstudy.case.gridding import choose_grid
 from contactstudy.case.motion import Sliding
 from contactstudy.case.roughness import heights_on
 from contactstudy.case.settings import ACCURACY, TOLERANCE, check_accuracy
+from contactstudy.case.standing import check_balanced, check_on_its_length, inclination
 from contactstudy.checks import FloatArray
 from contactstudy.contact.at_approach import ROUGH_TOLERANCE, ROUGHLY, AtApproach, load_error, settled_at_approach
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
@@ -41,12 +42,6 @@ DEPTHS = (0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.4, 1.7, 
 
 LEAST_CELLS = 8
 """Along each axis, for an estimate of the discretisation error."""
-
-LEAST_CONTACT = 1.0
-"""Length over the Hertz half-width that a tilted roller has to touch on, if it touches at its end."""
-
-LEAST_ARM = 0.25
-"""Distance of the load from the roller's end, over the Hertz half-width, below which no such contact balances it."""
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)
 """Depths at which `end_traction_residual` looks at the ends, over the Hertz half-width."""
@@ -134,7 +129,7 @@ def solve(
     (True, 1.02)
     """
     checks.instance("case", case, Case, "a Case")
-    _check_balanced(case)
+    check_balanced(case)
     began = time.perf_counter()
     known = xr.Dataset()
     slides = isinstance(case.motion, Sliding)
@@ -248,7 +243,7 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
             raise WindowError(advice) from error
-        raise WindowError(f"{_inclination(case)}, and so deep at the roller's end that {advice}") from error
+        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
     return _checked(case, contact)
 
 
@@ -265,7 +260,8 @@ def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
 
 def _checked(case: Case, contact: Contact) -> Contact:
     """Return a contact that does not stand on the roller's end; warn unless it converged."""
-    _check_on_its_length(_under_its_load(case, contact), contact)
+    shape = contact.shape
+    check_on_its_length(_under_its_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
     contact.warn_unless_converged(stacklevel=4)
     return contact
 
@@ -277,47 +273,6 @@ def _labelled(case: Case, contact: Contact) -> xr.Dataset:
     result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
     result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
     return result
-
-
-def _inclination(case: Case) -> str:
-    """Name what inclines the roller of a case, for messages."""
-    if case.load_position is not None:
-        return f"load_position = {case.load_position:g} m"
-    return f"tilt = {case.tilt:g} rad"
-
-
-def _check_on_its_length(case: Case, contact: Contact) -> None:
-    """Raise if a tilted roller has left its length and stands on its end."""
-    if not case.tilt and case.load_position is None:
-        return
-    facing = np.flatnonzero(np.isfinite(contact.shape.gap.values).any(axis=1))
-    touching = np.flatnonzero(contact.pressure.any(axis=1))
-    at_end = touching[0] == facing[0] or touching[-1] == facing[-1]
-    length = float(contact.shape.grid.widths[touching].sum())
-    if at_end and length < LEAST_CONTACT * case.hertz_half_width < case.contact_length:
-        raise _stands_on_its_end(case, f"not {length:.3g} m")
-
-
-def _check_balanced(case: Case) -> None:
-    """Raise if the load acts so near to the roller's end that the contact could not reach far from it."""
-    if case.load_position is None:
-        return
-    start, stop = case.contact_range
-    distance = min(case.load_position - start, stop - case.load_position)
-    if distance < LEAST_ARM * case.hertz_half_width < LEAST_ARM * case.contact_length:
-        raise _stands_on_its_end(case, f"where a load at {distance:.3g} m from the end is not balanced")
-
-
-def _stands_on_its_end(case: Case, found: str) -> InvalidInputError:
-    """Error of a roller that has left its length and stands on its end."""
-    name = "tilt" if case.load_position is None else "load_position"
-    return InvalidInputError(
-        name,
-        getattr(case, name),
-        f"such that the contact reaches further from the roller's end than {LEAST_CONTACT:g} half-width a, "
-        f"{case.hertz_half_width:.3g} m, {found}",
-        "tilt the roller less or load it nearer to its middle",
-    )
 
 
 def roller_stress(

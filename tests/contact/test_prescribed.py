@@ -15,7 +15,6 @@ from contactstudy import (
     InvalidInputError,
     Material,
     Roller,
-    WindowError,
     choose_grid,
     profiles,
     solve,
@@ -211,19 +210,6 @@ def test_roughness_must_cover_the_cells():
     rough = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match="roughness"):
         solve(case, grid, roughness=rough)
-
-
-@pytest.mark.parametrize("window", [2.0, 16.0])
-def test_a_roller_tilted_on_its_end_is_refused(window: float):
-    case = case_with(tilt=0.1)
-    with pytest.raises((InvalidInputError, WindowError), match=r"tilt = 0\.1"):
-        solve(case, choose_grid(case, cells_y=8, window=window), stresses=False)
-
-
-def test_a_load_at_the_very_end_is_refused():
-    case = case_with(load_position=17.95 * HALF_WIDTH)
-    with pytest.raises(InvalidInputError, match=r"load_position = .* the contact reaches further"):
-        solve(case, choose_grid(case, cells_y=8, window=24), stresses=False)
 
 
 def test_approach_and_tilt_say_what_they_are_relative_to():
