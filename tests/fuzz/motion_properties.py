@@ -85,14 +85,15 @@ def certificate_of_friction(solved: Solved) -> bool:
 def work_is_lost(solved: Solved) -> bool:
     """Friction takes work, at most that of full sliding under the largest slip.
 
-    It is found from forces and creepages, which two or three cells along rolling make a few percent too small.
+    It is found from forces and creepages. Two or three cells along rolling make it a few percent too small, and where
+    all cells stick, nothing is what is left of large numbers.
     """
     result = solved.result
     along = int((result["pressure"].values > 0).any(axis=0).sum())
     work = float(result["friction_work"])
     slip = np.hypot(result["slip_x"].values, result["slip_y"].values)[result["pressure"].values > 0]
     scale = solved.drawn.case.friction * solved.drawn.case.normal_load * max(float(slip.max()), _largest_move(solved))
-    least = -1e-4 if along > 3 else -0.1
+    least = -1e-3 if along > 3 else -0.1
     require(least * scale <= work <= 1.5 * scale, f"work of {work / scale:.3g} of the largest")
     return True
 
