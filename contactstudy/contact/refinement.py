@@ -276,7 +276,7 @@ class _State:
 def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Refined:
     """Return the values of another pressure on the same columns, which the coupled friction has changed a little.
 
-    The errors grow with the peak.
+    The errors grow with the peak. An end that only friction presses was not refined for: its pressure is all in doubt.
     """
     peaks, ends, _ = read_ends(refined.edges, pressure, refined.laws)
     largest = max(peaks)
@@ -285,13 +285,17 @@ def read_again(refined: Refined, pressure: FloatArray, shape: AxialShape) -> Ref
         law.with_intensity(*from_end(side, refined.edges, pressure), shape.room[side]) if law else None
         for side, law in enumerate(refined.laws)
     )
+    end_errors = [
+        factor * error if before > 0 else now
+        for before, error, now in zip(refined.ends, refined.end_errors, ends, strict=True)
+    ]
     return replace(
         refined,
         pressure=pressure,
         peaks=peaks,
         peak_errors=(factor * refined.peak_errors[0], factor * refined.peak_errors[1]),
         ends=ends,
-        end_errors=(factor * refined.end_errors[0], factor * refined.end_errors[1]),
+        end_errors=(end_errors[0], end_errors[1]),
         loads=end_loads(refined.edges, pressure, shape.half_width),
         laws=(first, last),
     )

@@ -290,6 +290,18 @@ def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name:
             assert again.intensity == pytest.approx(1.25 * law.intensity)
 
 
+def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
+    # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
+    asked = shape()
+    found = refined_contact(averaged(FOLLOWED["contact's end"]), asked, 0.02)
+    assert (found.ends, found.end_errors) == ((0.0, 0.0), (0.0, 0.0))
+    pressed = found.pressure.copy()
+    pressed[:20] += 0.02 * found.pressure.max()
+    first, last = read_again(found, pressed, asked).ends
+    assert first > 0
+    assert read_again(found, pressed, asked).end_errors == (first, last) == (first, 0.0)
+
+
 def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
     state = _State(averaged(FOLLOWED["rises to one end"]), shape(), first_edges(shape()))
     with caplog.at_level("INFO"):
