@@ -105,3 +105,54 @@ def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, 
 def test_impossible_edges_are_refused(arguments: tuple[float, float, float], name: str) -> None:
     with pytest.raises(InvalidInputError, match=name):
         edge_peak(*arguments)
+
+
+EDGES = np.array(
+    [0.0, 1.0, 2.0, 3.0, 3.2, 4.0, 5.0, 6.0, 7.0, 9.0, 12.0, 17.0, 25.0, 38.0, 64.0, 66.0, 90.0, 128.0, 135.0]
+)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
+def test_columns_between_3_and_64_widths_from_the_end_count(unit: float) -> None:
+    """And between 6 and 128 of them for the error; what is nearer or farther may be anything."""
+    pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
+
+    def found(first: float) -> EndLaw:
+        other = pressure.copy()
+        other[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
+        return EndLaw("power", 0.5).with_intensity(unit * EDGES, other, np.inf)
+
+    plain = EndLaw("power", 0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    assert plain.intensity == pytest.approx(2.0)
+    for first in (2.0, 128.0):
+        assert found(first) == plain
+    for first in (3.0, 38.0):
+        assert found(first).intensity != pytest.approx(2.0, rel=1e-3)
+    for first in (64.0, 90.0):
+        assert found(first).intensity == pytest.approx(2.0)
+        assert found(first).intensity_error > 2 * plain.intensity_error
+
+
+@pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
+def test_an_end_close_to_that_of_the_body_has_a_larger_error(width: float) -> None:
+    """Beyond half of the room between them the law does not hold; the fit reaches to 64 widths."""
+    edges = width * EDGES
+    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
+    wide, narrow = (
+        EndLaw("power", 0.5).with_intensity(edges, pressure, room * width).intensity_error for room in (129.0, 127.0)
+    )
+    assert wide == pytest.approx(3e-3 * 2.0)
+    assert narrow - wide == pytest.approx(0.08 * 2.0)
+
+
+def test_no_elastic_end_is_sharper_than_a_rigid_one() -> None:
+    edges = graded_edges(1e-3)
+    law = EndLaw("power", np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
+    assert 0.49 < law.exponent <= 0.5
+
+
+def test_a_logarithm_is_told_however_the_columns_were_split() -> None:
+    widths = 0.1 * np.cumprod([1.0, 0.25, 0.25, 0.25, 0.5, 0.5])
+    law = law_of([Sample(float(each), float(1 - 0.1 * np.log(each))) for each in widths], stiff=True)
+    assert law is not None
+    assert law.kind == "logarithm"

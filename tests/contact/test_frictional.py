@@ -299,3 +299,24 @@ def test_what_does_not_converge_says_so(monkeypatch: pytest.MonkeyPatch) -> None
         result = rolled(Rolling(longitudinal_creepage=0.01))
     assert not result.converged
     assert float(result.slip_error) > 1e-6 or float(result.bound_error) > 1e-6
+
+
+def test_the_middle_of_the_shape_is_where_it_can_touch() -> None:
+    """Cells on one side with nothing to touch, and another place along x, change no moment and no spin."""
+    motion = Rolling(longitudinal_creepage=0.005, spin=0.02)
+    plain, gap = rolled(motion, gap=ball(off=0.2)), ball(off=0.2)
+    step = float(gap.x[1] - gap.x[0])
+    wider = np.concatenate([gap.x.values, gap.x.values[-1] + step * np.arange(1.0, 9.0)]) + 5.0
+    bare = xr.DataArray(
+        np.vstack([gap.values, np.full((8, gap.y.size), np.inf)]), coords={"x": wider, "y": gap.y}, dims=("x", "y")
+    )
+    other = rolled(motion, gap=bare)
+    for name in ("moment_z", "force_y", "friction_work"):
+        assert float(other[name]) == pytest.approx(float(plain[name]), rel=1e-5)
+
+
+def test_the_part_that_sticks_is_of_the_pressed_area() -> None:
+    result = rolled(MOTIONS["all"])
+    pressed = result.pressure > 0
+    assert 0.05 < float(result.sticking_part) < 0.95
+    assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / pressed.sum()))

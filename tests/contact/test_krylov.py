@@ -34,3 +34,23 @@ def test_the_accuracy_is_what_is_left_and_no_more_work_is_done() -> None:
     left = np.linalg.norm(1 - values * found) / np.sqrt(50)
     assert 0.01 < left <= 0.1
     assert len(calls) <= 3
+
+
+@pytest.mark.parametrize("scale", [1e-20, 1.0, 1e20])
+def test_the_unit_of_the_matrix_does_not_count(scale: float) -> None:
+    random = np.random.default_rng(1)
+    matrix, asked = scale * (np.eye(20) + 0.1 * random.standard_normal((20, 20))), random.standard_normal(20)
+    found = minimal_residual(matrix.__matmul__, np.copy, asked, 1e-9, directions=30, restarts=2)
+    assert np.linalg.norm(asked - matrix @ found) <= 1.1e-9 * np.linalg.norm(asked)
+
+
+def test_directions_and_restarts_bound_the_work() -> None:
+    """The residual is computed anew between two restarts only."""
+    values, calls = np.linspace(1.0, 100.0, 50), []
+
+    def matrix(vector: np.ndarray) -> np.ndarray:
+        calls.append(1)
+        return np.asarray(values * vector)
+
+    minimal_residual(matrix, np.copy, np.ones(50), 1e-12, directions=3, restarts=4)
+    assert len(calls) == 3 * 4 + 3

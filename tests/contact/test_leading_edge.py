@@ -115,3 +115,32 @@ def test_columns_nearer_than_a_cell_is_long_take_the_slip_at_one_place() -> None
     assert first == pytest.approx(EDGE_OFFSET + (0.01 * 0.75 + 0.98 * 0.03 * 1.3) / (0.01 + 0.98 * 0.03))
     assert third == pytest.approx(EDGE_OFFSET + 0.9)
     assert taken_together(np.arange(4.0), np.ones(4), 0.5) is None
+
+
+def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
+    pressure = strip(0.9)
+    last = int(np.flatnonzero(pressure[0])[-1])
+    alone = pressure.copy()
+    alone[0, last + 2] = 0.1
+    found = RollingCells.of(alone, alone)
+    assert found.to.size == 0
+    assert found.place[:-1] == pytest.approx(EDGE_OFFSET + 0.9)
+    assert found.place[-1] == pytest.approx(EDGE_OFFSET + 1.0)
+
+
+def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> None:
+    pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
+    found = RollingCells.of(pressure, pressure, None, np.array([True, True, False]))
+    assert found.to.size == 0
+    assert (found.place[found.unknown[0] < 2] == leading_edge.SLIDING_PLACE).all()
+    assert found.place[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
+    assert found.sliding(found.unknown[0] == 2, 4).tolist() == [True, True, False, False]
+
+
+def test_beyond_the_last_cell_a_displacement_stays() -> None:
+    pressure = np.ones((1, 6))
+    displacement = np.random.default_rng(0).standard_normal((1, 6))
+    found = RollingCells.of(pressure, pressure)
+    longer = RollingCells(found.unknown, found.place, found.tied, found.to, found.ratio)
+    whole = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
+    assert found.change(displacement, 0.5) == pytest.approx(longer.change(whole, 0.5))

@@ -25,9 +25,19 @@ from contactstudy import (
     stress_field,
 )
 from contactstudy.checks import FloatArray
+from contactstudy.contact import settled as module
 from contactstudy.contact.contact import Settings, contact_of
 from contactstudy.contact.end_law import edge_peak
-from contactstudy.contact.settled import SettledContact, _Solver, settled_contact, settled_values
+from contactstudy.contact.settled import (
+    SettledContact,
+    _axial_shape,
+    _cells_across,
+    _Solver,
+    _under,
+    settled_contact,
+    settled_values,
+)
+from contactstudy.errors import WindowError
 
 STEEL = Material(210e9, 0.3)
 RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
@@ -439,3 +449,46 @@ def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
     for name in ("pressure", "gap", "displacement_z", "initial_gap"):
         first[name].values[:] = 0.0
     np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], kept)
+
+
+@pytest.mark.parametrize("part", [0.2, 0.5, 0.75, 0.95])
+@pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
+def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accuracy: float, part: float) -> None:
+    """What lies between cells is 0.7 over the square of their number across the contact."""
+    cells = _cells_across(part, accuracy)
+
+    def left(cells: int) -> float:
+        return 0.7 / (cells * part) ** 2
+
+    assert left(cells) <= 0.25 * accuracy or cells == 256
+    assert left(cells // 2) > 0.25 * accuracy or cells == 32
+
+
+@pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 0.3e-3])
+def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
+    """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
+    body = finite(1.5e-3)
+    case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
+    room = _axial_shape(case).room
+    assert room == pytest.approx((max(distance, 0.0) if distance > 1e-12 else 0.0, 0.5e-3 - distance))
+    assert room[0] == 0.0 or distance > 1e-12
+
+
+def test_columns_of_a_grid_that_begins_elsewhere() -> None:
+    grid = Grid.between(np.array([-3.0, -2.0, -1.0, 1.0, 1.5, 2.0, 4.0]), (0.0, 1.0), 2)
+    assert _under(grid, np.array([1.0, 1.5, 2.0])) == slice(3, 5)
+    assert _under(grid, np.array([-2.0 + 1e-12, -1.0])) == slice(1, 2)
+
+
+def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, tried = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
+
+    def too_narrow(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
+        tried.append(half_window / case.hertz_half_width)
+        if len(tried) < 5:
+            raise WindowError("too narrow")
+        return "found"
+
+    monkeypatch.setattr(module, "_within", too_narrow)
+    assert module._settled(module._Request(case, 0.01, 1e-6)) == "found"
+    assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])

@@ -8,7 +8,15 @@ import numpy as np
 import pytest
 
 from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, Rolling, Shift, cache, choose_grid, solve
-from contactstudy.contact.settled import settled_contact
+from contactstudy.cache import ArrayKey
+from contactstudy.contact import settled_tractions as module
+from contactstudy.contact.certificate import Certificate
+from contactstudy.contact.contact import Contact, Settings, Shape
+from contactstudy.contact.frictional import FrictionalContact
+from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.settled import CELLS_Y, SettledContact, settled_contact
+from contactstudy.contact.settled_tractions import _scales, settled_tractions
+from contactstudy.contact.tractions import Tractions
 
 STEEL = Material(210e9, 0.3)
 BODY = FiniteLengthSpace(length=0.5e-3, material=STEEL)
@@ -94,3 +102,71 @@ def test_given_columns_are_taken() -> None:
     found = solve(case, Grid.from_edges(edges, (-1.5 * half, 1.5 * half), 40), stresses=False)
     assert found.sizes["x"] == edges.size - 1
     assert float(found["force_y"]) == pytest.approx(float(solve(case, stresses=False)["force_y"]), rel=3e-3)
+
+
+def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
+    """A contact of a case under one and the same pressure on two cells, with some rigid motions."""
+    grid = Grid.between(np.array([0.0, 1e-4, 2e-4, 5e-4]), (-2e-4, 2e-4), 4)
+    pressure = np.zeros(grid.shape)
+    pressure[0, 3] = pressure[2, 1] = pressed
+    shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), Prescribed(1.0))
+    none = np.zeros(grid.shape)
+    certificate = Certificate(0.0, 0.0, 0.0, 0.0)
+    contact = Contact(shape, Settings(), pressure, none, none, 0.0, 0.0, 1, True, np.inf, certificate)
+    tractions = Tractions(np.stack([none] * 2), np.stack([none] * 2), none > 1, rigid, 0.0, 0.0, 0.0, 0.0)
+    return FrictionalContact(contact, tractions, True)
+
+
+def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact() -> None:
+    """Forces and moment of full sliding; creepages of ``f a / R``, shifts of ``f a**2 / R``, or more if they are."""
+    pressed = 1e9
+    slip = 0.1 * LIKE.hertz_half_width / 5e-3
+    force = 0.1 * pressed * (1e-4 * 1e-4 + 3e-4 * 1e-4)
+    # About the roller's middle, 0.25 mm: the cells' centres are 0.2 and 0.1 mm from it along x.
+    moment = 0.1 * pressed * (1e-8 * np.hypot(2e-4, 1.5e-4) + 3e-8 * np.hypot(1e-4, 0.5e-4))
+    case = replace(LIKE, motion=Rolling(longitudinal_creepage=0.0))
+    found = made_up(case, pressed, x=0.0, y=1e-9, spin=0.0)
+    usual = {"lateral_creepage": slip, "longitudinal_creepage": slip, "spin": slip * force / moment}
+    assert _scales(case, found) == pytest.approx(
+        usual | {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * slip}
+    )
+    fast = made_up(case, pressed, x=-3 * slip, y=2 * slip, spin=9 * slip * force / moment)
+    scales = _scales(case, fast)
+    assert scales["lateral_creepage"] == pytest.approx(3 * slip)
+    assert scales["friction_work"] == pytest.approx(force * 9 * slip)
+    case = replace(LIKE, motion=Shift(y=1e-9))
+    moved = made_up(case, pressed, x=0.0, y=1e-12)
+    assert _scales(case, moved)["shift_x"] == pytest.approx(slip * LIKE.hertz_half_width)
+    assert _scales(case, moved)["friction_work"] == pytest.approx(force * slip * LIKE.hertz_half_width)
+    bare = made_up(replace(LIKE, friction=0.0), pressed, x=0.0, y=0.0, spin=0.0)
+    assert _scales(replace(LIKE, friction=0.0, motion=Rolling()), bare)["friction_work"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("changes", "accuracy", "tried"), [([0.5], 0.6, 2), ([0.5, 0.3, 0.1], 0.2, 4), ([0.9] * 9, 0.1, 9)]
+)
+def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
+    changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change."""
+    case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
+    contact = made_up(case, 1e9, x=0.0, y=1e-3, spin=0.0)
+    full, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
+
+    def on(case: Case, settled: SettledContact, cells: int, before: FrictionalContact | None) -> FrictionalContact:
+        rows.append(cells)
+        assert (before is None) == (len(rows) == 1)
+        values = {"force_x": -full * forces[len(rows) - 1]}
+        rigid = contact.tractions.rigid | {"y": float(len(rows))}
+        return replace(contact, tractions=replace(contact.tractions, rigid=rigid, **values))
+
+    settled = settled_contact(replace(LIKE, friction=0.0), 0.05, 1e-6)
+    cells = settled.contact.shape.grid.cells_y
+    most = 1 + int(np.log2(CELLS_Y[-1] / cells)) + 1
+    monkeypatch.setattr(module, "_on", on)
+    monkeypatch.setattr(module, "with_contact", lambda settled, contact, case: settled)
+    found = settled_tractions(case, settled, accuracy)
+    assert rows == [cells // 2 * 2**number for number in range(min(tried, most))]
+    assert found.is_settled == (tried < 9)
+    assert found.changes["force_x"] == pytest.approx(full * changes[len(rows) - 2])
+    assert "longitudinal_creepage" not in found.changes
