@@ -1,0 +1,143 @@
+"""Harmonics of the auxiliary bodies: stresses and displacements of one wavenumber along y meet elasticity's equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.overlapping import displacement, stress
+from contactstudy.overlapping.axial import AxialModes
+from contactstudy.overlapping.equations import EquationSet, coupling_core, inverse_square
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.single_mirror import SingleMirrorModes
+
+LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3
+RAY = np.exp(0.4j) * np.array([0.3, 1.1, 2.6])
+RANDOM = np.random.default_rng(0)
+WEIGHTS = RANDOM.standard_normal((8, 2)) + 1j * RANDOM.standard_normal((8, 2))
+MODES = {
+    "one end": AxialModes(np.inf, 0, np.zeros(0), RAY, np.ones(3, np.complex128)),
+    "even": AxialModes(LENGTH, 1, np.pi / LENGTH * np.array([0.0, 2.0]), RAY, np.ones(3, np.complex128)),
+    "odd": AxialModes(LENGTH, -1, np.pi / LENGTH * np.array([1.0, 3.0]), RAY, np.ones(3, np.complex128)),
+    "even, mirrored once": SingleMirrorModes(LENGTH, 1, np.zeros(0), RAY, np.ones(3, np.complex128)),
+    "odd, mirrored once": SingleMirrorModes(LENGTH, -1, np.zeros(0), RAY, np.ones(3, np.complex128)),
+}
+X, Z = np.array([0.3, 0.9, 1.4]), np.array([0.2, 0.8, 1.9])
+STEP = 1e-4
+Field = Callable[[FloatArray, FloatArray], FloatArray]
+
+
+def system_of(modes: AxialModes) -> EquationSet:
+    return EquationSet.build(modes, LATERAL, POISSON, 0.5, Resolution())
+
+
+def below(modes: AxialModes, field: Callable[..., FloatArray]) -> Field:
+    """Field of H under an equivalent load of two columns."""
+    system, load = system_of(modes), WEIGHTS[: modes.wavenumbers.size]
+    return lambda x, z: field(system, load, modes.cosine(x), modes.sine(x), z)
+
+
+def beside(
+    modes: AxialModes,
+    field: Callable[..., FloatArray],
+    depth: ComplexArray = RAY[:2],
+    load: ComplexArray = WEIGHTS[:2],
+) -> Field:
+    """Field of V under face loads of two columns."""
+    system = system_of(modes)
+    return lambda x, z: field(system, depth, load, x, z)
+
+
+def along(field: Field, axis: int) -> FloatArray:
+    """Derivative along x (0) or z (1) at the points."""
+    ahead, back = (field(X + step, Z) if axis == 0 else field(X, Z + step) for step in (STEP, -STEP))
+    return np.asarray((ahead - back) / (2 * STEP))
+
+
+FIELDS = (stress._beside_face_load, displacement._beside_face_load)
+BODIES = {
+    "below": (below, displacement._below_equivalent_load, stress._below_equivalent_load),
+    "beside": (beside, displacement._beside_face_load, stress._beside_face_load),
+}
+
+
+@pytest.mark.parametrize("name", MODES)
+@pytest.mark.parametrize("body", BODIES)
+def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name: str) -> None:
+    """What is even in y goes like ``cos(k y)``, what is odd like ``-sin(k y)``; displacements are times ``2 G``."""
+    of, displaced, stressed = BODIES[body]
+    moved, loaded = of(MODES[name], displaced), of(MODES[name], stressed)
+    (ux, uy, uz), over_x, over_z = moved(X, Z), along(moved, 0), along(moved, 1)
+    direct = np.array([over_x[0], -LATERAL * uy, over_z[2]])
+    normal = direct + POISSON / (1 - 2 * POISSON) * direct.sum(axis=0)
+    shear = 0.5 * np.array([LATERAL * ux + over_x[1], over_z[0] + over_x[2], over_z[1] + LATERAL * uz])
+    xx, yy, zz, xy, xz, yz = found = loaded(X, Z)
+    assert found == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(found).max())
+    sx, sz = along(loaded, 0), along(loaded, 1)
+    balance = (sx[0] - LATERAL * xy + sz[4], sx[3] + LATERAL * yy + sz[5], sx[4] - LATERAL * yz + sz[2])
+    assert np.abs(balance).max() < 1e-5 * np.abs(sx).max()
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
+    modes = MODES[name]
+    found = below(modes, stress._below_equivalent_load)(X, np.zeros(1))[:, :, 0]
+    load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
+    assert found[2] == pytest.approx(-load)
+    assert np.abs(found[4:]).max() < 1e-12 * np.abs(found).max()
+
+
+@pytest.mark.parametrize("name", MODES)
+def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_stress(name: str) -> None:
+    modes = MODES[name]
+    faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
+    found = beside(modes, stress._beside_face_load)(faces, Z)
+    kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
+    freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
+    if isinstance(modes, SingleMirrorModes):
+        # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
+        applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.applied(kappa)[:, None] * WEIGHTS[:2])
+        alone = SingleMirrorModes(1e3, 1, np.zeros(0), RAY, modes.weights)
+        assert beside(alone, stress._beside_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
+        assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
+    else:
+        assert np.abs(found[3:5]).max() < 1e-12 * np.abs(found).max()
+    assert found[0, 0] == pytest.approx(freed)
+    if modes.parity:
+        assert found[0, 1] == pytest.approx(modes.parity * freed)
+    # Cosines along z: neither shear nor a normal displacement is left on the top.
+    real, top = (RAY[:2].real + 0j, WEIGHTS[:2].real + 0j), np.zeros(1)
+    stressed, moved = (each(modes, of, *real) for each, of in zip([beside] * 2, FIELDS, strict=True))
+    assert np.abs(stressed(X, top)[4:]).max() < 1e-12 * np.abs(stressed(X, Z)).max()
+    assert np.abs(moved(X, top)[2]).max() < 1e-12 * np.abs(moved(X, Z)).max()
+
+
+def weighted(modes: AxialModes, load: Callable[[FloatArray], FloatArray]) -> ComplexArray:
+    """Weighted spectrum of a load on the top between the ends, by Gauss's rule."""
+    nodes, rule = np.polynomial.legendre.leggauss(80)
+    x = 0.5 * modes.length * (nodes + 1)
+    return np.asarray(modes.load_weights * (modes.cosine(x) @ (0.5 * modes.length * rule * load(x))))
+
+
+@pytest.mark.parametrize("name", ["even", "odd"])
+def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
+    """Per scaled face load, in the spectrum of the loads on H, mode by mode."""
+    modes = MODES[name]
+    depth = np.array([0.4, 1.7])
+    kappa = np.sqrt(depth**2 + LATERAL**2)
+    system = system_of(modes)
+    factor = np.real(modes.face_factor(kappa))
+    inverse = inverse_square(modes.wavenumbers, depth, LATERAL)
+    core = coupling_core(inverse, modes.wavenumbers, depth, LATERAL, POISSON)
+    found = modes.left_on_top(core, depth, LATERAL, POISSON)
+    for number in range(2):
+        one, own = np.ones((1, 1), np.complex128), depth[number : number + 1] + 0j
+
+        def load(x: FloatArray, own: ComplexArray = own, one: ComplexArray = one) -> FloatArray:
+            return np.asarray(stress._beside_face_load(system, own, one, x, np.zeros(1))[2, :, 0, 0])
+
+        expected = weighted(modes, load) * kappa[number] / factor[number]
+        assert found[: modes.discrete.size, number] == pytest.approx(expected[: modes.discrete.size])
