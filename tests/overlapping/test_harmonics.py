@@ -1,4 +1,4 @@
-"""Harmonics of the auxiliary bodies: stresses and displacements of one wavenumber along y meet elasticity's equations."""
+"""Harmonics of the auxiliary bodies: what one wavenumber along y moves and loads meets elasticity's equations."""
 
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name
     direct = np.array([over_x[0], -LATERAL * uy, over_z[2]])
     normal = direct + POISSON / (1 - 2 * POISSON) * direct.sum(axis=0)
     shear = 0.5 * np.array([LATERAL * ux + over_x[1], over_z[0] + over_x[2], over_z[1] + LATERAL * uz])
-    xx, yy, zz, xy, xz, yz = found = loaded(X, Z)
+    found = loaded(X, Z)
+    yy, xy, yz = found[[1, 3, 5]]
     assert found == pytest.approx(np.concatenate([normal, shear]), abs=1e-6 * np.abs(found).max())
     sx, sz = along(loaded, 0), along(loaded, 1)
     balance = (sx[0] - LATERAL * xy + sz[4], sx[3] + LATERAL * yy + sz[5], sx[4] - LATERAL * yz + sz[2])
