@@ -242,3 +242,8 @@ def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.
         sunk = operator(found.pressure)
         off = np.abs(unit * gap + sunk - found.motion[0])[found.pressure > 0].max() / np.ptp(sunk)
         assert off <= 2e-6
+
+
+@pytest.mark.parametrize(("slope", "part"), [(0.45, 0.45), (0.49, 0.49), (0.51, 1.0), (0.54, 1.0), (2.0, 1.0)])
+def test_all_of_a_change_is_taken_if_that_descends(slope: float, part: float) -> None:
+    assert _part_that_descends(np.ones(1), np.ones(1), np.array([-slope])) == pytest.approx(part)

@@ -7,7 +7,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact import coulomb
 from contactstudy.contact.coulomb import (
     CoulombProblem,
     CoulombSolution,
@@ -180,3 +181,36 @@ def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) 
         steps, applications = steps + found.steps, applications + found.applications
     assert steps <= most[0]
     assert applications <= most[1]
+
+
+def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
+    random = np.random.default_rng(0)
+    asked = problem(random.standard_normal((2, 3)), np.ones(3))
+    shares: list[float] = []
+
+    def noted(cells: BoolArray, share: float) -> BoolArray:
+        shares.append(share)
+        return _some(cells, share)
+
+    monkeypatch.setattr(coulomb, "_some", noted)
+    restless = replace(asked, relief=lambda traction: random.standard_normal(traction.shape), max_steps=80)
+    assert not solve_coulomb(restless).converged
+    steps = np.array(shares[::2])
+    assert steps[0] == steps.max() == 1.0
+    assert steps.min() < 2.0**-4
+    ratios = steps[1:] / steps[:-1]
+    assert set(ratios[steps[:-1] < 0.7].tolist()) <= {0.5, 1.0, 2.0}
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_prescribed_forces_are_met_to_the_tolerance_of_full_slidings(seed: int) -> None:
+    """However small the unit of the forces is, or large."""
+    random = np.random.default_rng(seed)
+    bound = random.uniform(0.2, 1.0, 24)
+    whole = problem(random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
+    for unit in (1e-6, 1.0, 1e6):
+        asked = replace(whole, works=unit * whole.works, resultants=unit * whole.resultants, tolerance=1e-3)
+        found = solve_coulomb(asked)
+        assert found.converged
+        assert np.abs(found.traction.sum(axis=1) - whole.resultants).max() <= 1e-3 * bound.sum()
