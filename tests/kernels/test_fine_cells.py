@@ -1,0 +1,168 @@
+"""Finer cells under a load: they carry its force wherever the body lies, with its images, in any unit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.fine_cells import PARTS_Y, REACH, WIDE, FineCells, ends_in_steps, seen_apart
+from contactstudy.kernels.smooth_load import SmoothLoad
+
+EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
+UNIFORM = np.linspace(0.0, 3.8, 10)
+LENGTH, PRESSURE = 2.0**-17, 2.0**37
+"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+
+
+def load_on(x: FloatArray, y: FloatArray) -> FloatArray:
+    """A contact's pressure, inclined, which is pressed at the first end of the body and not at the other."""
+    place = 1 - (y / 0.8) ** 2 - np.maximum((x[:, None] - 1.5) / 1.6, 0.0) ** 2
+    return np.asarray(np.sqrt(np.maximum(place, 0.0)) * (1 + 0.3 * x[:, None]))
+
+
+def fine(
+    *,
+    edges: FloatArray = EDGES,
+    place: float = 0.0,
+    unit: float = 1.0,
+    pressure: float = 1.0,
+    image: int = 1,
+    ends: int = 2,
+) -> FineCells:
+    """A load on a body with so many ends."""
+    grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
+    cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
+    extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
+    return FineCells(cells, grid, extent, image)
+
+
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("ends", [0, 1, 2])
+def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: FloatArray) -> None:
+    plain = fine(edges=edges, image=image, ends=ends)
+    for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
+        other = fine(edges=edges, image=image, ends=ends, place=place, unit=unit, pressure=pressure)
+        assert other.split.tolist() == plain.split.tolist()
+        assert other.parts == plain.parts
+        for name in ("x_edges", "edges", "steps"):
+            assert getattr(other, name) / unit - place == pytest.approx(getattr(plain, name), abs=1e-9), name
+        for found, expected in (
+            (other.gathered, plain.gathered),
+            (other.far(), plain.far()),
+            (other.cells, plain.cells),
+        ):
+            assert found / pressure == pytest.approx(expected, abs=1e-9)
+        z = np.array([0.0, 0.1, 0.5, 0.59, 0.61, 1.2, 1.3, 2.0])
+        assert other.near(unit * z).tolist() == plain.near(z).tolist()
+        for (found, grid), (expected, own) in zip(
+            (other.for_ends(), other.near_top(0.03 * unit, split=True)),
+            (plain.for_ends(), plain.near_top(0.03, split=True)),
+            strict=True,
+        ):
+            assert found / pressure == pytest.approx(expected, abs=1e-9)
+            assert grid.x_edges / unit - place == pytest.approx(own.x_edges, abs=1e-9)
+            assert np.array(grid.y_range) / unit == pytest.approx(own.y_range)
+
+
+@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
+def test_cells_are_refined_down_to_three_of_them(edges: FloatArray) -> None:
+    own = fine(edges=edges)
+    assert own.split.any()
+    size = max(own.grid.dy, own.grid.dx) if own.grid.uniform else own.grid.dy
+    assert own.near(size * REACH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [True, True, False, False]
+    even = FineCells(np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape), own.grid)
+    assert not even.split.any()
+    assert even.near(own.grid.dy * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
+
+
+@pytest.mark.parametrize("image", [1, -1])
+def test_images_carry_the_mirrored_load(image: int) -> None:
+    """On cells, on columns between any edges, and where a load is gathered with its moments."""
+    own = fine(image=image)
+    cells = own.grid.cells_x
+    before, between, behind = own.gathered[:cells], own.gathered[cells : 2 * cells], own.gathered[2 * cells :]
+    # The outermost images have no neighbour to send half of their moment to.
+    assert before[2:] == pytest.approx(image * between[::-1][2:])
+    assert behind[:-2] == pytest.approx(image * between[::-1][:-2])
+    inside = np.array([0.1, 0.3, 0.35, 0.8])
+    expected = own.columns([inside])
+    assert own.columns([-inside[::-1]])[::-1] == pytest.approx(image * expected)
+    beyond = np.array([3.0, 3.1, 3.5, 3.75])
+    assert own.columns([7.6 - beyond[::-1]])[::-1] == pytest.approx(image * own.columns([beyond]))
+    # Over an end: half of it is the image.
+    assert own.columns([np.array([-0.2, 0.0, 0.2])]) == pytest.approx(np.stack([image * own.cells[0], own.cells[0]]))
+    assert own.columns([inside, beyond]) == pytest.approx(np.vstack([expected, own.columns([beyond])]))
+
+
+@pytest.mark.parametrize("ends", [0, 1, 2])
+def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
+    """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
+    own = fine(ends=ends)
+    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges)
+    forces, middles = own.gathered * np.diff(own.edges)[:, None], 0.5 * (own.edges[1:] + own.edges[:-1])
+    count = 1 + (ends > 0) + (ends > 1)
+    whole = (own.cells * own.grid.widths[:, None]).sum(axis=0)
+    assert forces.sum(axis=0) == pytest.approx(count * whole)
+    if not ends:
+        _, moment = smooth.integrals(own.grid.x_edges[-1:])
+        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(moment[:, 0])
+    elif ends == 1:  # about the end the images' moments are opposite
+        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(np.zeros(whole.size), abs=1e-9)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03, -0.03, 0.07, -0.1, 0.1])
+@pytest.mark.parametrize("split", [True, False])
+def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float, *, split: bool) -> None:
+    own = fine(edges=UNIFORM, ends=1)
+    cells, grid = own.near_top(offset, split=split)
+    step = own.grid.dy / PARTS_Y
+    assert grid.dy == pytest.approx(step)
+    place = (own.grid.y + offset - grid.y_range[0]) / step - 0.5
+    assert place == pytest.approx(np.round(place), abs=1e-9)
+    assert (np.round(place) >= 0).all()
+    assert grid.y_range[0] <= own.grid.y_range[0] + 1e-12
+    assert grid.y_range[1] >= own.grid.y_range[1] - 1e-12
+    assert grid.cells_y - PARTS_Y * own.grid.cells_y == (abs(offset) in (0.03, 0.07, 0.1))
+    force = cells.sum(axis=1) * step * grid.widths
+    expected = own.cells.sum(axis=1) * own.grid.dy * own.grid.widths
+    assert force.sum() == pytest.approx(expected.sum())
+    whole = force.reshape(own.grid.cells_x, -1).sum(axis=1)
+    assert whole == pytest.approx(expected, rel=0.05, abs=0.02 * expected.max())
+    moment = (cells.T * grid.widths).sum(axis=1) @ grid.y * step
+    assert moment == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("narrow", [0.0, 0.3])
+def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: float) -> None:
+    random = np.random.default_rng(0)
+    for _ in range(200):
+        edges = 5.0 + np.cumsum(np.cumprod(random.uniform(0.4, 2.5, 12)))
+        x = float(random.uniform(edges[0], edges[-1]))
+        widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
+        low, high = seen_apart(edges, x, narrow)
+        first = last = int(distance.argmin())
+        while first > 0 and widths[first - 1] > WIDE * distance[first - 1]:
+            first -= 1
+        while last + 1 < widths.size and widths[last + 1] > WIDE * distance[last + 1]:
+            last += 1
+        own = [number for number in range(first, last + 1) if widths[number] > narrow]
+        assert (low, high) == ((own[0], own[-1] + 1) if own else (low, low))
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_a_load_that_ends_in_a_step_counts_as_uniform_in_each_cell(unit: float) -> None:
+    """If the step is not small against the largest load; from either side, and at the grid's edge too."""
+    for cells, stepped in (
+        ([0.0, 1.0, 1.0, 0.0], True),
+        ([0.0, 1.0, 0.85, 0.0], True),
+        ([0.0, 0.5, 1.0, 0.7, 0.0], False),
+        ([0.0, 0.5, 1.0, 0.9], True),
+        ([0.9, 1.0, 0.5, 0.0], True),
+        ([0.0, 0.2, 0.2, 1.0, 0.5, 0.0], False),
+        ([0.0, 0.4, 0.4, 1.0, 0.5, 0.0], True),
+        ([-0.9, -1.0, -0.5, 0.0], True),
+    ):
+        assert ends_in_steps(unit * np.array([cells])) == stepped
