@@ -1,0 +1,103 @@
+"""The ends' part of the displacements: seen from either end, in any unit, and resolved as the cells ask."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid, Material
+from contactstudy.bodies.models import FreedEnds
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load, Response
+from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.surface import EndCorrection
+
+MATERIAL = Material(1.0, 0.3)
+EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])
+RESPONSES = tuple(Response(displacement, load) for displacement in Load for load in Load)
+LENGTH = 2.0**-17
+"""A unit of length, a power of two."""
+
+
+def request(
+    edges: FloatArray, *, unit: float = 1.0, ends: int = 2, responses: tuple[Response, ...] = RESPONSES
+) -> EndRequest:
+    grid = Grid.between(unit * edges, (-unit, unit), 6)
+    freed = FreedEnds(unit * float(edges[-1]) if ends == 2 else np.inf)
+    return EndRequest.of(freed, MATERIAL, grid, responses, 24.0 * unit, Resolution())
+
+
+def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: int = 2) -> FloatArray:
+    """Displacements averaged over cells from forces on cells: array (wavenumber, cell, cell)."""
+    total = np.zeros((7, edges.size - 1, edges.size - 1))
+    end_kernel(request(edges, unit=unit, ends=ends)).add_to(total, response, unit * edges)
+    return total
+
+
+@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+@pytest.mark.parametrize("ends", [1, 2])
+def test_the_unit_of_length_decides_nothing(ends: int, response: Response) -> None:
+    """A force per area of the unit; transformed along y, displacements over forces per length are without unit."""
+    plain, other = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=LENGTH, ends=ends)
+    assert other == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
+
+
+@pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
+def test_mirrored_columns_have_the_mirrored_kernel(response: Response) -> None:
+    """The other end sees the same: what a reflection turns round changes its sign."""
+    sign = response.displacement.sign_x * response.load.sign_x
+    mirrored = EDGES[-1] - EDGES[::-1]
+    found, expected = kernel(mirrored, response), kernel(EDGES, response)
+    assert found == pytest.approx(sign * expected[:, ::-1, ::-1], abs=1e-6 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("ends", [1, 2])
+def test_loads_and_displacements_are_reciprocal(ends: int) -> None:
+    """Work of one load on what another displaces; the factor i that kernels lack is conjugated."""
+    for first in Load:
+        for second in Load:
+            there, back = (
+                kernel(EDGES, Response(first, second), ends=ends),
+                kernel(EDGES, Response(second, first), ends=ends),
+            )
+            sign = -1 if (first.sign_y < 0) != (second.sign_y < 0) else 1
+            assert back.transpose(0, 2, 1) == pytest.approx(sign * there, abs=2e-4 * np.abs(there).max())
+
+
+@pytest.mark.parametrize("cells", [6, 7])
+@pytest.mark.parametrize("direction", Load)
+def test_the_correction_on_uniform_cells_is_the_kernel_between_columns(direction: Load, cells: int) -> None:
+    """Folded about the middle, transformed and back: an even and an odd number of cells."""
+    edges = np.linspace(0.0, 2.4, cells + 1)
+    grid = Grid.between(edges, (-1.0, 1.0), 6)
+    ends = end_kernel(request(edges))
+    correction = EndCorrection.on(grid, ends)
+    random = np.random.default_rng(0)
+    transforms = {load: random.standard_normal((cells, 7)) + 1j * random.standard_normal((cells, 7)) for load in Load}
+    gathered = {load: correction.gathered(load, each) for load, each in transforms.items()}
+    found = correction.displaced(direction, gathered, cells)
+    expected = np.zeros((cells, 7), np.complex128)
+    for load, each in transforms.items():
+        response = Response(direction, load)
+        factor = 1.0 if response.sign_y > 0 else 1j
+        between = np.zeros((7, cells, cells))
+        ends.add_to(between, response, edges)
+        expected += factor * np.einsum("kij,jk->ik", between, each) * grid.dx
+    assert found == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None:
+    """Uniform cells by their width; graded ones by a cell along y, or an eighth of it if cells at an end are narrow."""
+    dy = 2.0 / 6
+    assert request(np.linspace(0.0, 2.4, 9)).finest == pytest.approx(0.3)
+    narrow = np.array([0.0, 0.1, 0.5, 1.5, 2.6, 3.7])
+    wide = np.array([0.0, 0.7, 1.4, 1.6, 2.3, 3.0])
+    assert request(narrow).finest == request(narrow[-1] - narrow[::-1]).finest == pytest.approx(dy / 8)
+    assert request(wide).finest == pytest.approx(dy)
+    assert request(narrow, ends=1).finest == pytest.approx(dy / 8)
+    assert request(narrow[-1] - narrow[::-1], ends=1).finest == pytest.approx(dy)
+    assert request(EDGES).resolution.lateral_nodes == Resolution().lateral_nodes + 2
+    for unit in (LENGTH, 2.0**10):
+        assert request(narrow, unit=unit).finest / unit == pytest.approx(dy / 8)
+        assert request(wide, unit=unit).finest / unit == pytest.approx(dy)
