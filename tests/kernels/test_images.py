@@ -1,0 +1,56 @@
+"""Sums over all mirror images against the images one by one, in any unit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.images import cell_kernel, few_points, image_kernel, mirrored_kernel
+
+
+def corner_at(depth: float):  # type: ignore[no-untyped-def]
+    """Corner function of ``h / R**3``: a load's share below it, which decays."""
+
+    def corner(x: FloatArray, y: FloatArray) -> FloatArray:
+        return np.asarray(np.arctan2(x * y, depth * np.sqrt(x * x + y * y + depth * depth)))
+
+    return corner
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
+@pytest.mark.parametrize("length", [0.5, 2.0, 12.0])
+def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
+    dx, dy = 0.25 * unit, 0.2 * unit
+    x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)
+    y = dy * np.arange(-12, 13.0)
+    corner = corner_at(0.3 * unit)
+    numbers = np.concatenate([-np.arange(1500, 0, -1), np.arange(1, 1501)])
+    exact = np.zeros((x.size, y.size))
+    for number in numbers:
+        exact += cell_kernel(corner, x - 2 * length * unit * number, y, dx, dy)
+    own = cell_kernel(corner, x, y, dx, dy)
+    found = mirrored_kernel(corner, x, y, dx, dy, length * unit)
+    # Those beyond 1500 periods: a line of the rest, evenly spread, on either side.
+    rest = 0.3 * 0.25 * 0.2 / (2 * length) / (3001 * length) ** 2
+    assert found == pytest.approx(own + exact + rest, abs=5e-6 * np.abs(own).max())
+    beyond = image_kernel(corner, x, y, dx, dy, length * unit, nearest=4 * length * unit)
+    near = sum(cell_kernel(corner, x - shift * length * unit, y, dx, dy) for shift in (-2, 2))
+    assert found - own == pytest.approx(beyond + near, abs=4e-6 * np.abs(own).max())
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+@pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
+def test_few_points_tell_what_loads_far_away_do(unit: float, middle: float) -> None:
+    at = unit * (middle + np.linspace(-2.0, 2.0, 200))
+    points, matrix = few_points(at, 2.0 * unit, 1e-6)
+    assert matrix is not None
+    assert points.size < 20
+    assert points.min() >= at.min()
+    assert points.max() <= at.max()
+    for load in (middle - 4.0, middle + 4.0):
+        assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(1 / np.abs(at / unit - load), abs=1e-6)
+    few, same = few_points(at[:4], 2.0 * unit, 1e-12)
+    assert same is None
+    assert few is not None
+    assert np.array_equal(few, at[:4])
