@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy.overlapping.panels import graded_interpolation
+from contactstudy.overlapping.panels import cell_moments, graded_interpolation, graded_positions
 
 
 @pytest.mark.parametrize("finite", [True, False])
@@ -27,3 +27,45 @@ def test_few_positions_and_those_on_the_ends_are_left_alone() -> None:
     positions, matrix = graded_interpolation(np.linspace(0.0, 1.0, 401), 1.0, 8) or (np.empty(0), np.empty(0))
     assert matrix[[0, -1], -2:].tolist() == [[1.0, 0.0], [0.0, 1.0]]
     assert positions[-2:].tolist() == [0.0, 1.0]
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
+def test_integrals_over_any_cells_are_exact_for_polynomials_in_any_unit(unit: float) -> None:
+    """Of the degree that the positions of a panel hold; parts of cells outside the panels count nothing."""
+    random = np.random.default_rng(0)
+    edges, positions = graded_positions(4.0 * unit, 0.1 * unit, 6)
+    assert edges[0] == 0.0
+    assert edges[-1] == pytest.approx(4.0 * unit)
+    assert edges[1] == pytest.approx(0.0625 * unit)
+    assert edges[2:] / edges[1:-1] == pytest.approx(2.0)
+    for _ in range(5):
+        cells = np.sort(random.uniform(-0.5, 4.5, 12))
+        moments = cell_moments(edges, positions, unit * cells) / unit
+        inside = np.clip(cells, 0.0, 4.0)
+        for power in range(6):
+            expected = np.diff(inside ** (power + 1)) / (power + 1)
+            assert (positions / unit) ** power @ moments == pytest.approx(expected, abs=1e-9 * 4.0**power)
+
+
+@pytest.mark.parametrize("length", [3.0, np.inf])
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0])
+def test_interpolation_from_either_end_in_any_unit(length: float, unit: float) -> None:
+    x = np.sort(np.append(np.random.default_rng(0).uniform(0.0, 3.0, 600), [0.0, 3.0]))
+    found = graded_interpolation(unit * x, unit * length, 8)
+    assert found is not None
+    positions, matrix = found
+    assert positions.size < x.size
+
+    def near_ends(at: np.ndarray) -> np.ndarray:
+        return np.asarray(1 / (at + 0.02) + (1 / (3.02 - at) if np.isfinite(length) else 0.0))
+
+    assert matrix @ near_ends(positions / unit) == pytest.approx(near_ends(x), rel=1e-4)
+    assert np.isin(unit * x[[0]], positions).all()
+    if np.isfinite(length):
+        assert np.isin(unit * x[[-1]], positions).all()
+        assert positions.max() <= unit * 3.0
+    # Never more positions than there were.
+    for count in range(2, 120, 7):
+        few = np.linspace(0.0, 3.0, count)
+        other = graded_interpolation(unit * few, unit * length, 8)
+        assert other is None or other[0].size < count

@@ -1,0 +1,108 @@
+"""A load as the free ends are asked to answer it: columns, parts, wavenumbers along y, in any unit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid, InvalidInputError
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, lateral_panels
+from contactstudy.overlapping.problem import FIRST, THINNEST, EndProblem, parity_parts
+from contactstudy.overlapping.quadrature import Resolution
+
+EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])
+UNIT = 2.0**-17
+
+
+def asked(
+    *,
+    unit: float = 1.0,
+    edges: FloatArray = EDGES,
+    length: float = 2.4,
+    load: Load = Load.NORMAL,
+    pressure: float = 1.0,
+) -> EndProblem:
+    """A load on the cells from -0.5 to 0.75 along y, of 0.25 each."""
+    grid = Grid.between(unit * edges, (-unit, unit), 8)
+    cells = (
+        pressure * np.where((grid.y / unit > -0.5) & (grid.y / unit < 0.75), 1.0, 0.0) * (1 + np.arange(6.0))[:, None]
+    )
+    return EndProblem(unit * length, 0.3, cells, (load,), grid, Resolution())
+
+
+@pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
+@pytest.mark.parametrize("reference", [None, 24.0])
+@pytest.mark.parametrize("length", [2.4, np.inf])
+def test_wavenumbers_along_y_follow_the_load_and_the_points(load: Load, reference: float | None, length: float) -> None:
+    """From a part of the body's length, or of what is loaded and looked at, up to half a cell."""
+    y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
+    alone = FIRST if reference is None else ALONE[poles]
+    for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
+        # Loaded up to 0.75, looked at up to 1.5.
+        first = alone / min(length, 4 * max(2.4, 0.75 + 1.5))
+        last = Resolution().lateral_reach / finest
+        expected = lateral_panels(first, 0.75 + 1.5, last, Resolution(), reference, poles)
+        for unit in (1.0, UNIT):
+            found = asked(unit=unit, load=load, length=length).panels(
+                unit * y, unit * shortest, None if reference is None else unit * reference
+            )
+            assert len(found) == len(expected)
+            for one, other in zip(found, expected, strict=True):
+                assert unit * one.nodes == pytest.approx(other.nodes)
+                assert unit * one.fine == pytest.approx(other.fine)
+                assert one.poles == other.poles
+
+
+def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> None:
+    far = asked(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
+    assert far[0].nodes.max() < FIRST / (4 * 20.75) < far[1].nodes.max()
+
+
+def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
+    for unit in (1.0, UNIT):
+        own = asked(unit=unit)
+        edges, cells = own.columns
+        assert edges + edges[::-1] == pytest.approx(edges[-1])
+        assert (edges[0], edges[-1]) == (0.0, own.length)
+        # 0.2, 0.5, 1.0, 1.7, 2.1 and their images 0.3, 0.7, 1.4, 1.9, 2.2
+        assert edges / unit == pytest.approx(np.array([0, 0.2, 0.3, 0.5, 0.7, 1, 1.4, 1.7, 1.9, 2.1, 2.2, 2.4]))
+        middles = 0.5 * (edges[1:] + edges[:-1]) / unit
+        assert np.array_equal(cells, own.cells[np.searchsorted(EDGES, middles) - 1])
+    # Edges whose images differ by rounding only are one.
+    nearly = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
+    edges, cells = asked(edges=nearly).columns
+    assert edges == pytest.approx(np.array([0, 0.2, 0.4, 0.7, 1.2, 1.7, 2.0, 2.2, 2.4]))
+    assert cells.shape[0] == edges.size - 1
+    whole, _ = asked(edges=EDGES, length=np.inf).columns
+    assert np.array_equal(whole, EDGES)
+
+
+@pytest.mark.parametrize("sign_x", [1, -1])
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -> None:
+    """Under a load that its image reverses the even part is odd; what is negligible is left out."""
+    cells = unit * np.random.default_rng(0).random((6, 4))
+    parts = parity_parts(cells, sign_x)
+    assert set(parts) == {1, -1}
+    assert sum(parts.values()) == pytest.approx(cells)
+    for parity, part in parts.items():
+        assert part[::-1] == pytest.approx(sign_x * parity * part)
+    even = cells + cells[::-1]
+    assert set(parity_parts(even, sign_x)) == {sign_x}
+    assert set(parity_parts(even * (1 + 1e-9 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
+    assert set(parity_parts(even * (1 + 1e-5 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
+
+
+def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:
+    """Five cells of 0.25 are loaded, wherever they lie."""
+    own = asked()
+    for shift in (0, 1, -2):
+        cells = np.roll(own.cells, shift, axis=1)
+        replace(own, cells=cells, length=1.001 * THINNEST * 1.25)
+        with pytest.raises(InvalidInputError, match=r"width of the contact, 1\.25 m"):
+            replace(own, cells=cells, length=0.999 * THINNEST * 1.25)
+    replace(own, cells=np.zeros(own.cells.shape), length=1e-9)
