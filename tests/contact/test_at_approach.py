@@ -119,7 +119,7 @@ def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() ->
     depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
     assert _first_guess(BALL) == pytest.approx(part * depth.mean() * (stop - start), rel=0.01)
     # Of a contact between two slices: the least load that a case may have, or a little more.
-    tilted = replace(BALL, tilt=4e-4)
+    tilted = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
     least = _first_guess(replace(tilted, approach=tilted.first_touch + 1e-11))
     assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * SMALLEST_HALF_WIDTH * RADIUS)
 

@@ -52,6 +52,7 @@ def holds(result: xr.Dataset) -> None:
     assert float(slip.where(stick, 0.0).max()) == 0.0
     slips = (~stick) & (result.pressure > 0)
     assert float(np.abs(size - bound).where(slips, 0.0).max()) < 1e-6 * largest
+    assert float(slip.where(slips, 1.0).min()) > 0.0
     along = result.traction_x * result.slip_x + result.traction_y * result.slip_y
     assert float(np.abs(along - size * slip).where(slips, 0.0).max()) <= 1e-5 * largest * float(slip.max())
     for name in ("bound_error", "slip_error", "force_error"):

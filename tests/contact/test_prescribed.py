@@ -21,6 +21,7 @@ from contactstudy import (
     solve_contact,
 )
 from contactstudy.case.roughness import self_affine
+from contactstudy.contact.prescribed import Prescribed
 
 STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 65e-6
@@ -280,3 +281,14 @@ def test_several_approaches_are_a_dimension(on_cells) -> None:
             solve_contact(body, gap, approach=wrong)
     with pytest.raises(InvalidInputError, match="after"):
         solve_contact(body, gap, approach=steps, after=found)
+
+
+def test_levers_are_over_the_largest() -> None:
+    for place in (0.0, 5.0):
+        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
+        asked = Prescribed(3.0, place + 1.0)
+        assert asked.largest_arm(grid) == pytest.approx(2.0)
+        found = asked.resultants(grid)
+        assert found.lever is not None
+        assert found.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
+        assert found.total == pytest.approx(3.0 / grid.cell_area)

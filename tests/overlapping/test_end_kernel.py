@@ -101,3 +101,21 @@ def test_the_kernel_is_resolved_as_finely_as_the_cells_at_the_ends_ask() -> None
     for unit in (LENGTH, 2.0**10):
         assert request(narrow, unit=unit).finest / unit == pytest.approx(dy / 8)
         assert request(wide, unit=unit).finest / unit == pytest.approx(dy)
+
+
+def test_wavenumbers_along_y_reach_as_far_as_the_cells_along_y_ask() -> None:
+    """Also where cells along x are wide: with finer quadratures the kernel is the same."""
+    edges = np.linspace(0.0, 6.0, 5)
+    usual = request(edges, responses=(Response(Load.NORMAL, Load.NORMAL),))
+    assert usual.finest > 4 * usual.dy
+    found, finer = (
+        np.sum(
+            [
+                each.moments(edges)[0].T @ samples @ each.moments(edges)[0]
+                for samples in each.samples[usual.responses[0]]
+            ],
+            axis=0,
+        )
+        for each in (end_kernel(usual), end_kernel(usual._replace(finest=usual.dy)))
+    )
+    assert found == pytest.approx(finer, abs=1e-3 * np.abs(finer).max())

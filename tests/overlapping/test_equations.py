@@ -17,6 +17,7 @@ from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_squa
 from contactstudy.overlapping.field import Place
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
 from contactstudy.overlapping.stress import end_stress
 
 
@@ -109,3 +110,19 @@ def test_wavenumbers_in_other_units(length: float) -> None:
             assert there.depth == pytest.approx(1e3 * system.depth)
             assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
             assert there.scale == pytest.approx(system.scale)
+            assert system.depth[-1] > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
+            spectrum = np.ones((modes.wavenumbers.size, 1), np.complex128)
+            given = {"loads": (Load.NORMAL,), "shortest": shortest, "resolution": Resolution()}
+            reached = abs(system.auxiliary_loads(spectrum, **given).depth[-1])
+            assert reached > 0.5 * max(Resolution().ray_reach / shortest, 4 * lateral)
+
+
+def test_wavenumbers_of_loads_that_are_mirrored_once_reach_as_far() -> None:
+    for shortest, lateral in ((0.02, 0.7), (200.0, 4.0)):
+        for modes in modes_between_ends(3.0, lateral, shortest, Resolution(), mirrored_once=True):
+            assert modes.discrete.size == 0
+            assert abs(modes.ray[-1]) > 0.5 * max(Resolution().reach / shortest, 4 * lateral)
+    for lateral, mirrored_once in ((0.7, False), (7.0, True), (7.0, False)):
+        found = modes_between_ends(3.0, lateral, 0.02, Resolution(), mirrored_once=mirrored_once)
+        assert not any(isinstance(modes, SingleMirrorModes) for modes in found)
+        assert len(found) == (2 if lateral < 1 else 1)
