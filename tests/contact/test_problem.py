@@ -184,3 +184,32 @@ def test_a_first_guess_from_coarser_cells_is_almost_the_solution(*, graded: bool
     off = (grid.weights * np.abs(guess - found)).sum() / (grid.weights * found).sum()
     assert off < 0.03
     assert ((guess > 0) != (found > 0)).sum() < 0.05 * (found > 0).sum()
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0])
+@pytest.mark.parametrize("friction", [0.4, 1.0, 1.5])
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
+    tolerance: float, friction: float, unit: float
+) -> None:
+    """Of the displacement's variation, in any unit: strong friction settles slowly."""
+    grid = Grid((-1.5 * unit, 1.5 * unit), (-1.5 * unit, 1.5 * unit), 16, 16)
+    body = HalfSpace(material=Material(0.91, 0.0))
+    own = surface_operator(OperatorRequest(body, grid, LOADS))
+    bent: list[FloatArray] = []
+
+    class Noting(Counting):
+        def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
+            found = own(loads)
+            if Load.ALONG_Y in loads:
+                bent.append(found)
+            return found
+
+    operator = Noting(grid)
+    operator.own = own
+    gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2) / unit
+    asked = ContactProblem(grid, gap, Resultants(0.05 * unit**2 / grid.cell_area), friction, tolerance, 500)
+    found = solve_coupled(operator, asked)
+    assert found.converged
+    moved = float(np.ptp((bent[-1] - bent[-2])[found.pressure > 0]))
+    assert moved <= 0.55 * tolerance * float(np.ptp(own({Load.NORMAL: found.pressure})))

@@ -469,7 +469,10 @@ def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
     """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
     body = finite(1.5e-3)
     case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
-    room = _axial_shape(case).room
+    shape = _axial_shape(case)
+    room = shape.room
+    assert shape.depth == pytest.approx(case.hertz_half_width**2 / (2 * RADIUS))
+    assert (shape.start, shape.stop) == pytest.approx((max(distance, 0.0), min(distance + 1e-3, 1.5e-3)))
     assert room == pytest.approx((max(distance, 0.0) if distance > 1e-12 else 0.0, 0.5e-3 - distance))
     assert room[0] == 0.0 or distance > 1e-12
 
