@@ -6,9 +6,17 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_layers import EvenOffsets, Layer, gathered_far
-from contactstudy.kernels.columns_seen import AlongY, _Surroundings, _surroundings, common_step
+from contactstudy.kernels.columns_seen import (
+    AlongY,
+    SeenRequest,
+    _Surroundings,
+    _surroundings,
+    columns_seen,
+    common_step,
+)
 from contactstudy.kernels.fine_cells import FineCells, seen_apart
 
 EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])
@@ -129,7 +137,7 @@ def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts
     assert common_step(y[:1], 0.25) is None
 
 
-@pytest.mark.parametrize("offset", [0.0, 0.03, 0.1, -0.04, 0.15, 0.35])
+@pytest.mark.parametrize("offset", [0.0, 0.03, 0.1, -0.04, 0.15, 0.35, -0.052, 0.048])
 @pytest.mark.parametrize("span", [1.6, 1.55])
 def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) -> None:
     places, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
@@ -191,3 +199,34 @@ def test_offsets_about_zero_are_evaluated_on_one_side() -> None:
         values = np.stack([np.cos(found.along_y), np.sin(found.along_y)])[:, None, None, :]
         both = found.on_both_sides(values, np.array([False, True]))[:, 0, 0]
         assert both == pytest.approx(np.stack([np.cos(offsets), np.sin(offsets)]))
+
+
+@pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
+def test_no_column_reaches_beyond_those_that_it_replaces(x: float) -> None:
+    """Beside the first and the last edge of a load without images there is no room for narrow ones."""
+    own = fine(ends=0)
+    each = around(x, own)
+    assert (each.inserted[0], each.inserted[-1]) == (own.edges[each.lowest], own.edges[each.highest])
+    assert (np.diff(each.inserted) > 0).all()
+
+
+@pytest.mark.parametrize("added", [True, False])
+def test_what_points_see_does_not_depend_on_the_unit(*, added: bool) -> None:
+    found = []
+    for unit in (1.0, UNIT):
+        cells = fine(unit=unit)
+        x, y, z = np.array([0.3, 1.3, 2.9]), np.array([-0.1, 0.0, 0.3]), np.linspace(0.01, 6.0, 30)
+        whole = np.zeros(cells.grid.shape)
+        whole[:, cells.first : cells.first + cells.cells.shape[1]] = cells.cells
+        axes = ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)
+        found.append(columns_seen(SeenRequest(ArrayKey(whole), cells.grid, cells._extent, 1, axes, added)))
+    plain, other = found
+    assert plain.depths == other.depths
+    assert (plain.depths == 0) == added
+    assert len(plain.layers) == len(other.layers)
+    for (near, sides), (same, alike) in zip(plain.jumps, other.jumps, strict=True):
+        for one, two in zip(near, same, strict=True):
+            assert two.edges / UNIT == pytest.approx(one.edges, abs=1e-9)
+        assert [[jumps.edges.size for jumps in side] for side in sides] == [
+            [jumps.edges.size for jumps in side] for side in alike
+        ]

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.smooth_load import SmoothLoad, sent
+from contactstudy.kernels.smooth_load import SmoothLoad, _mean, _other_face, sent
 
 
 def semicircle_integral(y: FloatArray) -> FloatArray:
@@ -200,3 +200,23 @@ def test_a_root_that_is_cut_off_ends_in_its_own_value(factor: float) -> None:
 def test_a_load_that_is_cut_off_does_not_reach_behind_its_last_cell() -> None:
     smooth = SmoothLoad.of(np.array([[3.0, 2.2, 1.75, 0.0, 0.0]]), np.arange(6.0), spilling=True)
     assert smooth.means(np.arange(6.0))[0, 3:].tolist() == [0.0, 0.0]
+
+
+@pytest.mark.parametrize("part", [0.05, 0.2, 0.45, 0.8])
+def test_a_load_may_end_in_the_last_cell_of_a_row(part: float) -> None:
+    """With little force in it, which it shares with the cell before: as if there were more cells."""
+    edges = np.arange(10.0)
+    end = 8.0 + part
+    exact = (end**1.5 - np.maximum(end - edges, 0.0) ** 1.5) / 1.5
+    cells = np.diff(exact)[None, :]
+    for load in (cells, -cells[:, ::-1]):
+        own = SmoothLoad.of(load, edges)
+        longer = SmoothLoad.of(np.pad(load, ((0, 0), (1, 1))), np.arange(-1.0, 11.0))
+        for name in ("first", "middle", "last", "knot"):
+            assert getattr(own, name) == pytest.approx(getattr(longer, name)[:, 1:-1]), name
+        assert own.cell_means.sum() == pytest.approx(load.sum())
+
+
+def test_the_other_end_of_a_function_whose_square_is_linear() -> None:
+    first, last = np.random.default_rng(0).uniform(0.0, 2.0, (2, 50))
+    assert _other_face(_mean(first, last), first) == pytest.approx(last, abs=1e-12)
