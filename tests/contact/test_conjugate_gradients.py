@@ -107,7 +107,7 @@ def test_restored_pressures_have_the_resultants_and_stay_positive(rng: np.random
     assert ((found > 0) == (pressure > 0)).all()
     # What has the resultants stays, and a small moment is taken away by a factor that is linear in the arm.
     assert resultants.restored(found) == pytest.approx(found, rel=1e-6)
-    nearly = found * (1 + 0.1 * resultants.lever)
+    nearly = 1e3 * found * (1 + 0.1 * resultants.lever)
     again = resultants.restored(nearly)
     met(resultants, again)
     factor = (again / np.where(found > 0, nearly, 1.0)).max(axis=1)
@@ -247,3 +247,26 @@ def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.
 @pytest.mark.parametrize(("slope", "part"), [(0.45, 0.45), (0.49, 0.49), (0.51, 1.0), (0.54, 1.0), (2.0, 1.0)])
 def test_all_of_a_change_is_taken_if_that_descends(slope: float, part: float) -> None:
     assert _part_that_descends(np.ones(1), np.ones(1), np.array([-slope])) == pytest.approx(part)
+
+
+@pytest.mark.parametrize("unit", [1e-12, 1.0, 1e12])
+def test_cells_that_enter_press_as_their_overlap_asks_in_any_unit(unit: float) -> None:
+    gap = (GRID.x[:, None] - 1.5) ** 2 / 4 + GRID.y**2 / 2 - 0.3
+    start = np.where(np.hypot(GRID.x[:, None] - 1.5, GRID.y) < 0.3, 1.0, 0.0)
+    begun = state(unit * gap, Resultants(None), unit * start)
+    opening = begun.opening()
+    step, along, _ = begun.search(np.where(begun.contact, opening, 0.0))
+    closed = ~begun.contact & (opening < 0)
+    begun.change_area(begun.pressure - step * begun.direction, closed, opening, step, along)
+    assert begun.pressure[closed].sum() > 0.05 * begun.pressure.sum()
+    plain = state(gap, Resultants(None), start)
+    assert begun._on_both_sides(unit * start) == pytest.approx(unit * plain._on_both_sides(start))
+    tilting = state(unit * rough_gap(np.random.default_rng(0), False), Resultants(50.0 * unit, LEVER), unit * start)
+    one_sided = np.where(LEVER < -0.3, 1.0, 0.0) * np.ones(GRID.shape)
+    assert tilting._on_both_sides(unit * one_sided) == pytest.approx(unit * (one_sided + 0.1))
+    if unit == 1.0:
+        return
+    opening = plain.opening()
+    step, along, _ = plain.search(np.where(plain.contact, opening, 0.0))
+    plain.change_area(plain.pressure - step * plain.direction, closed, opening, step, along)
+    assert begun.pressure / unit == pytest.approx(plain.pressure, rel=1e-6)

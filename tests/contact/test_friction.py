@@ -14,7 +14,7 @@ from contactstudy.cache import ArrayKey
 from contactstudy.contact import friction
 from contactstudy.contact.contact import Settings, Shape
 from contactstudy.contact.continuation import solve_continued
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess
+from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.fields.surface import SurfaceOperator
@@ -159,6 +159,51 @@ def test_applications_and_steps_are_counted(name: str, monkeypatch: pytest.Monke
 def test_a_warning_points_at_who_asked() -> None:
     found = rubbed(MOTIONS["all"], "uniform")
     unsettled = replace(found, tractions=replace(found.tractions, converged=False))
-    with pytest.warns(ConvergenceWarning, match="stick and slip did not converge") as said:
-        unsettled.warn_unless_converged(1)
-    assert said[0].filename == __file__
+    unpressed = replace(found, contact=replace(found.contact, converged=False))
+    for each, reason in ((unsettled, "stick and slip did not converge"), (unpressed, "the contact iteration stopped")):
+        with pytest.warns(ConvergenceWarning, match=reason) as said:
+            each.warn_unless_converged(1)
+        assert said[0].filename == __file__
+
+
+def test_violations_are_over_the_rigid_slip(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of prescribed and unknown motions together, about a middle that is not that of the contact."""
+    scales: list[float] = []
+
+    def noted(traction: Any, slip: Any, bound: Any, sticks: Any, scale: float) -> tuple[float, float]:
+        scales.append(scale)
+        return law_violation(traction, slip, bound, sticks, scale)
+
+    monkeypatch.setattr(friction, "law_violation", noted)
+    found = rubbed(MOTIONS["moment"], "uniform")
+    rigid, grid = found.tractions.rigid, found.contact.shape.grid
+    along_x = rigid["x"] - rigid["spin"] * grid.y
+    along_y = rigid["y"] + rigid["spin"] * (grid.x[:, None] - 0.1)
+    pressed = found.contact.pressure > 0
+    expected = np.hypot(along_x, along_y)[pressed].max()
+    mirrored = np.hypot(rigid["x"] + rigid["spin"] * grid.y, rigid["y"] - rigid["spin"] * (grid.x[:, None] - 0.1))
+    assert scales[-1] == pytest.approx(expected, rel=0.03)
+    assert mirrored[pressed].max() != pytest.approx(expected, rel=0.04)
+
+
+def test_strips_turn_with_the_spin_as_the_exact_theory_does() -> None:
+    motion = Rolling(spin=0.003)
+    exact, strips = (rubbed(each, "uniform").tractions.traction for each in (motion, replace(motion, model="fastsim")))
+    for one, other in zip(exact, strips, strict=True):
+        assert float((one * other).sum()) > 0.7 * float(np.sqrt((one**2).sum() * (other**2).sum()))
+
+
+def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
+    """A rigid ball on a compressible body: tractions and pressure are found in turns."""
+    found = []
+    for length, pressure in ((1.0, 1.0), (LENGTH, PRESSURE), (2.0**17, 2.0**-37)):
+        grid = Grid.between(length * EDGES["uniform"], (-1.3 * length, 1.3 * length), 26)
+        gap = 0.05 * ((grid.x[:, None] - 0.02 * length) ** 2 + grid.y**2) / length
+        body = HalfSpace(material=Material(0.91 * pressure, 0.1))
+        shape = Shape(body, grid, ArrayKey(gap), Prescribed(LOAD * pressure * length**2))
+        motion = Rolling(longitudinal_creepage=0.01)
+        each = frictional_contact(shape, Settings(), motion, FRICTION, 0.0, coupled=True)
+        assert each.converged
+        found.append(each.contact.pressure / pressure)
+    assert found[1] == pytest.approx(found[0], abs=1e-9)
+    assert found[2] == pytest.approx(found[0], abs=1e-9)

@@ -464,7 +464,7 @@ def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accura
     assert left(cells // 2) > 0.25 * accuracy or cells == 32
 
 
-@pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 0.3e-3])
+@pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
 def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
     """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
     body = finite(1.5e-3)
@@ -495,3 +495,24 @@ def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.Monk
     monkeypatch.setattr(module, "_within", too_narrow)
     assert module._settled(module._Request(case, 0.01, 1e-6)) == "found"
     assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
+
+
+def test_the_window_fits_the_contact() -> None:
+    """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
+    case = Case(body=HALF, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE)
+    contact = settled(case, 0.05).contact
+    grid = contact.shape.grid
+    reach = np.abs(grid.y[contact.pressure.any(axis=0)]).max() + 0.5 * grid.dy
+    assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_sharp_end_that_alone_is_pressed_has_its_law(side: int) -> None:
+    tilt = 2e-3 if side else -2e-3
+    body = finite(3e-3)
+    case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=tilt)
+    found = settled(case, 0.05).refined
+    assert found.laws[1 - side] is None
+    law = found.laws[side]
+    assert law is not None
+    assert law.exponent == 0.5

@@ -63,7 +63,7 @@ def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> Non
 
 
 def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
-    for unit in (1.0, UNIT):
+    for unit in (1.0, UNIT, 2.0**-40):
         own = asked(unit=unit)
         edges, cells = own.columns
         assert edges + edges[::-1] == pytest.approx(edges[-1])
