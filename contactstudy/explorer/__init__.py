@@ -3,6 +3,7 @@
 It needs the extra ``explore``: ``pip install "contactstudy[explore]"``.
 """
 
-from contactstudy.explorer.show import explore, serve
+from contactstudy.explorer.server import serve
+from contactstudy.explorer.show import explore
 
 __all__ = ["explore", "serve"]

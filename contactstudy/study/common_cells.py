@@ -13,7 +13,6 @@ from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from scipy import sparse
 
 from contactstudy.arrays.grid import SPACING_TOLERANCE
 from contactstudy.checks import FloatArray
@@ -115,6 +114,8 @@ class OntoCommon:
 
         The slopes are limited by either neighbour, so no value is beyond those of the cells around.
         """
+        from scipy import sparse  # long to import, and a summary or a page of a study does without
+
         low = np.maximum(self.common[:-1, None], self.own[None, :-1])
         high = np.minimum(self.common[1:, None], self.own[None, 1:])
         shared = np.maximum(high - low, 0.0) / np.diff(self.common)[:, None]

@@ -12,13 +12,13 @@ import os
 import re
 import shutil
 import socket
+import sys
 from collections.abc import Collection, Iterator, Mapping
 from datetime import UTC, datetime
 from pathlib import Path
 from threading import RLock
 from typing import Any, NamedTuple
 
-import dask
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
@@ -52,12 +52,21 @@ class Header(NamedTuple):
 def _netcdf(path: Path, doing: str) -> Iterator[None]:
     """One netCDF operation at a time; failures of disk and file as :class:`StoreError`."""
     try:
-        with NETCDF_LOCK, dask.config.set(scheduler="synchronous"):
+        with NETCDF_LOCK, _without_threads(doing):
             yield
     except (OSError, RuntimeError, ValueError, TypeError, KeyError, IndexError, AttributeError) as error:
         # The netCDF library does not say so itself.
         full = doing == "write" and shutil.disk_usage(path.parent).free < ALMOST_FULL
         raise StoreError(f"cannot {doing} {path}: {'the disk is full; ' if full else ''}{error}") from error
+
+
+def _without_threads(doing: str) -> contextlib.AbstractContextManager[object]:
+    """Let dask compute in this thread; it takes long to import, and what is read without it needs nothing of it."""
+    if doing == "read" and "dask" not in sys.modules:
+        return contextlib.nullcontext()
+    import dask
+
+    return dask.config.set(scheduler="synchronous")
 
 
 def write_atomically(path: Path, write: Any) -> None:

@@ -14,7 +14,7 @@ pytest.importorskip("panel")
 
 from contactstudy import ContactStudyError, InvalidInputError, explore, open_study
 from contactstudy.analysis import in_plane
-from contactstudy.explorer import show
+from contactstudy.explorer import server, show
 from contactstudy.explorer.cases import Cases, of_dataset, of_folder
 from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, scale_of, top
 from contactstudy.explorer.looked import Looked
@@ -185,5 +185,5 @@ def test_a_port_that_is_taken_is_named() -> None:
         other.listen()
         port = other.getsockname()[1]
         with pytest.raises(InvalidInputError, match=f"port = {port}"):
-            show._checked_port(port)
-        assert show._free_port() != port
+            server._checked_port(port)
+        assert server._free_port() != port
