@@ -105,6 +105,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     """
     parser = _parser()
     options = parser.parse_args(arguments)
+    options.whole_process = arguments is None
     actions = {
         "run": _run,
         "rerun": _rerun,
@@ -310,6 +311,10 @@ def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
 def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.explorer import serve
 
+    if options.whole_process and "dask" not in sys.modules:
+        # The page computes nothing with dask, but xarray imports it where it is found, and that takes longer than
+        # xarray itself. None says that there is none; this process ends with the page.
+        sys.modules["dask"] = None  # type: ignore[assignment]
     serve(options.folder, port=options.port, show=not options.no_browser)
     return ALL_OK
 

@@ -62,7 +62,7 @@ def _netcdf(path: Path, doing: str) -> Iterator[None]:
 
 def _without_threads(doing: str) -> contextlib.AbstractContextManager[object]:
     """Let dask compute in this thread; it takes long to import, and what is read without it needs nothing of it."""
-    if doing == "read" and "dask" not in sys.modules:
+    if doing == "read" and sys.modules.get("dask") is None:
         return contextlib.nullcontext()
     import dask
 

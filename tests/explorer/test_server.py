@@ -23,6 +23,22 @@ slow = {"numpy", "pandas", "xarray", "panel"} & set(sys.modules)
 assert slow <= {"numpy"}, slow
 """
 
+WITHOUT_DASK = """
+import sys
+sys.modules["dask"] = None
+from contactstudy.explorer.cases import of_folder
+from contactstudy.explorer.page import Page
+page = Page(of_folder(sys.argv[1]))
+page.choices[0]["max_pressure"].value = 2
+assert ">1.5 GPa<" in page.table.object
+page.view()
+assert not {"scipy", "distributed"} & set(sys.modules)
+"""
+
+
+def test_the_page_of_a_folder_needs_neither_dask_nor_scipy(folder: Path) -> None:
+    subprocess.run([sys.executable, "-c", WITHOUT_DASK, str(folder)], check=True)
+
 
 def test_it_starts_without_what_takes_long_to_import() -> None:
     subprocess.run([sys.executable, "-c", WITHOUT], check=True)
