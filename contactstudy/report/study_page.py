@@ -149,11 +149,15 @@ def _reasons(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
 
 def _pictures(path: Path, cases: int) -> list[Picture]:
     """Figures that suit the study; none if nothing of it can be drawn."""
+    import dask
+    from dask.local import get_sync
     from matplotlib import pyplot
 
     opened = open_study(path, cells="own") if cases <= MOST_FIELDS else summaries(path)[0]
     try:
-        figures = study_figures(opened)
+        # A scheduler that is left out, or named by a word, lets dask import all that speaks with clusters.
+        with dask.config.set(scheduler=get_sync):
+            figures = study_figures(opened)
     except ContactStudyError:
         return []
     found = []

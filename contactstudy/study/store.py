@@ -65,8 +65,9 @@ def _without_threads(doing: str) -> contextlib.AbstractContextManager[object]:
     if doing == "read" and sys.modules.get("dask") is None:
         return contextlib.nullcontext()
     import dask
+    from dask.local import get_sync  # named by a word, it lets dask import all that speaks with clusters
 
-    return dask.config.set(scheduler="synchronous")
+    return dask.config.set(scheduler=get_sync)
 
 
 def write_atomically(path: Path, write: Any) -> None:

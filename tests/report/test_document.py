@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from html.parser import HTMLParser
 from pathlib import Path
 
@@ -134,3 +136,16 @@ def test_wrong_paths_are_named(tmp_path: Path, capsys) -> None:
     assert "not the folder of a study" in capsys.readouterr().err
     with pytest.raises(InvalidInputError, match="given: a result in memory"):
         report.write(xr.Dataset())
+
+
+WITHOUT = """
+import sys
+from contactstudy.report import html
+assert "data:image" in html(sys.argv[1])
+assert "distributed" not in sys.modules
+"""
+
+
+def test_a_report_imports_nothing_of_clusters(tmp_path: Path) -> None:
+    run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
+    subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
