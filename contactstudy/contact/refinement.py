@@ -102,7 +102,7 @@ class Refined:
     @property
     def peak_error(self) -> float:
         """Estimated error of the largest pressure, Pa."""
-        return self.peak_errors[int(np.argmax(self.peaks))]
+        return max(error for peak, error in zip(self.peaks, self.peak_errors, strict=True) if peak == self.peak)
 
 
 class Rough(NamedTuple):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -300,6 +301,13 @@ def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
     first, last = read_again(found, pressed, asked).ends
     assert first > 0
     assert read_again(found, pressed, asked).end_errors == (first, last) == (first, 0.0)
+
+
+@pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
+def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float]) -> None:
+    found = refined_contact(averaged(FOLLOWED["even"]), shape(), 0.02)
+    assert np.isinf(replace(found, peaks=(1.0, 1.0), peak_errors=errors).peak_error)
+    assert replace(found, peaks=(1.0, 0.5)[:: 1 if errors[0] < 1 else -1], peak_errors=errors).peak_error == 0.1
 
 
 def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
