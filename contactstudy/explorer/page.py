@@ -264,9 +264,10 @@ class Page:
 
     def view(self) -> Any:
         """Everything, side by side on a wide screen and below each other on a narrow one."""
+        count = int((self.cases.scalars["status"] != "excluded").sum())
         head = pn.pane.HTML(
             f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"
-            f"<div class=soft>{self.cases.scalars['status'].size} cases</div>",
+            f"<div class=soft>{count} cases</div>",
             stylesheets=[STYLE],
             sizing_mode="stretch_width",
         )

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import gc
+import json
 import socket
 import sys
 from asyncio import wrap_future
 from concurrent.futures import Future
-from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -68,7 +68,7 @@ class Opening:
         """Page of a new visitor: empty, and filled once the browser has its scripts and the study is read."""
         import panel as pn
 
-        shown, document = pn.Column(sizing_mode="stretch_width"), pn.state.curdoc
+        shown = pn.Column(sizing_mode="stretch_width")
 
         async def fill() -> None:
             """Put the study into the page."""
@@ -76,7 +76,6 @@ class Opening:
 
             cases = await wrap_future(self._cases)
             shown.objects = [Page(cases).view()]
-            document.add_next_tick_callback(partial(setattr, document, "title", cases.title))
 
         pn.state.onload(fill)
         return shown
@@ -124,12 +123,21 @@ def serve(folder: str | Path, *, port: int | None = None, show: bool = True) -> 
         address=HOST,
         websocket_origin=[f"{HOST}:{chosen}", f"127.0.0.1:{chosen}"],
         show=show,
-        title=place.resolve().name,
+        title=_title(place),
         verbose=False,
     )
     if opening.error is not None:
         server.stop()
         raise opening.error
+
+
+def _title(place: Path) -> str:
+    """Name of the study for the browser's tab; of its folder where the study cannot be read, which is said later."""
+    try:
+        study = json.loads((place / "study.json").read_text(encoding="utf-8"))
+        return f"{study['name']}: {study['description']}" if study.get("description") else str(study["name"])
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return place.resolve().name
 
 
 def _taken(port: int) -> bool:

@@ -139,6 +139,14 @@ def test_pixels_keep_lines_and_hold_the_ends() -> None:
     assert found[0].tolist() == [0.5, 1.0, 2.0, 3.0, 4.0, 4.5]
 
 
+def test_combinations_that_are_left_out_are_not_counted(page: Page) -> None:
+    assert ">12 cases<" in page.view()[0].object
+    status = page.cases.scalars["status"].astype(object)
+    status[0, 0, 0] = "excluded"
+    less = Page(Cases(page.cases.scalars.assign(status=status.astype(str)), page.cases.load, page.cases.title))
+    assert ">11 cases<" in less.view()[0].object
+
+
 def test_a_notebook_is_told_of_changes(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import panel as pn
     from bokeh.document import Document
