@@ -48,6 +48,7 @@ def explore(study: xr.Dataset | str | Path) -> Any:
 
     Examples
     --------
+    >>> import xarray as xr
     >>> pressure = xr.DataArray([[1e9, 2e9], [2e9, 1e9]], dims=("x", "y"), coords={"x": [0.0, 1e-3], "y": [0.0, 1e-4]})
     >>> page = explore(xr.Dataset({"pressure": pressure}))
     >>> type(page).__name__
