@@ -17,10 +17,10 @@ import numpy as np
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import DECAY_LENGTHS
-from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
 from contactstudy.overlapping.lateral import LateralColumns
 from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
-from contactstudy.overlapping.problem import EndProblem, parity_parts, views_of
+from contactstudy.overlapping.problem import EndProblem, View, parity_parts, views_of
 from contactstudy.threads import one_blas_thread
 
 SAME_POSITION = 12
@@ -63,6 +63,10 @@ class Place(NamedTuple):
     x: FloatArray
     y: FloatArray
     z: FloatArray
+
+
+TOGETHER = 2000
+"""Points, of the positions and depths of all places, up to which these are evaluated at once. Speed."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -278,17 +282,32 @@ def _amplitudes(
         np.zeros((count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size)) for x, z in points
     ]
     starts = np.cumsum([0, *(x.size for x, _ in points)])
+    stops = np.cumsum([z.size for _, z in points])
+    depths = np.concatenate([z for _, z in points])
     for view in views_of(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         own = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
+        together = view.x.size * depths.size <= TOGETHER
         for number, lateral in enumerate(columns.nodes):
-            system, (equivalent, depth, face_load) = problem.auxiliary_loads(view, float(lateral), number, shortest)
-            for found, (_, z), start, at in zip(amplitudes, points, starts, own, strict=False):
+            system, loads = problem.auxiliary_loads(view, float(lateral), number, shortest)
+            every = _answer(harmonics, system, loads, view, slice(None), depths) if together else None
+            for found, (_, z), start, stop, at in zip(amplitudes, points, starts, stops, own, strict=False):
                 if not at.size:
                     continue
-                field = harmonics.below_equivalent_load(system, equivalent, view.cosine[:, at], view.sine[:, at], z)
-                field += harmonics.beside_face_load(system, depth, face_load, view.x[at], z)
+                if every is None:
+                    field = _answer(harmonics, system, loads, view, at, z)
+                else:
+                    field = every[:, at, stop - z.size : stop]
                 by_load = field.reshape(*field.shape[:3], count, -1)
-                rows, depths = (view.rows[at] - start)[:, None, None], np.arange(z.size)[:, None]
+                rows, numbers = (view.rows[at] - start)[:, None, None], np.arange(z.size)[:, None]
                 for i in range(count):
-                    found[i][:, rows, depths, number, view.columns] = by_load[:, :, :, i]
+                    found[i][:, rows, numbers, number, view.columns] = by_load[:, :, :, i]
     return amplitudes
+
+
+def _answer(
+    harmonics: Harmonics, system: EquationSet, loads: AuxiliaryLoads, view: View, at: IntArray | slice, z: FloatArray
+) -> FloatArray:
+    """Field of both auxiliary bodies at some of a view's positions: array (component, x, z, column)."""
+    field = harmonics.below_equivalent_load(system, loads.equivalent, view.cosine[:, at], view.sine[:, at], z)
+    field += harmonics.beside_face_load(system, loads.depth, loads.face_load, view.x[at], z)
+    return field

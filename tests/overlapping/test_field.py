@@ -1,0 +1,37 @@
+"""Fields that the free ends add, at several places."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping import field
+from contactstudy.overlapping.field import Place
+from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.stress import end_stress
+
+PLACES = (
+    Place(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
+    Place(np.array([0.0, 8.0]), np.array([-0.3, 0.1, 0.9]), np.array([0.1, 0.2])),
+    Place(np.array([7.5]), np.array([0.2]), np.array([0.4])),
+)
+
+
+@pytest.mark.parametrize("length", [8.0, np.inf])
+@pytest.mark.parametrize("points", [0, 10_000])
+def test_a_place_has_the_same_field_alone_and_among_others(
+    length: float, points: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    grid = Grid((0.0, 8.0), (-1.0, 1.0), 32, 24)
+    pressure = (1 - grid.y**2) ** 2 * np.linspace(0.5, 1.5, 32)[:, None]
+    problem = EndProblem(length, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, Resolution())
+    places = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
+    alone = [end_stress(problem, [place])[0] for place in places]
+    monkeypatch.setattr(field, "TOGETHER", points)
+    for found, expected in zip(end_stress(problem, places), alone, strict=True):
+        for load in problem.loads:
+            # Panels along y are those for the points that are farthest and nearest of all.
+            assert np.abs(found[load] - expected[load]).max() < 2e-5, load
