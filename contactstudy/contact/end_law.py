@@ -29,6 +29,9 @@ LASTING_STEPS = 0.5
 NEAREST, FARTHEST = 3.0, 64.0
 """Distances, over the outermost column's width, between which the intensity is fitted. Accuracy."""
 
+FEWEST = 3
+"""Columns from which an intensity is fitted."""
+
 LEAST_ROOM, NARROW_ERROR = 0.5, 0.08
 """Part of the room beyond an end that the fit may reach, and what is added to the error beyond it, over K. Accuracy:
 measured as 5 % where it reaches 2.5 times the room, 0.8 % where it reaches 0.6 of it."""
@@ -70,7 +73,8 @@ class EndLaw:
         """Return the law with the intensity fitted to the pressure (column, y), at distances from the end.
 
         The law holds for distances much smaller than the `room` from the end to the body's own. Where friction has
-        lifted the end, the intensity is 0 with an infinite error.
+        lifted the end, the intensity is 0 with an infinite error. Where the contact is too narrow for a fit, it is that
+        of the outermost column with an infinite error.
         """
         if self.kind != "power":
             return self
@@ -86,6 +90,9 @@ class EndLaw:
             found = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(found.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
+        if not np.isfinite(fits).all():  # pressed on too few columns
+            outermost = (1 - exponent) * row[0] * width**exponent
+            return replace(self, exponent=exponent, intensity=float(outermost), intensity_error=np.inf)
         error = abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if FARTHEST * width > LEAST_ROOM * room:
             error += NARROW_ERROR * fits[0]
@@ -117,6 +124,8 @@ def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> t
     low, high = edges[:-1], edges[1:]
     used = (low >= 0.999 * NEAREST * width) & (high <= 1.001 * FARTHEST * width) & (row > 0)
     low, high, values = low[used], high[used], row[used]
+    if values.size < FEWEST:
+        return np.nan, np.inf
     powers = [1 - exponent, 2 - exponent]
     means = [(high**power - low**power) / (power * (high - low)) for power in powers]
     matrix = np.stack(means, axis=1) / values[:, None]

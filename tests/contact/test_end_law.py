@@ -45,6 +45,19 @@ def test_intensity_is_read_where_the_end_itself_is_pressed_most() -> None:
     assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
 
 
+@pytest.mark.parametrize("exponent", [0.5, np.nan])
+def test_an_end_pressed_on_few_columns_has_no_error_of_its_intensity(exponent: float) -> None:
+    # Random case 4004708: friction left a contact of five columns.
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
+    pressure[5:] = 0.0
+    law = EndLaw("power", exponent).with_intensity(edges, pressure, np.inf)
+    assert law.intensity_error == np.inf
+    assert law.intensity > 0
+    if exponent == 0.5:
+        assert law.intensity == pytest.approx(2.0)
+
+
 @pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
     edges = graded_edges(1e-3)
