@@ -301,9 +301,14 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     return ALL_OK
 
 
-def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
+def _collect_rarely(options: argparse.Namespace) -> None:
+    """By default a tenth of the time of a page or report goes into looking for garbage in what was imported."""
     if options.whole_process:
-        gc.set_threshold(50_000)  # by default a tenth of the time is spent on looking through what was imported
+        gc.set_threshold(50_000)
+
+
+def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
+    _collect_rarely(options)
     from contactstudy.report import write
     from contactstudy.study.report import shown
 
@@ -312,6 +317,7 @@ def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
+    _collect_rarely(options)
     from contactstudy.explorer import serve
 
     if options.whole_process and "dask" not in sys.modules:

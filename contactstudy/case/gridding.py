@@ -8,7 +8,6 @@ from typing import TypeVar
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.fast_length import fast_length
 from contactstudy.arrays.grid import MOST_CELLS, Grid, growing_edges
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
@@ -77,6 +76,8 @@ def choose_grid(
     >>> choose_grid(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)).shape
     (125, 64)
     """
+    from scipy.fft import next_fast_len
+
     half_width = case.hertz_half_width
     half_window = checks.positive("window", window) * half_width
     margin_x = checks.not_negative("margin", margin) * half_width
@@ -100,11 +101,11 @@ def choose_grid(
             f"such that there are at most {MOST_CELLS:.0e} cells, not {least[0] * least[1]:.1e}",
             f"the Hertz half-width is {half_width:.3g} m: pressures are in Pa, loads in N, lengths in metres",
         )
-    counts = [fast_length(int(count), real=True) for count in least]
+    counts = [next_fast_len(int(count), real=True) for count in least]
     if isinstance(case.roller.body, FiniteLengthSpace):
         candidates = [counts[0]]
         while candidates[-1] < MOST_EXTRA * counts[0]:
-            candidates.append(fast_length(candidates[-1] + 1))
+            candidates.append(next_fast_len(candidates[-1] + 1))
         at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
         counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))
     return Grid(x_range, (-half_window, half_window), *counts)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import gc
 import json
 import socket
 import sys
@@ -56,8 +55,6 @@ class Opening:
             loop.stop()
         finally:
             sys.setswitchinterval(usual)
-            gc.freeze()
-            gc.enable()
 
     def _cases_and_code(self) -> Cases:
         """Import what makes the page, and read the study."""
@@ -108,7 +105,6 @@ def serve(folder: str | Path, *, port: int | None = None, show: bool = True) -> 
     if not (place / "study.json").is_file():
         cases_of(place)  # says what is wrong with it
     chosen = _free_port() if port is None else _checked_port(port)
-    gc.disable()  # what is imported stays: to look through it again and again takes a tenth of the time
     # Before the thread that reads the study: the server's packages look in `sys.modules` for a pandas that is complete.
     import pandas  # noqa: F401
     import panel as pn
