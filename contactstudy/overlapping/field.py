@@ -130,7 +130,10 @@ class _Folded:
         result = np.empty((loads, count, self._size, *rest))
         for number, (parity, field) in enumerate(fields.items()):
             signs = np.array([-parity if component in odd_along_x else parity for component in range(count)])
-            (self._interpolate if self.interpolation is not None else self._copy)(field, signs, result, bool(number))
+            if self.interpolation is None:
+                self._copy(field, signs, result, bool(number))
+            else:
+                self._interpolate(field, signs, result, bool(number))
         return np.asarray(result.swapaxes(3, 4))
 
     def _copy(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:

@@ -6,29 +6,14 @@ import numpy as np
 import pytest
 
 from contactstudy import (
-    Case,
-    FiniteLengthSpace,
     Grid,
     InvalidInputError,
-    Material,
-    Roller,
     WindowError,
     choose_grid,
-    profiles,
     solve,
 )
 from contactstudy.case.standing import check_balanced, check_on_its_length
-
-STEEL = Material(210e9, 0.3)
-HALF_WIDTH = 65e-6
-LENGTH = 20 * HALF_WIDTH
-CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
-
-
-def case_with(**arguments) -> Case:
-    roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
-    body = FiniteLengthSpace(length=LENGTH, material=STEEL)
-    return Case(**({"body": body, "roller": roller, "max_pressure": 1e9} | arguments))
+from tests.crowned_case import HALF_WIDTH, LENGTH, case_with
 
 
 @pytest.mark.parametrize("window", [2.0, 16.0])

@@ -19,18 +19,8 @@ from contactstudy.contact.frictional import FrictionalContact, frictional_contac
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
+from tests.contact.motions import FRICTION, LOAD, MOTIONS
 
-FRICTION, LOAD = 0.3, 0.06
-MOTIONS = {
-    "longitudinal": Rolling(longitudinal_creepage=0.01),
-    "lateral": Rolling(lateral_creepage=0.01),
-    "spin": Rolling(spin=0.02),
-    "all": Rolling(longitudinal_creepage=0.005, lateral_creepage=-0.007, spin=0.01),
-    "forces": Rolling(force_y=0.5 * FRICTION * LOAD, force_x=-0.3 * FRICTION * LOAD),
-    "moment": Rolling(longitudinal_creepage=0.005, moment_z=0.03 * FRICTION * LOAD),
-    "shift": Shift(y=0.012, x=0.005),
-    "shifting force": Shift(force_x=0.7 * FRICTION * LOAD),
-}
 EDGES = {
     "uniform": np.linspace(-1.3, 1.3, 27),
     "graded": np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]),

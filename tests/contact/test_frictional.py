@@ -22,11 +22,11 @@ from contactstudy import (
 )
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.contact import frictional
+from tests.contact.motions import FRICTION, LOAD, MOTIONS
 
 STEEL = Material(0.91, 0.3)
 HALF = HalfSpace(material=STEEL)
 PAIR = Counterbody(HALF)
-LOAD, FRICTION = 0.06, 0.3
 
 
 def ball(cells: int = 26, reach: float = 1.3, off: float = 0.0) -> xr.DataArray:
@@ -57,18 +57,6 @@ def holds(result: xr.Dataset) -> None:
     assert float(np.abs(along - size * slip).where(slips, 0.0).max()) <= 1e-5 * largest * float(slip.max())
     for name in ("bound_error", "slip_error", "force_error"):
         assert float(result[name]) < 1e-6
-
-
-MOTIONS = {
-    "longitudinal": Rolling(longitudinal_creepage=0.01),
-    "lateral": Rolling(lateral_creepage=0.01),
-    "spin": Rolling(spin=0.02),
-    "all": Rolling(longitudinal_creepage=0.005, lateral_creepage=-0.007, spin=0.01),
-    "forces": Rolling(force_y=0.5 * FRICTION * LOAD, force_x=-0.3 * FRICTION * LOAD),
-    "moment": Rolling(longitudinal_creepage=0.005, moment_z=0.03 * FRICTION * LOAD),
-    "shift": Shift(y=0.012, x=0.005),
-    "shifting force": Shift(force_x=0.7 * FRICTION * LOAD),
-}
 
 
 @pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)

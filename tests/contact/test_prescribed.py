@@ -22,17 +22,7 @@ from contactstudy import (
 )
 from contactstudy.case.roughness import self_affine
 from contactstudy.contact.prescribed import Prescribed
-
-STEEL = Material(210e9, 0.3)
-HALF_WIDTH = 65e-6
-LENGTH = 20 * HALF_WIDTH
-BODY = FiniteLengthSpace(length=LENGTH, material=STEEL)
-CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
-
-
-def case_with(**arguments) -> Case:
-    roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
-    return Case(**({"body": BODY, "roller": roller, "max_pressure": 1e9} | arguments))
+from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, case_with
 
 
 @pytest.mark.parametrize("offset", [-2.5, 0.0, 1.0, 3.5])

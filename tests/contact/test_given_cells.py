@@ -1,0 +1,69 @@
+"""Contacts on graded cells that a user gives: against uniform ones, and what is refused."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, solve, solve_contact
+from tests.contact.settled_cases import CASES, HALF, RADIUS, SHORT, SHORT_ELASTIC, A, finite
+
+
+@pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
+def test_gap_on_cells_of_any_width_has_the_contact_of_uniform_ones(body: HalfSpace | FiniteLengthSpace) -> None:
+    """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
+    finite_body = isinstance(body, FiniteLengthSpace)
+    kept = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
+    uniform = Grid((0.0, SHORT), (-2 * A, 2 * A), 64, 32)
+    graded = Grid.from_edges(uniform.x_edges[kept], uniform.y_range, 32)
+    contacts = []
+    for grid in (graded, uniform):
+        inside = (grid.x > 0) & (grid.x < SHORT) if finite_body else (grid.x > 0.5 * A) & (grid.x < SHORT - 0.5 * A)
+        heights = np.where(inside[:, None], grid.y**2 / (2 * RADIUS), np.inf)
+        gap = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}, dims=("x", "y"))
+        contacts.append(solve_contact(body, gap, load=CASES["flush"].normal_load))
+    there, here = contacts
+    assert bool(there.converged)
+    middles = [float(each.pressure.sel(x=SHORT / 2, method="nearest").max()) for each in contacts]
+    assert middles[0] == pytest.approx(middles[1], rel=5e-3)
+    assert float(there.approach) == pytest.approx(float(here.approach), rel=5e-3)
+    total = float((there.pressure * graded.widths[:, None]).sum()) * graded.dy
+    assert total == pytest.approx(CASES["flush"].normal_load, rel=1e-9)
+    back = solve_contact(body, gap_of(there, graded), approach=float(there.approach))
+    assert float(back["normal_load"]) == pytest.approx(CASES["flush"].normal_load, rel=1e-3)
+
+
+def gap_of(contact: xr.Dataset, grid: Grid) -> xr.DataArray:
+    """The gap that a contact was made from: what is left of it, and its rigid approach."""
+    heights = np.where(np.isfinite(contact.gap.values), grid.y**2 / (2 * RADIUS), np.inf)
+    return contact.gap.copy(data=heights)
+
+
+def test_gap_on_cells_that_grow_too_steeply_is_refused_with_the_place() -> None:
+    widths = np.array([1.0, 1.0, 5.0, 5.0, 5.0, 1.5, 1.5])
+    x = np.cumsum(widths) - 0.5 * widths
+    y = np.linspace(-1.5, 1.5, 17)
+    heights = np.broadcast_to(0.5 * y**2, (7, 17))
+    gap = xr.DataArray(heights, coords={"x": x, "y": y, "x_width": ("x", widths)}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match="cells of 1 and 5 m beside x = 2 m"):
+        solve_contact(HALF, gap, load=1.0)
+
+
+def test_cells_that_miss_an_end_of_an_elastic_roller_are_refused_with_its_place() -> None:
+    case = CASES["elastic inside"]
+    edges = SHORT_ELASTIC * np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0])
+    with pytest.raises(InvalidInputError, match=r"without a border at x = "):
+        solve(case, Grid.from_edges(edges, (-4 * A, 4 * A), 16), stresses=False)
+
+
+def test_error_estimate_on_given_graded_cells() -> None:
+    """Joined in twos these cells differ by more than given cells may."""
+    ratios = 3.9 ** np.array([0, 1, 2, 2, 2, 2, 2, 1, 1, 0, 0, 1, 2, 2, 1, 0.0])
+    edges = SHORT * np.append(0.0, np.cumsum(ratios)) / ratios.sum()
+    grid = Grid.from_edges(edges, (-3 * A, 3 * A), 32)
+    case = CASES["flush"]
+    result = solve(case, grid, stresses=False, error_estimate=True)
+    assert bool(result.converged)
+    assert result.sizes["x"] == 16
+    assert any(name.endswith("_error") and "pressure" in name for name in result.data_vars)

@@ -1,0 +1,17 @@
+"""A short crowned steel roller on a body that is 20 half-widths long: cases that differ in what is asked."""
+
+from __future__ import annotations
+
+from contactstudy import Case, FiniteLengthSpace, Material, Roller, profiles
+
+STEEL = Material(210e9, 0.3)
+HALF_WIDTH = 65e-6
+LENGTH = 20 * HALF_WIDTH
+BODY = FiniteLengthSpace(length=LENGTH, material=STEEL)
+CROWNED = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
+
+
+def case_with(**arguments) -> Case:
+    """The crowned roller at 1 GPa, or what `arguments` make of it."""
+    roller = Roller(radius=5e-3, length=16 * HALF_WIDTH, profile=CROWNED)
+    return Case(**({"body": BODY, "roller": roller, "max_pressure": 1e9} | arguments))
