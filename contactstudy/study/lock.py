@@ -14,7 +14,7 @@ from pathlib import Path
 from types import ModuleType
 
 from contactstudy.study.errors import LockedError, StoreError
-from contactstudy.study.process import birth, boot
+from contactstudy.study.process import birth, boot, system
 
 LOCK_NAME = "run.lock"
 
@@ -29,6 +29,8 @@ def _is_dead(holder: dict[str, object]) -> bool:
     """Whether the holder of a lock surely does not run any more."""
     pid = holder.get("process")
     if type(pid) is not int or holder.get("host") != socket.gethostname():
+        return False
+    if holder.get("system", system()) != system():
         return False
     if holder.get("boot", boot()) != boot():
         return True
@@ -80,6 +82,7 @@ def locked(folder: Path) -> Iterator[str]:
     mine = {
         "process": os.getpid(),
         "host": socket.gethostname(),
+        "system": system(),
         "time": now,
         "token": token,
         "boot": boot(),

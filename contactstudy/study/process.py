@@ -7,11 +7,15 @@ booted, and gives every boot an identity.
 from __future__ import annotations
 
 import contextlib
+import functools
+import hashlib
 import os
 import socket
 from pathlib import Path
 
 BOOT = Path("/proc/sys/kernel/random/boot_id")
+MACHINE = Path("/etc/machine-id")
+NAMESPACE = Path("/proc/self/ns/pid")
 STATE, STARTED = 0, 19
 """Places in ``/proc/<pid>/stat`` after the command's name."""
 
@@ -57,6 +61,21 @@ def alive(pid: int) -> bool:
     return birth(pid) is not None
 
 
+@functools.cache
+def system() -> str:
+    """Name of this host, with a digest of its machine and of what gives processes their numbers.
+
+    Only processes of one system can tell whether another one runs: two machines, or two containers of one machine, may
+    have the same name.
+    """
+    parts = []
+    with contextlib.suppress(OSError):
+        parts.append(MACHINE.read_text(encoding="ascii", errors="replace").strip())
+    with contextlib.suppress(OSError):
+        parts.append(os.readlink(NAMESPACE))
+    return f"{socket.gethostname()}-{hashlib.sha256(' '.join(parts).encode()).hexdigest()[:8]}"
+
+
 def process_name() -> str:
-    """Host and process, as in the names of unfinished files."""
-    return f"{socket.gethostname()}-{os.getpid()}"
+    """System and process, as in the names of unfinished files."""
+    return f"{system()}-{os.getpid()}"

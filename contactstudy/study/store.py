@@ -11,7 +11,6 @@ import json
 import os
 import re
 import shutil
-import socket
 import sys
 from collections.abc import Collection, Iterator, Mapping
 from datetime import UTC, datetime
@@ -29,12 +28,12 @@ from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StoreError
 from contactstudy.study.identity import case_id
-from contactstudy.study.process import alive, process_name
+from contactstudy.study.process import alive, process_name, system
 
 NETCDF_LOCK = RLock()
 ALMOST_FULL = 2**20
 """Bytes left on a disk below which a failed write is put down to that."""
-PART = re.compile(r"(?P<name>.+)\.part-(?P<host>.+)-(?P<pid>\d+)")
+PART = re.compile(r"(?P<name>.+)\.part-(?P<system>.+)-(?P<pid>\d+)")
 CASE_ATTRIBUTE = "contactstudy_case"
 ID_ATTRIBUTE = "contactstudy_case_id"
 
@@ -291,11 +290,11 @@ def write_dataset(path: Path, dataset: xr.Dataset) -> None:
 
 
 def remove_dead_parts(folder: Path) -> int:
-    """Remove unfinished files of processes of this host that are gone; return how many."""
+    """Remove unfinished files of processes of this system that are gone; return how many."""
     removed = 0
     for part in folder.glob("*.part-*"):
         match = PART.fullmatch(part.name)
-        if match and match["host"] == socket.gethostname() and not alive(int(match["pid"])):
+        if match and match["system"] == system() and not alive(int(match["pid"])):
             part.unlink(missing_ok=True)
             removed += 1
     return removed

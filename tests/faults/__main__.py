@@ -6,7 +6,7 @@ import argparse
 import time
 from pathlib import Path
 
-from tests.faults import scenarios, studies
+from tests.faults import hosts, scenarios, studies
 from tests.faults.table import Row, write_table
 
 
@@ -21,6 +21,7 @@ def rows(kills: int) -> list[Row]:
         lambda: scenarios.damaged_files(calm, max(7, kills * 7 // 20)),
         lambda: scenarios.damaged_records(calm, max(4, kills // 5)),
         lambda: scenarios.two_runs(calm, max(2, kills // 12)),
+        lambda: hosts.two_systems(calm, max(4, kills // 12)),
         lambda: scenarios.at_once(calm, max(2, kills // 12)),
         lambda: scenarios.clock_steps(calm, max(2, kills // 12)),
         lambda: scenarios.edited_study(calm, max(2, kills // 20)),

@@ -19,15 +19,12 @@ import xarray as xr
 from contactstudy.study import run_study
 from contactstudy.study.lock import read_lock
 from tests.faults import studies
-from tests.faults.studies import CASES, STUDY
+from tests.faults.studies import CASES, SECONDS, STUDY
 from tests.faults.table import Row
 from tests.small_study import as_toml
 from tests.stand_in_solver import HELD, give_tickets, solve_fake
 from tests.study.cluster import cluster
 from tests.study.conftest import start_run, tickets_of
-
-SECONDS = 300.0
-"""Longest wait for another process."""
 
 chance = random.Random(17)
 
@@ -44,7 +41,7 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
                     path.unlink()
             before = {path: path.stat().st_mtime_ns for path in studies.finished(folder)}
             process = studies.start(folder, "--workers", str(workers))
-            _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
+            studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             time.sleep(chance.uniform(0.0, longest))
             os.killpg(process.pid, signal.SIGKILL)
             process.communicate()
@@ -68,7 +65,7 @@ def _seconds_of_a_run(workers: int) -> float:
     """Time from the lock to the end if nothing happens, on this machine now."""
     with studies.place() as folder:
         process = studies.start(folder, "--workers", str(workers))
-        _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
+        studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
         began = time.monotonic()
         process.communicate(timeout=SECONDS)
         return time.monotonic() - began
@@ -120,7 +117,7 @@ def dead_schedulers(calm: xr.Dataset, count: int) -> Row:
             with mock.patch.dict(os.environ, {HELD: str(tickets_of(out))}), cluster(folder, workers=1) as address:
                 enough = chance.randint(1, 20)
                 process = start_run(folder / "study.toml", out, "--scheduler", address, tickets=enough)
-                _wait(process, partial(studies.finished, folder))
+                studies.wait(process, partial(studies.finished, folder))
                 time.sleep(chance.uniform(0.0, 1.0))
                 address.processes[0].kill()
                 _, errors = process.communicate(timeout=SECONDS)
@@ -223,7 +220,7 @@ def two_runs(calm: xr.Dataset, count: int) -> Row:
     with studies.place() as folder:
         out = folder / "out"
         first = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
-        _wait(first, lambda: len(studies.finished(folder)) == 2)
+        studies.wait(first, lambda: len(studies.finished(folder)) == 2)
         seconds = [start_run(folder / "study.toml", out, "--workers", "0", tickets=0) for _ in range(count)]
         for second in seconds:
             _, errors = second.communicate(timeout=SECONDS)
@@ -301,7 +298,7 @@ def edited_study(calm: xr.Dataset, count: int) -> Row:
     for _ in range(count):
         with studies.place() as folder:
             process = studies.start(folder, "--workers", "0")
-            _wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
+            studies.wait(process, partial(_holds_the_lock, process.pid, folder / "out"))
             text = as_toml(STUDY)
             (folder / "study.toml").write_text(text[: chance.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
@@ -312,14 +309,3 @@ def edited_study(calm: xr.Dataset, count: int) -> Row:
 def _holds_the_lock(pid: int, out: Path) -> bool:
     """Whether a process, and not one that was killed before, has begun to work in a folder."""
     return out.exists() and (read_lock(out) or {}).get("process") == pid
-
-
-def _wait(process: subprocess.Popen[str], condition: Callable[[], object]) -> None:
-    """Wait until something is the case; an error if the process ends before, but with success."""
-    end = time.monotonic() + SECONDS
-    while not condition():
-        if process.poll() is not None:
-            assert process.returncode == 0, process.communicate()
-            return
-        assert time.monotonic() < end, "waited too long"
-        time.sleep(0.005)

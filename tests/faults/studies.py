@@ -7,7 +7,8 @@ import resource
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -23,6 +24,8 @@ from tests.study.conftest import ROOT
 SWEEP = {"e_over_a": [0.0, 0.5, 1.0, 1.5], "friction": [0.0, 0.1, 0.2, 0.3, 0.4]}
 STUDY = small_study("faults", sweep=SWEEP)
 CASES = 20
+SECONDS = 300.0
+"""Longest wait for another process."""
 
 
 @contextmanager
@@ -91,3 +94,14 @@ def calm_values() -> xr.Dataset:
     with place() as folder:
         assert resume(folder) == {"ok": CASES}
         return values(folder)
+
+
+def wait(process: subprocess.Popen[str], condition: Callable[[], object]) -> None:
+    """Wait until something is the case; an error if the process ends before, but with success."""
+    end = time.monotonic() + SECONDS
+    while not condition():
+        if process.poll() is not None:
+            assert process.returncode == 0, process.communicate()
+            return
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.005)

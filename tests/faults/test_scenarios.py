@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from tests.faults import scenarios, studies
+from tests.faults import hosts, scenarios, studies
 from tests.faults.table import BEGIN, END, Row, write_table
 from tests.study.conftest import ROOT
 
@@ -39,7 +39,11 @@ def test_the_page_has_a_place_for_it() -> None:
 
 @pytest.mark.system
 def test_faults_hold(calm: xr.Dataset) -> None:
-    for row in (scenarios.damaged_files(calm, len(scenarios.DAMAGES)), scenarios.kills(calm, 2)):
+    for row in (
+        scenarios.damaged_files(calm, len(scenarios.DAMAGES)),
+        scenarios.kills(calm, 2),
+        hosts.two_systems(calm, 4),
+    ):
         assert row.held == row.tried, row
 
 

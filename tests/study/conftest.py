@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -21,12 +22,16 @@ def tickets_of(folder: Path) -> Path:
     return folder.with_name(f"{folder.name}-tickets")
 
 
-def start_run(study: Path, folder: Path, *more: str, tickets: int) -> subprocess.Popen[str]:
-    """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others."""
+def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Sequence[str] = ()) -> subprocess.Popen[str]:
+    """Start the command in a new process group; the stand-in solver solves `tickets` cases, and holds the others.
+
+    `within` is a command that runs another one, such as one in a container.
+    """
     held = tickets_of(folder)
     give_tickets(held, tickets)
+    command = [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure"]
     return subprocess.Popen(
-        [sys.executable, "-m", "tests.study.fake_run", "run", str(study), "--out", str(folder), "--no-figure", *more],
+        [*within, *command, *more],
         cwd=ROOT,
         start_new_session=True,
         text=True,

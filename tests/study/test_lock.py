@@ -8,7 +8,7 @@ import pytest
 
 from contactstudy.study.errors import LockedError, StoreError
 from contactstudy.study.lock import LOCK_NAME, locked, read_lock
-from contactstudy.study.process import birth, boot
+from contactstudy.study.process import birth, boot, system
 
 
 def test_a_second_holder_is_refused_and_told_who(tmp_path):
@@ -22,6 +22,7 @@ def holder(**changes):
     return {
         "process": os.getpid(),
         "host": socket.gethostname(),
+        "system": system(),
         "time": "then",
         "token": "other",
         "boot": boot(),
@@ -45,7 +46,15 @@ def test_the_lock_of_a_dead_process_is_taken_over(tmp_path, changes):
     assert read_lock(tmp_path) is None
 
 
-@pytest.mark.parametrize("content", [holder(host="elsewhere", process=1), holder(), "gibberish"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        holder(host="elsewhere", process=1),
+        holder(system="another machine or container of the same name", process=2**30, boot="another"),
+        holder(),
+        "gibberish",
+    ],
+)
 def test_a_lock_that_may_be_alive_is_respected(tmp_path, content):
     (tmp_path / LOCK_NAME).write_text(json.dumps(content))
     with pytest.raises(LockedError, match=r"delete .*run\.lock"), locked(tmp_path):
