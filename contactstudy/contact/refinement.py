@@ -112,6 +112,10 @@ class Rough(NamedTuple):
     pressure: FloatArray
     laws: Laws
 
+    def singular(self, shape: AxialShape) -> bool:
+        """Whether an end has a law, or will have one: a sharp one that is pressed."""
+        return any(self.laws) or any(shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
+
 
 def rough_contact(solve: Solve, shape: AxialShape) -> Rough:
     """Columns on which to begin, whose peak is within some percent; `refined_contact` says what is raised."""
@@ -182,7 +186,7 @@ class _State:
         """Note the outermost columns wherever they have been split, and decide on their law."""
         for side, samples in enumerate(self.samples):
             edges, pressure = from_end(side, self.edges, self.pressure)
-            width = float(edges[1] - edges[0])
+            width = float(edges[1])
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
                 if self.laws[side] is None and width <= SHARPEST * self.shape.half_width:

@@ -123,8 +123,7 @@ def _within(case: Case, half_window: float, accuracy: float, tolerance: float) -
         at_peak = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
         solver = _Solver(case, window, _cells_across(float(at_peak.sum()) * cells.dy / (2 * window), accuracy))
         # The law of an end shows in how its outermost columns are split, one by one.
-        singular = any(rough.laws) or any(shape.sharp(side) and rough.pressure[-side].any() for side in (0, 1))
-        refined = refined_contact(solver, shape, accuracy, None if singular else rough.edges)
+        refined = refined_contact(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
     whole = solver.shape(refined.edges)
     contact = contact_of(whole, Settings(tolerance))
     if whole.coupled_friction:

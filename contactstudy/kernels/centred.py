@@ -96,7 +96,7 @@ class CentredConvolution:
 
 def _span(numbers: IntArray) -> slice | IntArray:
     """Return an index of ascending numbers, as a slice if none between them is missing."""
-    whole = numbers[-1] - numbers[0] + 1 == numbers.size and bool((np.diff(numbers) == 1).all())
+    whole = bool((np.diff(numbers) == 1).all())
     return slice(numbers[0], numbers[-1] + 1) if whole and numbers[0] >= 0 else numbers
 
 

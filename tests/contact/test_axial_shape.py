@@ -91,6 +91,13 @@ def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> Non
     assert widths == pytest.approx(widths[::-1])
 
 
+@pytest.mark.parametrize("slope", [0.1, -0.1])
+def test_a_straight_incline_has_the_columns_of_a_level(slope: float) -> None:
+    """It rises by more than the depth within a column, but never leaves its chord."""
+    plain, inclined = first_edges(asked(np.zeros_like)), first_edges(asked(lambda x: slope * x))
+    assert inclined == pytest.approx(plain)
+
+
 def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
     edges = first_edges(AxialShape(0.0, LENGTH, 1e-3, 1e-9, lambda x: 1e-9 * np.sin(300 * x), (0.0, 0.0)))
     assert MOST_COLUMNS < edges.size <= 2 * MOST_COLUMNS

@@ -146,6 +146,15 @@ def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bou
     assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
 
 
+def test_half_of_many_cells_begin_whatever_their_order() -> None:
+    """Numbers in one order may be right by chance, so there are twenty."""
+    for seed in range(20):
+        excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
+        found = _foremost(excess > 1, excess, sticks)
+        assert found.sum() == 1000
+        assert excess[found].min() > excess[~found].max()
+
+
 def test_a_share_of_some_cells_is_the_first_of_them_and_one_at_least() -> None:
     cells = np.array([False, True, True, False, True, True, True])
     assert _some(cells, 1.0) is cells

@@ -197,3 +197,12 @@ def test_a_coupled_contact_does_not_depend_on_the_unit() -> None:
         found.append(each.contact.pressure / pressure)
     assert found[1] == pytest.approx(found[0], abs=1e-9)
     assert found[2] == pytest.approx(found[0], abs=1e-9)
+
+
+def test_a_leading_cell_that_slips_has_a_slip() -> None:
+    """Under spin some of a column sticks, but not its leading cell, which is tied to the one behind."""
+    found = rubbed(Rolling(lateral_creepage=0.03, spin=0.1), "uniform")
+    pressed, sticks = found.contact.pressure > 0, found.tractions.sticks
+    leading = pressed & ~np.pad(pressed, ((0, 0), (0, 1)))[:, 1:]
+    assert (leading & ~sticks & sticks.any(axis=1)[:, None]).any()
+    assert (np.hypot(*found.tractions.slip)[pressed & ~sticks] > 1e-3).all()

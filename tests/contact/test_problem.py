@@ -54,6 +54,7 @@ def ball(grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, deep: 
 
 
 GRID = Grid((-1.5, 1.5), (-1.5, 1.5), 24, 20)
+UNLIKE = Grid.between(np.cumsum([-1.5, 0.1, 0.3, 0.4, 0.2, 0.1, 0.3, 0.6, 1.0]), (-1.5, 1.5), 20)
 GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)]), (-1.5, 1.5), 20)
 
 
@@ -101,7 +102,7 @@ def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:
     return arm / np.abs(arm).max(), float(np.abs(arm).max())
 
 
-@pytest.mark.parametrize("grid", [GRID, GRADED], ids=["uniform", "graded"])
+@pytest.mark.parametrize("grid", [GRID, GRADED, UNLIKE], ids=["uniform", "graded", "unlike neighbours"])
 def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
     lever, _ = tilting(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y

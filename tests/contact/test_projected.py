@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contactstudy.contact import coulomb
+from contactstudy.contact import coulomb, projected
 from contactstudy.contact.coulomb import CoulombProblem, solve_coulomb
 from contactstudy.contact.projected import balanced_tractions, projected_tractions
 from tests.contact.test_coulomb import holds, problem
@@ -116,3 +116,30 @@ def test_cells_of_different_sizes_in_any_unit(unit: float, pressure: float, *, f
     assert np.abs(found - expected.traction).max() < 1e-3 * pressure
     assert amplitudes == pytest.approx(expected.amplitudes, abs=1e-3 * unit)
     assert len(applied) < (330 if forces else 84)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_step_of_the_descent_raises_the_energy(monkeypatch: pytest.MonkeyPatch, seed: int) -> None:
+    """So it cannot go round in circles."""
+    asked, energies = symmetric(seed), []
+    for steps in range(12):
+        monkeypatch.setattr(projected, "STEPS", steps)
+        found, _ = projected_tractions(asked.relief, asked.rigid, np.zeros((2, CELLS)), asked.bound, asked.shares)
+        energies.append(float((asked.shares * found * (0.5 * asked.relief(found) - asked.rigid)).sum()))
+    assert (np.diff(energies) < 0).all()
+
+
+def test_steps_of_the_descent_grow_where_the_slip_is_no_longer_what_it_began_with() -> None:
+    """It begins with a slip that the stiffest cell gives way to, whose step is a tenth of the others'."""
+    stiffness, applied = np.geomspace(1.0, 10.0, CELLS), []
+
+    def relief(traction: np.ndarray) -> np.ndarray:
+        applied.append(traction)
+        return stiffness * traction
+
+    wanted = np.where(np.arange(CELLS) < CELLS - 1, 0.01, 1.0) * np.ones((2, CELLS))
+    found, _ = projected_tractions(
+        relief, stiffness * wanted, np.zeros((2, CELLS)), np.full(CELLS, 10.0), np.ones(CELLS)
+    )
+    assert found == pytest.approx(wanted, abs=1e-4)
+    assert len(applied) < 50

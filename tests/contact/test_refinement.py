@@ -12,11 +12,13 @@ from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
+from contactstudy.contact.end_law import EndLaw
 from contactstudy.contact.refinement import (
     END_COLUMN,
     LAST_COLUMNS,
     LESSER_HALF,
     SHARPEST,
+    Rough,
     _jumps,
     _moved,
     _State,
@@ -173,6 +175,7 @@ FOLLOWED = BUMPS | {
     "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
     "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
     "rises to one end": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2),
+    "rises to one end below a peak": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2) + 3 * np.exp(-((x - 5.0) ** 2)),
 }
 
 
@@ -224,7 +227,8 @@ def outermost(name: str, room: tuple[float, float] = (0.0, 0.0)) -> tuple[float,
 def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
     for width in outermost("falls to the end"):
         assert SHARPEST < 0.3 * END_COLUMN < width <= END_COLUMN
-    assert 0.3 * SHARPEST < outermost("rises to one end")[1] <= SHARPEST
+    for name in ("rises to one end", "rises to one end below a peak"):
+        assert 0.3 * SHARPEST < outermost(name)[1] <= SHARPEST
     for room in ((2.0, 0.0), (0.0, 2.0)):
         widths = outermost("falls to the end", room)
         sharp = room.index(2.0)
@@ -258,6 +262,21 @@ def test_jumps_are_over_the_largest_of_a_half(lesser: float) -> None:
         top = max(own.max(), LESSER_HALF * pressure.max())
         steps = [np.abs(pressure[i] ** 2 - pressure[j] ** 2).max() for j in (i - 1, i + 1) if 0 <= j < 8]
         assert found[i] == pytest.approx(max(steps) / top**2)
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, unit: float) -> None:
+    """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
+    edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
+    along = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
+    along[40:] = 1.0
+    if side:
+        edges, along = LENGTH - edges[::-1], along[::-1]
+    asked = AxialShape(0.0, unit * LENGTH, unit * HALF_WIDTH, 0.05 * unit, np.zeros_like, (0.0, 0.0))
+    state = _State(lambda *_: np.asarray(along[:, None] * np.sqrt(1 - Y**2)), asked, unit * edges)
+    for theta, marked in ((0.19, True), (0.21, False)):
+        assert state._marks(theta)[-side] == marked
 
 
 def test_half_of_the_last_changes_is_the_error() -> None:
@@ -353,6 +372,18 @@ def test_a_pressed_sharp_end_whose_law_did_not_show_has_no_error(side: int) -> N
     assert np.isfinite(found.peak_errors).all()  # the half is largest elsewhere
     rising = refined_contact(averaged(lambda x: 2 - along(x)), shape(room=room), 0.05)
     assert np.isinf(rising.peak_errors[side])
+
+
+@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize("law", [None, EndLaw("power", 0.5)])
+def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
+    pressure = np.zeros((4, 3))
+    pressure[-side] = 1.0
+    rough = Rough(np.arange(5.0), pressure, (law, None) if side else (None, law))
+    sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
+    assert rough.singular(shape(room=sharp))
+    assert rough.singular(shape(room=blunt)) == (law is not None)
+    assert rough.singular(shape(room=sharp, stiff=False)) == (law is not None)
 
 
 def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:

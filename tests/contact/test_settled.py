@@ -237,10 +237,20 @@ def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.Monk
     assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
 
 
-def test_the_window_fits_the_contact() -> None:
+FITTED = {
+    "peaks at fillets": Case(body=HALF, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE),
+    "even": Case(
+        body=FiniteLengthSpace(length=1e-3, material=STEEL, model="mirror"),
+        roller=Roller(radius=RADIUS, length=1e-3),
+        max_pressure=PRESSURE,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_the_window_fits_the_contact(name: str) -> None:
     """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
-    case = Case(body=HALF, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE)
-    contact = settled(case, 0.05).contact
+    contact = settled(FITTED[name], 0.05).contact
     grid = contact.shape.grid
     reach = np.abs(grid.y[contact.pressure.any(axis=0)]).max() + 0.5 * grid.dy
     assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15

@@ -88,6 +88,13 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
     np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
 
 
+@pytest.mark.parametrize("unit", [1e-20, 1e20])
+def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit: float) -> None:
+    """A field is that of the load in any unit."""
+    found, plain = (stresses(each, GRID.x, GRID.y, (0.0, 2.0)) for each in (unit * load, load))
+    np.testing.assert_allclose(found / unit, plain, atol=1e-12 * np.abs(plain).max())
+
+
 def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)

@@ -135,7 +135,7 @@ def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float, *,
     assert moment == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize("narrow", [0.0, 0.3])
+@pytest.mark.parametrize("narrow", [0.0, 0.3, 1.0])
 def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: float) -> None:
     random = np.random.default_rng(0)
     for _ in range(200):
@@ -166,3 +166,23 @@ def test_a_load_that_ends_in_a_step_counts_as_uniform_in_each_cell(unit: float) 
         ([-0.9, -1.0, -0.5, 0.0], True),
     ):
         assert ends_in_steps(unit * np.array([cells])) == stepped
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
+def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
+    """By more than 0.3 % of the largest load, whatever its unit."""
+    grid = Grid.between(EDGES, (-1.2, 1.2), 12)
+    along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
+    split = FineCells(unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2), grid).split
+    assert not split[:4].any()
+    assert split[-3:].all()
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03])
+def test_fine_cells_carry_a_load_up_to_the_border(offset: float) -> None:
+    """Also what lies in the last cells of the grid along y."""
+    grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
+    cells = load_on(grid.x, 0.6 * grid.y)
+    assert cells[:, [0, -1]].any()
+    found, own = FineCells(cells, grid).near_top(offset, split=False)
+    assert found.sum() * own.cell_area == pytest.approx(cells.sum() * grid.cell_area)

@@ -36,10 +36,10 @@ def kernel(edges: FloatArray, response: Response, *, unit: float = 1.0, ends: in
 
 
 @pytest.mark.parametrize("response", RESPONSES, ids=lambda pair: f"{pair.displacement.name} by {pair.load.name}")
-@pytest.mark.parametrize("ends", [1, 2])
-def test_the_unit_of_length_decides_nothing(ends: int, response: Response) -> None:
+@pytest.mark.parametrize(("ends", "unit"), [(1, LENGTH), (2, LENGTH), (1, 2.0**7)])
+def test_the_unit_of_length_decides_nothing(ends: int, unit: float, response: Response) -> None:
     """A force per area of the unit; transformed along y, displacements over forces per length are without unit."""
-    plain, other = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=LENGTH, ends=ends)
+    plain, other = kernel(EDGES, response, ends=ends), kernel(EDGES, response, unit=unit, ends=ends)
     assert other == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
 
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import field
-from contactstudy.overlapping.field import Place
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.field import Place, end_fields
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import end_stress
+from contactstudy.overlapping.stress import STRESS, end_stress
 
 PLACES = (
     Place(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
@@ -35,3 +39,32 @@ def test_a_place_has_the_same_field_alone_and_among_others(
         for load in problem.loads:
             # Panels along y are those for the points that are farthest and nearest of all.
             assert np.abs(found[load] - expected[load]).max() < 2e-5, load
+
+
+def evaluated(places: list[Place]) -> tuple[int, int]:
+    """How often a field is evaluated, and at how many points in all."""
+    grid = Grid((0.0, 8.0), (-1.0, 1.0), 4, 4)
+    sizes = []
+
+    def beside(
+        system: EquationSet, depth: ComplexArray, loads: ComplexArray, x: FloatArray, z: FloatArray
+    ) -> FloatArray:
+        sizes.append(x.size * z.size)
+        return STRESS.beside_face_load(system, depth, loads, x, z)
+
+    problem = EndProblem(8.0, 0.3, np.ones(grid.shape), (Load.NORMAL,), grid, Resolution())
+    end_fields(problem, replace(STRESS, beside_face_load=beside), places)
+    return len(sizes), sum(sizes)
+
+
+def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> None:
+    """A line along the top and one into the depth: together they are as many points as their rectangle has."""
+    for count, together in ((5, True), (60, False)):
+        across, x, z = np.zeros(1), np.linspace(0.1, 1.0, count), np.linspace(0.1, 1.0, count)
+        lines = [Place(x, across, z[:1]), Place(x[:1], across, z)]
+        alone = [evaluated([line]) for line in lines]
+        times, points = evaluated(lines)
+        if together:
+            assert times == max(alone)[0]
+        else:
+            assert points < 1.5 * sum(own for _, own in alone)
