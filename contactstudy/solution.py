@@ -10,6 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.discretisation import discretisation_error
+from contactstudy.analysis.largest import settled_peak
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
@@ -32,7 +33,7 @@ from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
-from contactstudy.fields.stress import end_traction_residual, stress_and_residual, stress_dataset
+from contactstudy.fields.stress import contact_stresses, end_traction_residual, stress_dataset
 from contactstudy.kernels.load import Load
 
 LOGGER = logging.getLogger(__name__)
@@ -101,13 +102,15 @@ def solve(
     Dataset
         Everything that `solve_contact` and `stress_field` return, with `hertz_half_width`, `hertz_max_pressure` and
         `end_traction_residual`; with stick and slip, tractions and slip as from `solve_contact` instead of
-        `traction_y`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)``
-        instead of ``(x, y, z)``. On refined columns also `peak_pressure` (and ``_first`` and ``_last``, of either
-        half), `end_pressure_first` and `end_pressure_last`, and the load on the last half-width, `end_load_first` and
-        `end_load_last`, each with its error ``<name>_error``. At a singular end pressures are infinite, and
-        `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its error, and `end_exponent_first`
-        or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the sharper end. With stick and
-        slip, forces, moment, work and the creepages or shifts that are not prescribed have errors as well.
+        `traction_y`. Stresses at positions of their own have the dimensions ``(x_field, y_field, z)`` instead of
+        ``(x, y, z)``. With stresses also the largest von Mises stress in the body, wherever the positions are:
+        `peak_von_mises`, its error and its place ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure` (and
+        ``_first`` and ``_last``, of either half), `end_pressure_first` and `end_pressure_last`, and the load on the
+        last half-width, `end_load_first` and `end_load_last`, each with its error ``<name>_error``. At a singular end
+        pressures are infinite, and `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m``, with its
+        error, and `end_exponent_first` or `end_exponent_last` is m; `end_intensity` and `end_exponent` are those of the
+        sharper end. With stick and slip, forces, moment, work and the creepages or shifts that are not prescribed have
+        errors as well.
         Its attributes hold the case, the settings, the versions, and the seconds of each stage, see
         `contactstudy.analysis.solved_case`.
 
@@ -184,10 +187,11 @@ def solve(
     if stresses:
         depths = half_width * np.array(DEPTHS) if z is None else z
         positions = field_positions(case.body, grid, x, y, depths)
-        field, residual = stress_and_residual(case.body, loads, grid, positions, *looked_at)
+        field, residual, largest = contact_stresses(case.body, loads, grid, positions, *looked_at)
         if x is not None or y is not None:
             field = field.rename({"x": "x_field", "y": "y_field"})
         result = result.assign_coords(field.coords).assign(field.data_vars)
+        result = result.assign(settled_peak(result, *largest).data_vars)
     else:
         residual = end_traction_residual(case.body, loads, grid, *looked_at)
     result["end_traction_residual"] = residual

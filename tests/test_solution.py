@@ -56,9 +56,11 @@ def test_everything_the_interface_promises_is_there_with_its_unit(result) -> Non
                 *("peak_pressure", "peak_pressure_first", "peak_pressure_last"),
                 *("end_pressure_first", "end_pressure_last"),
                 *("end_load_first", "end_load_last"),
+                "peak_von_mises",
             )
             for error in ("", "_error")
         ),
+        *(f"peak_von_mises_{axis}" for axis in "xyz"),
     )
     assert set(promised) == set(result.data_vars)
     for name in promised:

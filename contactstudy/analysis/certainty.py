@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.analysis.axes import axis_dimensions, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
-from contactstudy.analysis.short import ShortView, short
+from contactstudy.analysis.short import MainNumber, ShortView, short
 from contactstudy.arrays.required import require
 
 YES, CARE, NO, UNKNOWN = "yes", "with care", "no", "not known"
@@ -110,17 +110,20 @@ def _answers(one: xr.Dataset, view: ShortView) -> Iterator[Answer]:
     yield _ends(one)
     yield _cells(one)
     if "peak_von_mises" in view:
-        row = view["peak_von_mises"]
-        single = _single_positions(one)
-        if single:
-            reason = f"stresses are known at one position along {' and '.join(single)} only"
-            yield Answer("Is the largest stress inside the points?", CARE, reason)
-        elif np.isinf(row.error) or np.isinf(row.value) or np.isnan(row.error):
-            yield Answer("Is the largest stress inside the points?", CARE, row.remark or "no error is known")
-        else:
-            yield Answer("Is the largest stress inside the points?", YES, f"{row.text}, with points on all sides of it")
+        yield _largest_stress(one, view["peak_von_mises"])
     for text in attribute(one, RUN_ATTRIBUTE).get("warnings", []):
         yield Answer("Was there a warning?", CARE, str(text))
+
+
+def _largest_stress(one: xr.Dataset, row: MainNumber) -> Answer:
+    """Whether the largest stress is known: of results that state none, between the points."""
+    question = "Is the largest stress known?"
+    single = [] if "peak_von_mises_error" in one else _single_positions(one)
+    if single:
+        return Answer(question, CARE, f"stresses are known at one position along {' and '.join(single)} only")
+    if np.isinf(row.error) or np.isinf(row.value) or np.isnan(row.error):
+        return Answer(question, CARE, row.remark or "no error is known")
+    return Answer(question, YES, row.text)
 
 
 def _single_positions(one: xr.Dataset) -> list[str]:

@@ -7,7 +7,6 @@ between; the measure follows from them. What polynomials of a lower degree say t
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +15,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, single_case
 from contactstudy.analysis.measures import MEASURES, measure
+from contactstudy.arrays.between import refined
+from contactstudy.arrays.peak_width import peak_width
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import Variable, named, variable_of
 from contactstudy.checks import FloatArray
@@ -24,8 +25,10 @@ from contactstudy.errors import InvalidInputError
 AROUND = 2
 """Points on either side of the largest sample that the polynomial goes through. Accuracy."""
 
-FINE = 17
-"""Points along each axis, from one neighbour of the largest sample to the other, where the measure is evaluated."""
+SINGULAR = "the pressure is singular at an end, and so is the stress"
+
+CLOSE = {"x": 1.0, "z": 0.5}
+"""Distance of points up to which polynomials follow the stresses below a peak of the pressure, over its width."""
 
 POINTWISE = ("von_mises", "tresca", "maximum_shear", "hydrostatic")
 """Measures of the stress at one point."""
@@ -45,10 +48,12 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     -------
     Dataset
         ``peak_<variable>`` (Pa), its estimated error ``peak_<variable>_error``, and its place ``peak_<variable>_x``,
-        ``_y``, ``_z`` in metres. The error has two parts: what polynomials of two degrees through the points differ by,
+        ``_y``, ``_z`` in metres. A result of :func:`contactstudy.solve` has that of the von Mises stress already,
+        wherever its points lie. The error has two parts: what polynomials of two degrees through the points differ by,
         and the relative error of `peak_pressure` where that is settled. It is infinite, with a `comment` that says why,
-        where the largest sample lies at the edge of the points, beyond which the measure may be larger, or where
-        the pressure is singular. Along an axis with one point the place is that point.
+        where the largest sample lies at the edge of the points, beyond which the measure may be larger, where the
+        points are too far apart for the width of the pressure's peak, or where the pressure is singular. Along an axis
+        with one point the place is that point.
 
     Raises
     ------
@@ -69,6 +74,8 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     names = list(MEASURES[variable][0])
     require(dataset, *names)
     one = single_case(dataset)
+    if f"peak_{variable}_error" in one:
+        return one[[name for name in one.data_vars if str(name).startswith(f"peak_{variable}")]].drop_attrs(deep=False)
     found = peak_between(one, names, measure(one, variable), lambda stresses: measure(stresses, variable))
     base = variable_of(variable, measure(one, variable).attrs)
     return labelled_peak(variable, found, base)
@@ -155,10 +162,35 @@ def labelled_peak(variable: str, found: Peak, base: Variable) -> xr.Dataset:
     return result
 
 
+def settled_peak(result: xr.Dataset, value: float, error: float, place: tuple[float, float, float]) -> xr.Dataset:
+    """Largest von Mises stress in the body as a Dataset, see :func:`largest`.
+
+    Parameters
+    ----------
+    result : Dataset
+        A case with `von_mises`, and `peak_pressure` with its error as far as they are known.
+    value, error : float
+        Largest stress under the pressure of its cells, and the error of that, Pa.
+    place : tuple of float
+        x, y and z, metres.
+    """
+    singular = "peak_pressure" in result and np.isinf(float(result["peak_pressure"]))
+    if singular:
+        found = Peak(np.inf, np.inf, dict.fromkeys("xyz", np.nan), SINGULAR)
+    elif "peak_pressure_error" in result:
+        of_pressure = float(result["peak_pressure_error"] / result["peak_pressure"])
+        found = Peak(value, error + value * of_pressure, dict(zip("xyz", place, strict=True)), "")
+    else:
+        found = Peak(
+            value, np.nan, dict(zip("xyz", place, strict=True)), "how much the given cells decide is not known"
+        )
+    return labelled_peak("von_mises", found, variable_of("von_mises", result["von_mises"].attrs))
+
+
 def _without_limit(one: xr.Dataset, places: dict[str, FloatArray], at: tuple[np.intp, ...]) -> str:
     """Why the largest sample says little about the largest value; empty if it does."""
     if "peak_pressure" in one and np.isinf(float(one["peak_pressure"])):
-        return "the pressure is singular at an end, and so is the stress"
+        return SINGULAR
     extent = _extent(one)
     for (axis, place), index in zip(places.items(), at, strict=True):
         on_body = axis == "z" and place[0] == 0 and index == 0
@@ -166,7 +198,25 @@ def _without_limit(one: xr.Dataset, places: dict[str, FloatArray], at: tuple[np.
             on_body = any(np.isclose(place[index], end, rtol=0, atol=1e-9 * np.ptp(place)) for end in extent)
         if place.size > 1 and index in (0, place.size - 1) and not on_body:
             return f"the largest sample lies at the edge of the points along {axis}"
+    width = _peak_width(one)
+    for axis, share in CLOSE.items():
+        if axis not in places or places[axis].size < 2:
+            continue
+        beside = int(at[list(places).index(axis)])
+        apart = float(np.diff(places[axis])[max(beside - 1, 0) : beside + 1].max())
+        if apart > share * width:
+            return f"the points are {apart:.2g} m apart along {axis} where the pressure's peak is {width:.2g} m wide"
     return ""
+
+
+def _peak_width(one: xr.Dataset) -> float:
+    """Width of the highest peak of the pressure, metres; infinite if it is not known."""
+    if not {"pressure", "x", "y"} <= {str(name) for name in one.variables} or not (one["pressure"] > 0).any():
+        return np.inf
+    pressure = one["pressure"].transpose("x", "y").values
+    y = one["y"].values
+    column = int(pressure.max(axis=1).argmax())
+    return peak_width(pressure, one["x"].values, float(y[1] - y[0]), column) if y.size > 1 else np.inf
 
 
 def _extent(one: xr.Dataset) -> tuple[float, ...]:
@@ -188,35 +238,20 @@ def _between(
     """Largest value, and its place, of polynomials through the points `around` the largest sample."""
     window, fine, matrices = {}, [], []
     for (axis, dim), index in zip(over.items(), at, strict=True):
-        place, centre = places[axis], int(index)
-        # Near an edge the same number of points, all on one side.
-        count = min(2 * around + 1, place.size)
-        start = min(max(centre - around, 0), place.size - count)
-        nodes = place[start : start + count]
-        low, high = place[max(centre - 1, 0)], place[min(centre + 1, place.size - 1)]
-        points = np.unique(np.append(np.linspace(low, high, FINE), place[centre])) if count > 1 else nodes
-        window[dim] = slice(start, start + count)
-        fine.append(points)
-        matrices.append(_lagrange(nodes, points))
-    near = stresses.isel(window)
-    refined: dict[Hashable, tuple[tuple[Hashable, ...], FloatArray]] = {}
+        near = refined(places[axis], int(index), around)
+        window[dim] = near.window
+        fine.append(near.points)
+        matrices.append(near.matrix)
+    inside = stresses.isel(window)
+    interpolated: dict[Hashable, tuple[tuple[Hashable, ...], FloatArray]] = {}
     coordinates: dict[Hashable, xr.DataArray] = {}
-    for name, component in near.items():
+    for name, component in inside.items():
         ordered = component.transpose(*over.values(), ...)
         values = ordered.values
         for number, matrix in enumerate(matrices):
             values = np.moveaxis(np.tensordot(matrix, values, axes=(1, number)), 0, number)
-        refined[name] = (ordered.dims, values)
+        interpolated[name] = (ordered.dims, values)
         coordinates |= {dim: ordered[dim] for dim in ordered.dims if dim not in over.values() and dim in ordered.coords}
-    found = evaluate(xr.Dataset(refined, coordinates)).transpose(*over.values()).values
+    found = evaluate(xr.Dataset(interpolated, coordinates)).transpose(*over.values()).values
     best = np.unravel_index(int(np.nanargmax(found)), found.shape)
     return float(found[best]), [float(points[index]) for points, index in zip(fine, best, strict=True)]
-
-
-def _lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
-    """Matrix (point, node) that interpolates by the polynomial through the nodes."""
-    matrix = np.ones((points.size, nodes.size))
-    for i, j in product(range(nodes.size), repeat=2):
-        if i != j:
-            matrix[:, i] *= (points - nodes[j]) / (nodes[i] - nodes[j])
-    return matrix

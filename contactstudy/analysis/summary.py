@@ -59,8 +59,8 @@ def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Scalars `peak_von_mises` and its error (Pa), and `peak_von_mises_x`, ``_y``, ``_z`` (m), between the points of
-        the stresses, see :func:`contactstudy.analysis.largest`; without the six stresses, at these points.
+        Scalars `peak_von_mises` and its error (Pa), and `peak_von_mises_x`, ``_y``, ``_z`` (m), see
+        :func:`contactstudy.analysis.largest`; without the six stresses, at the points of `von_mises`.
 
     Raises
     ------

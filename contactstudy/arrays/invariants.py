@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
@@ -41,13 +39,16 @@ def von_mises(stress: xr.Dataset) -> xr.DataArray:
     1.732051
     """
     require(stress, *STRESSES, argument="stress")
-    return named("von_mises", xr.apply_ufunc(_von_mises, *(stress[name] for name in STRESSES), dask="allowed"))
+    return named("von_mises", xr.apply_ufunc(von_mises_of, *(stress[name] for name in STRESSES), dask="allowed"))
 
 
-def _von_mises(xx: FloatArray, yy: FloatArray, zz: FloatArray, xy: FloatArray, xz: FloatArray, yz: FloatArray) -> Any:
-    """Equivalent stress of arrays of components."""
-    squared = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
-    return squared**0.5
+def von_mises_of(
+    xx: FloatArray, yy: FloatArray, zz: FloatArray, xy: FloatArray, xz: FloatArray, yz: FloatArray
+) -> FloatArray:
+    """Equivalent stress of arrays of components, Pa."""
+    squared: FloatArray = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * (xy**2 + xz**2 + yz**2)
+    root: FloatArray = squared**0.5
+    return root
 
 
 def principal_stresses(stress: xr.Dataset) -> xr.Dataset:

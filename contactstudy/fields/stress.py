@@ -15,6 +15,7 @@ from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
+from contactstudy.fields.largest import Largest, around_peaks, largest_stress
 from contactstudy.fields.loads import Loads, superposed
 from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import reference_of
@@ -215,10 +216,28 @@ def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatAr
     return fields
 
 
-def stress_and_residual(
+class ContactStresses(NamedTuple):
+    """Stresses under a contact.
+
+    Attributes
+    ----------
+    field : Dataset
+        Stresses where they were asked for, Pa.
+    residual : float
+        Largest traction that is left on the free ends, over the peak pressure.
+    largest : Largest
+        Largest von Mises stress in the body.
+    """
+
+    field: xr.Dataset
+    residual: float
+    largest: Largest
+
+
+def contact_stresses(
     body: Body, loads: Loads, grid: Grid, positions: FieldPositions, y: FloatArray, z: FloatArray
-) -> tuple[xr.Dataset, float]:
-    """Labelled stresses at some positions, and the residual on the ends, for less than both cost alone.
+) -> ContactStresses:
+    """Stresses at some positions, the residual on the ends and the largest stress, for less than these cost alone.
 
     Parameters
     ----------
@@ -233,13 +252,15 @@ def stress_and_residual(
     y, z : array
         Where to look on the end faces, metres.
     """
-    places = [Place(*positions.axes)]
-    ends = _ends(body)
-    if ends.size:
-        places.append(Place(ends, y, z))
-    stresses, *at_ends = stresses_at(body, loads, grid, places)
-    residual = _residual(loads, at_ends[0]) if at_ends else 0.0
-    return _labelled(body, grid, stresses, positions), residual
+    asked, ends, peaks = Place(*positions.axes), _ends(body), around_peaks(loads, grid, body.extent)
+    places = [asked, *peaks, *([Place(ends, y, z)] if ends.size else [])]
+    stresses = stresses_at(body, loads, grid, places)
+    residual = _residual(loads, stresses[-1]) if ends.size else 0.0
+    around = list(zip(peaks, stresses[1:], strict=False))
+    largest = largest_stress(
+        around, (asked, stresses[0]), body.extent, lambda place: stress_under(body, loads, grid, *place)
+    )
+    return ContactStresses(_labelled(body, grid, stresses[0], positions), residual, largest)
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:

@@ -58,11 +58,31 @@ def solved(count: int, **roller: object) -> xr.Dataset:
 
 
 def test_a_coarse_list_of_depths_finds_the_depth_of_a_fine_one() -> None:
-    coarse, fine = (analysis.largest(solved(count)) for count in (9, 25))
-    error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
-    assert error <= float(coarse.peak_von_mises_error)
-    assert error < 0.005 * float(fine.peak_von_mises)
-    assert float(coarse.peak_von_mises_z) == pytest.approx(float(fine.peak_von_mises_z), abs=0.03 * A)
+    coarse, fine = (analysis.largest(solved(count), "tresca") for count in (9, 25))
+    error = abs(float(coarse.peak_tresca - fine.peak_tresca))
+    assert error <= float(coarse.peak_tresca_error)
+    assert error < 0.005 * float(fine.peak_tresca)
+    assert float(coarse.peak_tresca_z) == pytest.approx(float(fine.peak_tresca_z), abs=0.03 * A)
+
+
+def test_of_a_solved_case_it_is_that_of_the_body() -> None:
+    result = solved(9)
+    found = analysis.largest(result)
+    assert float(found.peak_von_mises) == float(result.peak_von_mises)
+    assert set(found.data_vars) == {f"peak_von_mises{part}" for part in ("", "_error", "_x", "_y", "_z")}
+
+
+@pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.3, 0.02, "x")])
+def test_points_too_far_apart_for_the_peak_of_the_pressure_have_no_error(x: float, z: float, axis: str) -> None:
+    """A ridge 0.2 wide along x, and points that would agree well with polynomials."""
+    at = np.arange(-1.0, 1.0, 0.02)
+    ridge = np.sqrt(np.maximum(1 - (at / 0.2) ** 2, 0.0))[:, None] * np.ones(20)
+    pressed = xr.DataArray(ridge, coords={"x": at, "y": 0.1 * np.arange(20)}, dims=("x", "y"))
+    field = hill(np.arange(-0.9, 1.0, x), np.arange(0.0, 2.0, z)).rename(x="x_field", y="y_field")
+    found = analysis.largest(field.assign(pressure=pressed), "maximum_shear")
+    assert np.isinf(float(found.peak_maximum_shear_error))
+    comment = found.peak_maximum_shear_error.attrs["comment"]
+    assert f"m apart along {axis} where the pressure's peak is 0.2 m wide" in comment
 
 
 def test_a_singular_end_has_no_largest_stress() -> None:

@@ -1,0 +1,216 @@
+"""The largest von Mises stress in a body, wherever its stresses are asked for.
+
+It lies below a peak of the pressure, at a depth that goes with the peak's width: for an edge radius some hundredths of
+a half-width, between any usual depths. So points are laid around the peaks, and laid again more closely around the
+largest value until polynomials through them agree. With much friction it lies on the top. There stresses are known at
+the centres of cells inside the contact; on the rim they show the cells.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.arrays.between import refined
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.invariants import von_mises_of
+from contactstudy.arrays.peak_width import peak_width
+from contactstudy.bodies.models import Extent
+from contactstudy.checks import BoolArray, FloatArray, IntArray
+from contactstudy.fields.loads import Loads
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.field import Place
+
+BESIDE = np.array([-1.1, -0.7, -0.35, 0.0, 0.35, 0.7, 1.1])
+"""Points along x and y around a peak, over its width and its half-width across."""
+
+BELOW = np.array([0.08, 0.16, 0.28, 0.42, 0.6, 0.8, 1.1, 1.5])
+"""Depths, over the width: the largest stress under a line contact is at 0.70, under a round one at 0.48."""
+
+HIGH = 0.6
+"""Share of the largest pressure from which on the other half's peak is looked at: at a free end it may do more."""
+
+RIM = 2
+"""Cells at the rim of the contact whose stresses on the top are not looked at. Accuracy."""
+
+ON_TOP = 0.02
+"""Relative error of stresses on the top under a solved pressure, see the page on limits. Accuracy."""
+
+SETTLED = 3e-3
+"""Relative error of the interpolation at which points are close enough."""
+
+MOST = 6
+"""Times that points are laid anew."""
+
+
+class Largest(NamedTuple):
+    """Largest value of the von Mises stress.
+
+    Attributes
+    ----------
+    value, error : float
+        The value, Pa, and by how much polynomials of two degrees differ; on the top what cells may make of it.
+    place : tuple of float
+        Where it is: x, y and z, metres.
+    """
+
+    value: float
+    error: float
+    place: tuple[float, float, float]
+
+
+class _Top(NamedTuple):
+    """The largest value among some points and between them; `at`: number of the largest point along each axis."""
+
+    found: Largest
+    points: Place
+    at: tuple[int, ...]
+
+
+def around_peaks(loads: Loads, grid: Grid, extent: Extent) -> list[Place]:
+    """Points around each peak of the pressure that may have the largest stress: below the top, and alone on it.
+
+    On the top they are centres of cells inside the contact, if it has any. Points do not depend on the friction.
+    """
+    pressure = loads[Load.NORMAL].values
+    line = pressure.max(axis=1)
+    found: list[Place] = []
+    if not line.any():
+        return found
+    for peak in _peaks(line, loads, extent):
+        across = pressure[peak]
+        half_width = 0.5 * grid.dy * np.count_nonzero(across)
+        width = peak_width(pressure, grid.x, grid.dy, peak)
+        if any(abs(grid.x[peak] - other.x).min() < 0.2 * width for other in found):
+            continue
+        middle = float((across * grid.y).sum() / across.sum())
+        x, y = grid.x[peak] + width * BESIDE, middle + half_width * BESIDE
+        found += [Place(np.unique(np.clip(x, *extent)), y, width * BELOW), *_on_top(pressure, grid, peak, x, y)]
+    return found
+
+
+def _on_top(pressure: FloatArray, grid: Grid, peak: int, x: FloatArray, y: FloatArray) -> list[Place]:
+    """Centres of the cells nearest to some positions, off the rim; none if the contact is all rim."""
+    loaded: BoolArray = np.asarray(pressure > 0)
+    columns = _nearest(grid.x, x, _off_rim(np.asarray(loaded.any(axis=1)), peak))
+    rows = _nearest(grid.y, y, _off_rim(np.asarray(loaded[columns].all(axis=0)), int(pressure[peak].argmax())))
+    return [Place(grid.x[columns], grid.y[rows], np.zeros(1))] if columns.size and rows.size else []
+
+
+def _off_rim(loaded: BoolArray, at: int) -> IntArray:
+    """Numbers of the cells of a contact around `at`, off its rim; at the end of all cells the body ends, too."""
+    free = np.flatnonzero(~loaded)
+    before, after = free[free <= at], free[free >= at]
+    start = before[-1] + 1 + RIM if before.size else 0
+    stop = after[0] - RIM if after.size else loaded.size
+    return np.arange(start, stop)
+
+
+def _nearest(centres: FloatArray, wanted: FloatArray, among: IntArray) -> IntArray:
+    """Those of some cells whose centres are nearest to some positions; none of none."""
+    if not among.size:
+        return among
+    return np.asarray(np.unique(among[np.abs(centres[among] - wanted[:, None]).argmin(axis=1)]))
+
+
+def _peaks(line: FloatArray, loads: Loads, extent: Extent) -> Iterator[int]:
+    """Columns of the highest pressures of either half; one of them if body and loads have a mirror plane."""
+    half = line.size // 2
+    first, last = int(line[: max(half, 1)].argmax()), line.size - 1 - int(line[half:][::-1].argmax())
+    alike = first == line.size - 1 - last and np.isinf(extent[0]) == np.isinf(extent[1])
+    alike = alike and all(
+        np.allclose(load.cells[first], load.cells[last], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+        for load in loads.values()
+    )
+    for peak in (first, last) if line[first] >= line[last] else (last, first):
+        if line[peak] >= HIGH * line.max() and not (alike and peak == last):
+            yield peak
+
+
+def largest_stress(
+    around: Sequence[tuple[Place, FloatArray]],
+    asked: tuple[Place, FloatArray],
+    extent: Extent,
+    stress: Callable[[Place], FloatArray],
+) -> Largest:
+    """Largest von Mises stress; 0 nowhere without pressure.
+
+    Parameters
+    ----------
+    around : sequence of (Place, array (6, x, y, z))
+        What `around_peaks` returns, and the stresses there.
+    asked : (Place, array (6, x, y, z))
+        Other points that are known, which are looked at as far as they are not too near to the top.
+    extent : tuple of float
+        Ends of the body, metres.
+    stress : callable
+        Stresses at other places.
+    """
+    if not around:
+        return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
+    shallowest = min(place.z[0] for place, _ in around if place.z[0] > 0)
+    deep = asked[0].z >= shallowest
+    below = [(place, field) for place, field in around if place.z[0] > 0]
+    if deep.any():
+        below.append((asked[0]._replace(z=asked[0].z[deep]), asked[1][..., deep]))
+    best = max((_top(place, field) for place, field in below), key=lambda top: top.found.value)
+    for _ in range(MOST):
+        closer, inside = _closer(best, extent, shallowest)
+        if inside and best.found.error <= SETTLED * best.found.value:
+            break
+        top = _top(closer, stress(closer))
+        change = abs(top.found.value - best.found.value)
+        if top.found.value < best.found.value and not inside:
+            # Beyond the edge it falls.
+            best = best._replace(found=best.found._replace(error=max(best.found.error, change)))
+            break
+        best = top
+    on_top = [_of_cells(place, field) for place, field in around if place.z[0] == 0]
+    return max([best.found, *on_top], key=lambda found: found.value)
+
+
+def _of_cells(place: Place, stresses: FloatArray) -> Largest:
+    """Largest value at the centres of cells on the top."""
+    values = von_mises_of(*stresses)
+    best = np.unravel_index(int(values.argmax()), values.shape)
+    x, y, z = (float(axis[index]) for axis, index in zip(place, best, strict=True))
+    return Largest(float(values[best]), ON_TOP * float(values[best]), (x, y, z))
+
+
+def _top(points: Place, stresses: FloatArray) -> _Top:
+    """Largest value between points where the stresses are known: polynomials go through the components."""
+    at = np.unravel_index(int(von_mises_of(*stresses).argmax()), stresses.shape[1:])
+    index = tuple(int(number) for number in at)
+    (value, place), (rough, _) = (_between(points, stresses, index, around) for around in (2, 1))
+    return _Top(Largest(value, abs(value - rough), place), points, index)
+
+
+def _between(
+    points: Place, stresses: FloatArray, index: tuple[int, ...], around: int
+) -> tuple[float, tuple[float, float, float]]:
+    """Largest value of polynomials through the points `around` one on either side, and its place."""
+    near = [refined(axis, number, around) for axis, number in zip(points, index, strict=True)]
+    values = stresses[(slice(None), *(each.window for each in near))]
+    for number, each in enumerate(near, start=1):
+        values = np.moveaxis(np.tensordot(each.matrix, values, axes=(1, number)), 0, number)
+    between = von_mises_of(*values)
+    best = np.unravel_index(int(between.argmax()), between.shape)
+    x, y, z = (float(each.points[number]) for each, number in zip(near, best, strict=True))
+    return float(between[best]), (x, y, z)
+
+
+def _closer(top: _Top, extent: Extent, shallowest: float) -> tuple[Place, bool]:
+    """Points around the largest one, closer together; as far apart, and further out, where that is at an edge."""
+    axes, inside = [], True
+    limits = (extent, (-np.inf, np.inf), (shallowest, np.inf))
+    for axis, index, (low, high) in zip(top.points, top.at, limits, strict=True):
+        at = axis[index]
+        before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
+        outermost = bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
+        inside = inside and not outermost
+        reach = (axis[-1] - axis[0]) / 2 if outermost else 0.0
+        start, stop = min(before, at - reach), max(after, at + reach)
+        axes.append(np.unique(np.clip(np.linspace(start, stop, 5), low, high)))
+    return Place(*axes), inside

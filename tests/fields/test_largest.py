@@ -1,0 +1,134 @@
+"""The largest stress in a body: against closed forms, closer points and finer cells, and from the other end."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
+from contactstudy.arrays.invariants import von_mises_of
+from contactstudy.checks import FloatArray
+from contactstudy.fields.largest import around_peaks
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.positions import field_positions
+from contactstudy.fields.stress import ContactStresses, contact_stresses
+from contactstudy.verification import closed_forms as ref
+
+STEEL = Material(210e9, 0.3)
+RADIUS, PRESSURE = 5e-3, 2e9
+A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
+NOWHERE = np.zeros(0)
+
+
+def circle() -> tuple[Grid, FloatArray]:
+    """Hertz pressure on a circle of radius 1."""
+    grid = Grid((-1.25, 1.25), (-1.25, 1.25), 100, 100)
+    return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
+
+
+def under(grid: Grid, pressure: FloatArray, friction: float) -> ContactStresses:
+    """Stresses of a half-space, at one point far from the largest."""
+    body = HalfSpace(material=Material(1.0, 0.3))
+    positions = field_positions(body, grid, [1.2], [1.2], [2.0])
+    return contact_stresses(body, sliding(pressure, friction), grid, positions, NOWHERE, NOWHERE)
+
+
+def test_below_a_circle_it_is_the_closed_form() -> None:
+    grid, pressure = circle()
+    found = under(grid, pressure, 0.0).largest
+    z = np.linspace(0.3, 0.7, 4001)
+    radial, axial = ref.hertz_circle_axis(z, 1.0, 1.0, 0.3)
+    known = np.abs(axial - radial)
+    assert found.value == pytest.approx(known.max(), rel=2e-3)
+    assert abs(found.value - known.max()) <= found.error + 2e-3 * found.value
+    assert found.place[2] == pytest.approx(z[known.argmax()], abs=0.03)
+    assert found.place[:2] == pytest.approx((0.0, 0.0), abs=0.05)
+
+
+def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
+    grid, pressure = circle()
+    found = under(grid, pressure, 0.5).largest
+    y = np.linspace(-0.95, 0.95, 381)
+    radial, hoop = ref.hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
+    pressed, zero = np.sqrt(1 - y**2), np.zeros_like(y)
+    traction = ref.sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
+    components = (hoop + traction["sigma_xx"], radial + traction["sigma_yy"], -pressed, zero, zero, 0.5 * pressed)
+    known = von_mises_of(*components)
+    assert found.place[2] == 0.0
+    assert abs(found.value - known.max()) <= found.error == 0.02 * found.value
+    assert abs(found.place[1]) < 1
+
+
+def test_no_pressure_has_none() -> None:
+    grid, pressure = circle()
+    found = under(grid, 0 * pressure, 0.0).largest
+    assert (found.value, found.error) == (0.0, 0.0)
+    assert np.isnan(found.place).all()
+
+
+def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
+    """An edge radius that is 0.4 half-widths: the largest stress lies 0.03 half-widths deep."""
+    body = FiniteLengthSpace(length=20 * A, material=STEEL)
+    roller = Roller(radius=RADIUS, length=(20 - 2 * distance) * A, profile=profiles.Cylinder(fillet_radius=0.05e-3))
+    return Case(body=body, roller=roller, max_pressure=PRESSURE, friction=friction, tilt=tilt)
+
+
+def at(result: xr.Dataset) -> list[float]:
+    return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones(friction: float) -> None:
+    case = sharp(friction)
+    far = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
+    near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 21), y=[0.0], z=A * np.linspace(0, 3, 7))
+    value = float(far.peak_von_mises)
+    assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
+    x, y, z = at(far)
+    step = 0.01 * A
+    axes = [place + step * np.arange(-4.0, 5.0) for place in (x, y)]
+    beside = stress_field(case.body, far.pressure, friction, *axes, z=z + 0.2 * step * np.arange(-9.0, 10.0))
+    assert float(beside.von_mises.max()) == pytest.approx(value, rel=3e-3)
+    assert value / float(far.von_mises.max()) > 1.4
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1, 0.4])
+def test_its_error_covers_that_on_finer_cells(friction: float) -> None:
+    coarse, fine = (solve(sharp(friction), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
+    error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
+    assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
+
+
+def test_a_tilted_roller_has_it_at_the_other_end_when_tilted_back() -> None:
+    there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
+    assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
+    assert at(there)[0] == pytest.approx(20 * A - at(back)[0], abs=0.02 * A)
+    assert abs(at(there)[0] - 10 * A) > 5 * A
+
+
+def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None:
+    body = HalfSpace(material=STEEL)
+    case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
+    given = solve(case, Grid((-A, 9 * A), (-1.5 * A, 1.5 * A), 20, 20), x=[0.0], y=[0.0], z=[A])
+    assert np.isnan(float(given.peak_von_mises_error))
+    assert "given cells" in given.peak_von_mises_error.attrs["comment"]
+    refined = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[A])
+    assert np.isinf(float(refined.peak_von_mises))
+    assert np.isnan(at(refined)).all()
+
+
+def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
+    grid = Grid((0.0, 10.0), (-1.0, 1.0), 100, 20)
+    ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
+    ends[:, [0, -1]] = 0.0
+    uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
+    low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
+    counts = [
+        len({float(place.x.mean().round()) for place in around_peaks(sliding(each, 0.0), grid, (0.0, 10.0))})
+        for each in (ends, uneven, low)
+    ]
+    assert counts == [1, 2, 1]
+    for place in around_peaks(sliding(uneven, 0.0), grid, (0.0, 10.0)):
+        assert place.x.min() >= 0.0
+        assert place.x.max() <= 10.0
