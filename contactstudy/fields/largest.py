@@ -79,7 +79,7 @@ def around_peaks(loads: Loads, grid: Grid, extent: Extent) -> list[Place]:
     found: list[Place] = []
     if not line.any():
         return found
-    for peak in _peaks(line, loads, extent):
+    for peak in _peaks(line, loads, grid, extent):
         across = pressure[peak]
         half_width = 0.5 * grid.dy * np.count_nonzero(across)
         width = peak_width(pressure, grid.x, grid.dy, peak)
@@ -115,17 +115,17 @@ def _nearest(centres: FloatArray, wanted: FloatArray, among: IntArray) -> IntArr
     return np.asarray(np.unique(among[np.abs(centres[among] - wanted[:, None]).argmin(axis=1)]))
 
 
-def _peaks(line: FloatArray, loads: Loads, extent: Extent) -> Iterator[int]:
-    """Columns of the highest pressures of either half; one of them if body and loads have a mirror plane."""
-    half = line.size // 2
-    first, last = int(line[: max(half, 1)].argmax()), line.size - 1 - int(line[half:][::-1].argmax())
-    alike = first == line.size - 1 - last and np.isinf(extent[0]) == np.isinf(extent[1])
+def _peaks(line: FloatArray, loads: Loads, grid: Grid, extent: Extent) -> Iterator[int]:
+    """Columns of the highest pressures of either half; of the first only if body and loads have a mirror plane."""
+    half = (line.size + 1) // 2
+    first, last = int(line[:half].argmax()), half + int(line[half:].argmax()) if line.size > 1 else 0
+    alike = np.isinf(extent[0]) == np.isinf(extent[1]) and np.allclose(grid.widths, grid.widths[::-1])
     alike = alike and all(
-        np.allclose(load.cells[first], load.cells[last], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+        np.allclose(load.cells, load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
         for load in loads.values()
     )
-    for peak in (first, last) if line[first] >= line[last] else (last, first):
-        if line[peak] >= HIGH * line.max() and not (alike and peak == last):
+    for peak in (first,) if alike else (first, last) if line[first] >= line[last] else (last, first):
+        if line[peak] >= HIGH * line.max():
             yield peak
 
 
