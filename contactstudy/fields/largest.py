@@ -23,10 +23,10 @@ from contactstudy.fields.loads import Loads
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Place
 
-BESIDE = np.array([-1.1, -0.7, -0.35, 0.0, 0.35, 0.7, 1.1])
+BESIDE = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
 """Points along x and y around a peak, over its width and its half-width across."""
 
-BELOW = np.array([0.08, 0.16, 0.28, 0.42, 0.6, 0.8, 1.1, 1.5])
+BELOW = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
 """Depths, over the width: the largest stress under a line contact is at 0.70, under a round one at 0.48."""
 
 HIGH = 0.6
