@@ -1,8 +1,9 @@
 """The largest von Mises stress in a body, wherever its stresses are asked for.
 
 It lies below a peak of the pressure, at a depth that goes with the peak's width: for an edge radius some hundredths of
-a half-width, between any usual depths. So points are laid around the peaks, and laid again more closely around the
-largest value until polynomials through them agree. With much friction it lies on the top. There stresses are known at
+a half-width, between any usual depths. Or it lies near a free end, where less pressure does more. So points are laid
+around the peaks and along the contact, and laid again more closely around the largest values until polynomials
+through them agree. With much friction it lies on the top. There stresses are known at
 the centres of cells inside the contact; on the rim they show the cells.
 """
 
@@ -28,6 +29,15 @@ BESIDE = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
 
 BELOW = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
 """Depths, over the width: the largest stress under a line contact is at 0.70, under a round one at 0.48."""
+
+ALONG = np.array([0.3, 0.7, 1.2, 2.0, 3.5, 6.0, 11.0, 20.0])
+"""Distances from the ends of the contact at which it is looked at along the axis, over the half-width."""
+
+ACROSS = np.array([-0.4, 0.0, 0.4])
+"""Points across it, likewise."""
+
+DEEP = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])
+"""Depths, likewise."""
 
 HIGH = 0.6
 """Share of the largest pressure from which on the other half's peak is looked at: at a free end it may do more."""
@@ -69,26 +79,41 @@ class _Top(NamedTuple):
     at: tuple[int, ...]
 
 
-def around_peaks(loads: Loads, grid: Grid, extent: Extent) -> list[Place]:
-    """Points around each peak of the pressure that may have the largest stress: below the top, and alone on it.
+def points_looked_at(loads: Loads, grid: Grid, extent: Extent) -> list[Place]:
+    """Points among which the largest stress is looked for; none without pressure. They do not depend on the friction.
 
-    On the top they are centres of cells inside the contact, if it has any. Points do not depend on the friction.
+    They lie below the top, but for centres of cells inside the contact, which are places of their own.
     """
     pressure = loads[Load.NORMAL].values
     line = pressure.max(axis=1)
     found: list[Place] = []
     if not line.any():
         return found
-    for peak in _peaks(line, loads, grid, extent):
-        across = pressure[peak]
-        half_width = 0.5 * grid.dy * np.count_nonzero(across)
+    alike = _mirrored(loads, grid, extent)
+    for peak in _peaks(line, alike=alike):
+        middle, half_width = _across(pressure[peak], grid)
         width = peak_width(pressure, grid.x, grid.dy, peak)
         if any(abs(grid.x[peak] - other.x).min() < 0.2 * width for other in found):
             continue
-        middle = float((across * grid.y).sum() / across.sum())
         x, y = grid.x[peak] + width * BESIDE, middle + half_width * BESIDE
         found += [Place(np.unique(np.clip(x, *extent)), y, width * BELOW), *_on_top(pressure, grid, peak, x, y)]
-    return found
+    return [*found, _along(pressure, grid, alike=alike)]
+
+
+def _across(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
+    """Middle and half-width of a contact across one column, metres."""
+    return float((pressure * grid.y).sum() / pressure.sum()), 0.5 * grid.dy * np.count_nonzero(pressure)
+
+
+def _along(pressure: FloatArray, grid: Grid, *, alike: bool) -> Place:
+    """Points from the ends of a contact to its middle, on one half of it only if both are alike."""
+    columns = np.flatnonzero(pressure.any(axis=1))
+    first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
+    middle, half_width = _across(pressure[int(pressure.max(axis=1).argmax())], grid)
+    inside = np.append(half_width * ALONG, 0.5 * (last - first))
+    inside = inside[inside <= 0.5 * (last - first)]
+    x = first + inside if alike else np.concatenate([first + inside, last - inside])
+    return Place(np.unique(x), middle + half_width * ACROSS, half_width * DEEP)
 
 
 def _on_top(pressure: FloatArray, grid: Grid, peak: int, x: FloatArray, y: FloatArray) -> list[Place]:
@@ -115,22 +140,29 @@ def _nearest(centres: FloatArray, wanted: FloatArray, among: IntArray) -> IntArr
     return np.asarray(np.unique(among[np.abs(centres[among] - wanted[:, None]).argmin(axis=1)]))
 
 
-def _peaks(line: FloatArray, loads: Loads, grid: Grid, extent: Extent) -> Iterator[int]:
-    """Columns of the highest pressures of either half; of the first only if body and loads have a mirror plane."""
+def _mirrored(loads: Loads, grid: Grid, extent: Extent) -> bool:
+    """Whether body and loads have a mirror plane at mid-length."""
+    return bool(
+        np.isinf(extent[0]) == np.isinf(extent[1])
+        and np.allclose(grid.widths, grid.widths[::-1])
+        and all(
+            np.allclose(load.cells, load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            for load in loads.values()
+        )
+    )
+
+
+def _peaks(line: FloatArray, *, alike: bool) -> Iterator[int]:
+    """Columns of the highest pressures of either half; of the first only if both are alike."""
     half = (line.size + 1) // 2
     first, last = int(line[:half].argmax()), half + int(line[half:].argmax()) if line.size > 1 else 0
-    alike = np.isinf(extent[0]) == np.isinf(extent[1]) and np.allclose(grid.widths, grid.widths[::-1])
-    alike = alike and all(
-        np.allclose(load.cells, load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
-        for load in loads.values()
-    )
     for peak in (first,) if alike else (first, last) if line[first] >= line[last] else (last, first):
         if line[peak] >= HIGH * line.max():
             yield peak
 
 
 def largest_stress(
-    around: Sequence[tuple[Place, FloatArray]],
+    looked_at: Sequence[tuple[Place, FloatArray]],
     asked: tuple[Place, FloatArray],
     extent: Extent,
     stress: Callable[[Place], FloatArray],
@@ -139,8 +171,8 @@ def largest_stress(
 
     Parameters
     ----------
-    around : sequence of (Place, array (6, x, y, z))
-        What `around_peaks` returns, and the stresses there.
+    looked_at : sequence of (Place, array (6, x, y, z))
+        What `points_looked_at` returns, and the stresses there.
     asked : (Place, array (6, x, y, z))
         Other points that are known, which are looked at as far as they are not too near to the top.
     extent : tuple of float
@@ -148,27 +180,35 @@ def largest_stress(
     stress : callable
         Stresses at other places.
     """
-    if not around:
+    if not looked_at:
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
-    shallowest = min(place.z[0] for place, _ in around if place.z[0] > 0)
+    below = [(place, field) for place, field in looked_at if place.z[0] > 0]
+    shallowest = min(float(place.z[0]) for place, _ in below)
     deep = asked[0].z >= shallowest
-    below = [(place, field) for place, field in around if place.z[0] > 0]
     if deep.any():
         below.append((asked[0]._replace(z=asked[0].z[deep]), asked[1][..., deep]))
-    best = max((_top(place, field) for place, field in below), key=lambda top: top.found.value)
+    tops = sorted((_top(place, field) for place, field in below), key=lambda top: -top.found.value)
+    found = [_of_cells(place, field) for place, field in looked_at if place.z[0] == 0]
+    for top in tops:
+        # Others may turn out to be larger once their points are closer.
+        if top.found.value + top.found.error >= max((each.value for each in found), default=0.0):
+            found.append(_settled(top, extent, shallowest, stress))
+    return max(found, key=lambda each: each.value)
+
+
+def _settled(top: _Top, extent: Extent, shallowest: float, stress: Callable[[Place], FloatArray]) -> Largest:
+    """Lay points again around the largest value of some, until polynomials through them agree."""
     for _ in range(MOST):
-        closer, inside = _closer(best, extent, shallowest)
-        if inside and best.found.error <= SETTLED * best.found.value:
+        closer, inside = _closer(top, extent, shallowest)
+        if inside and top.found.error <= SETTLED * top.found.value:
             break
-        top = _top(closer, stress(closer))
-        change = abs(top.found.value - best.found.value)
-        if top.found.value < best.found.value and not inside:
+        next_top = _top(closer, stress(closer))
+        change = abs(next_top.found.value - top.found.value)
+        if next_top.found.value < top.found.value and not inside:
             # Beyond the edge it falls.
-            best = best._replace(found=best.found._replace(error=max(best.found.error, change)))
-            break
-        best = top
-    on_top = [_of_cells(place, field) for place, field in around if place.z[0] == 0]
-    return max([best.found, *on_top], key=lambda found: found.value)
+            return top.found._replace(error=max(top.found.error, change))
+        top = next_top
+    return top.found
 
 
 def _of_cells(place: Place, stresses: FloatArray) -> Largest:

@@ -15,7 +15,7 @@ from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import Largest, around_peaks, largest_stress
+from contactstudy.fields.largest import Largest, largest_stress, points_looked_at
 from contactstudy.fields.loads import Loads, superposed
 from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import reference_of
@@ -252,13 +252,13 @@ def contact_stresses(
     y, z : array
         Where to look on the end faces, metres.
     """
-    asked, ends, peaks = Place(*positions.axes), _ends(body), around_peaks(loads, grid, body.extent)
-    places = [asked, *peaks, *([Place(ends, y, z)] if ends.size else [])]
+    asked, ends, looked_at = Place(*positions.axes), _ends(body), points_looked_at(loads, grid, body.extent)
+    places = [asked, *looked_at, *([Place(ends, y, z)] if ends.size else [])]
     stresses = stresses_at(body, loads, grid, places)
     residual = _residual(loads, stresses[-1]) if ends.size else 0.0
-    around = list(zip(peaks, stresses[1:], strict=False))
+    known = list(zip(looked_at, stresses[1:], strict=False))
     largest = largest_stress(
-        around, (asked, stresses[0]), body.extent, lambda place: stress_under(body, loads, grid, *place)
+        known, (asked, stresses[0]), body.extent, lambda place: stress_under(body, loads, grid, *place)
     )
     return ContactStresses(_labelled(body, grid, stresses[0], positions), residual, largest)
 

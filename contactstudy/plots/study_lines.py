@@ -31,7 +31,7 @@ MARKERS = "osD^vPX*"
 OPEN: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
 """Marker of a value that may be larger beyond the points where it was looked for."""
 
-AT_EDGE = "at the edge of the points: no error known"
+NO_ERROR = "no error known"
 
 WIDEST_LABEL, WIDEST_LEGEND = 34, 22
 """Characters after which the text of an axis and of the legend's title goes on in the next line."""
@@ -65,7 +65,7 @@ def plot_study_lines(
     Figure
         Its title says at which values of the other parameters. Bars are stated errors. An open triangle at the top
         stands for a value without a limit, such as the peak pressure at a sharp end inside the face. An open marker is
-        a largest value at the edge of the points where it was looked for.
+        a value of which no error is known.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def plot_study_lines(
         figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
     keys = {MEANING: MARK} if singular else {}
     if at_edge:
-        keys[AT_EDGE] = {"marker": "o", **OPEN}
+        keys[NO_ERROR] = {"marker": "o", **OPEN}
     if keys:
         marks = [Line2D([], [], color="0.3", **style) for style in keys.values()]
         figure.legend(marks, list(keys), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
@@ -169,7 +169,7 @@ def _errors(dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mappi
 def _without_error(
     dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mapping[str, Any]
 ) -> xr.DataArray | None:
-    """Where a largest value, or its place, has an infinite error because it lies at the edge of the points."""
+    """Where a largest value, or its place, has an infinite error."""
     base = name.removesuffix("_x").removesuffix("_y").removesuffix("_z")
     error = f"{base}_error"
     if error not in dataset:

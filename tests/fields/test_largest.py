@@ -9,7 +9,7 @@ import xarray as xr
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
 from contactstudy.arrays.invariants import von_mises_of
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import around_peaks
+from contactstudy.fields.largest import points_looked_at
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import ContactStresses, contact_stresses
@@ -43,7 +43,7 @@ def test_below_a_circle_it_is_the_closed_form() -> None:
     assert found.value == pytest.approx(known.max(), rel=2e-3)
     assert abs(found.value - known.max()) <= found.error + 2e-3 * found.value
     assert found.place[2] == pytest.approx(z[known.argmax()], abs=0.03)
-    assert found.place[:2] == pytest.approx((0.0, 0.0), abs=0.05)
+    assert found.place[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
 def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
@@ -107,6 +107,24 @@ def test_a_tilted_roller_has_it_at_the_other_end_when_tilted_back() -> None:
     assert abs(at(there)[0] - 10 * A) > 5 * A
 
 
+def test_near_a_free_end_less_pressure_does_more() -> None:
+    """The pressure is highest at mid-length, 20 a away, and rises steeply near to the end of the body."""
+    pressure, half_width = 0.75 * PRESSURE, 1.5 * A
+    profile = profiles.FujiwaraKawase.for_pressure(
+        pressure, radius=RADIUS, modulus=0.5 * STEEL.plane_strain_modulus, edge_drop=10e-6, k2=0.5
+    )
+    length = 10e-3
+    roller = Roller(radius=RADIUS, length=length, profile=profile, material=STEEL, ends="none")
+    case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
+    found = solve(case, accuracy=0.02, x=[0.5 * length], y=[0.0], z=[half_width])
+    x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
+    near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z)
+    line = found.pressure.max("y")
+    assert float(line.sel(x=half_width, method="nearest")) < 0.97 * float(line.max())
+    assert float(found.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
+    assert min(at(found)[0], length - at(found)[0]) < 2 * half_width
+
+
 def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None:
     body = HalfSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
@@ -125,10 +143,10 @@ def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -
     uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
     low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
     counts = [
-        len({float(place.x.mean().round()) for place in around_peaks(sliding(each, 0.0), grid, (0.0, 10.0))})
+        sum(place.z[0] == 0 for place in points_looked_at(sliding(each, 0.0), grid, (0.0, 10.0)))
         for each in (ends, uneven, low)
     ]
     assert counts == [1, 2, 1]
-    for place in around_peaks(sliding(uneven, 0.0), grid, (0.0, 10.0)):
+    for place in points_looked_at(sliding(uneven, 0.0), grid, (0.0, 10.0)):
         assert place.x.min() >= 0.0
         assert place.x.max() <= 10.0

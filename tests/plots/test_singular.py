@@ -76,4 +76,4 @@ def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker():
     _, line, marks = figure.axes[0].lines
     assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
     assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
-    assert any("edge of the points" in text.get_text() for legend in figure.legends for text in legend.get_texts())
+    assert any("no error known" in text.get_text() for legend in figure.legends for text in legend.get_texts())
