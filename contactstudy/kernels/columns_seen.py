@@ -272,7 +272,8 @@ def _surroundings(x: float, fine: FineCells, narrow: float, extent: tuple[float,
     if not on_end and low < x < high:
         # On an edge the narrower of both columns decides, so that the mirrored load is treated alike.
         beside = np.searchsorted(inserted, [x - SAME_END * (high - low), x + SAME_END * (high - low)]) - 1
-        width = float(np.diff(inserted)[beside].min())
+        # A point a rounding before the outermost edge has its columns on this side.
+        width = float(np.diff(inserted)[np.clip(beside, 0, inserted.size - 2)].min())
         # No column reaches over a step of the load, which would move its force.
         free = float(np.abs(fine.steps - x).min(initial=np.inf)) / 2
         step = min(CENTRED * width, max(free, LEAST * width))

@@ -77,6 +77,17 @@ def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) 
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
+@pytest.mark.parametrize("body", ["half", "finite"])
+def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: str, smooth_loads) -> None:
+    edges = GRADED.x_edges[1:-1]
+    load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
+    places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
+    before, on, beyond, near = (stress_field(BODIES[body], load, FRICTION, x=x, **at) for x in places)
+    for other in (before, beyond, near):
+        for name in on.data_vars:
+            assert np.abs(other[name].values - on[name].values).max() < 1e-3 * 1e9
+
+
 @pytest.mark.parametrize("body", BODIES)
 def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}

@@ -107,6 +107,18 @@ def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
     assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
 
 
+@pytest.mark.parametrize("narrow", [0.0, 0.02])
+def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None:
+    """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
+    edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
+    grid = Grid.between(edges, (-1.0, 1.0), 4)
+    own = FineCells(PRESSURE * np.ones(grid.shape), grid, (-np.inf, np.inf), 1)
+    on = around(2.0, own, narrow).inserted
+    for towards in (-np.inf, np.inf):
+        beside = around(float(np.nextafter(2.0, towards)), own, narrow).inserted
+        assert np.diff(beside).min() == pytest.approx(np.diff(on).min(), rel=0.6)
+
+
 def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
     """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
     for place in (0.0, 8.0):
