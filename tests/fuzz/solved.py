@@ -76,11 +76,18 @@ def require(condition: object, said: str) -> None:
         raise ViolationError(said)
 
 
-def run(drawn: Drawn) -> xr.Dataset:
-    """Solve a case; whatever is said beside the result has to be said rightly."""
+def run(drawn: Drawn, **at: list[float]) -> xr.Dataset:
+    """Solve a case, with stresses if they are wanted somewhere; whatever is said beside it has to be said rightly."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        result = solve(drawn.case, drawn.grid, accuracy=drawn.accuracy, stresses=False, tolerance=TOLERANCE)
+        result = solve(
+            drawn.case,
+            drawn.grid,
+            accuracy=drawn.accuracy,
+            stresses=bool(at),
+            tolerance=TOLERANCE,
+            **at,  # type: ignore[arg-type]
+        )
     kinds = {warning.category for warning in caught}
     other = [
         str(warning.message) for warning in caught if warning.category not in (ConvergenceWarning, MagnitudeWarning)
