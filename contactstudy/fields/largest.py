@@ -51,6 +51,9 @@ ON_TOP = 0.02
 SETTLED = 3e-3
 """Relative error of the interpolation at which points are close enough."""
 
+CLOSEST = 1e-3
+"""Distance of points that a user asks for, over their range, from which on polynomials go through them."""
+
 MOST = 6
 """Times that points are laid anew."""
 
@@ -96,7 +99,9 @@ def points_looked_at(loads: Loads, grid: Grid, extent: Extent) -> list[Place]:
         if any(abs(grid.x[peak] - other.x).min() < 0.2 * width for other in found):
             continue
         x, y = grid.x[peak] + width * BESIDE, middle + half_width * BESIDE
-        found += [Place(np.unique(np.clip(x, *extent)), y, width * BELOW), *_on_top(pressure, grid, peak, x, y)]
+        inside = np.clip(x, *extent)
+        below = Place(inside[_apart(inside, 0.1 * width)], y, width * BELOW)
+        found += [below, *_on_top(pressure, grid, peak, x, y)]
     return [*found, _along(pressure, grid, alike=alike)]
 
 
@@ -113,7 +118,16 @@ def _along(pressure: FloatArray, grid: Grid, *, alike: bool) -> Place:
     inside = np.append(half_width * ALONG, 0.5 * (last - first))
     inside = inside[inside <= 0.5 * (last - first)]
     x = first + inside if alike else np.concatenate([first + inside, last - inside])
-    return Place(np.unique(x), middle + half_width * ACROSS, half_width * DEEP)
+    return Place(x[_apart(x, 0.1 * half_width)], middle + half_width * ACROSS, half_width * DEEP)
+
+
+def _apart(positions: FloatArray, least: float) -> IntArray:
+    """Numbers of positions in order, without those too close to the one before: polynomials through these are wild."""
+    kept: list[int] = []
+    for number in np.argsort(positions, kind="stable").tolist():
+        if not kept or positions[number] - positions[kept[-1]] > least:
+            kept.append(number)
+    return np.array(kept)
 
 
 def _on_top(pressure: FloatArray, grid: Grid, peak: int, x: FloatArray, y: FloatArray) -> list[Place]:
@@ -184,9 +198,8 @@ def largest_stress(
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
     below = [(place, field) for place, field in looked_at if place.z[0] > 0]
     shallowest = min(float(place.z[0]) for place, _ in below)
-    deep = asked[0].z >= shallowest
-    if deep.any():
-        below.append((asked[0]._replace(z=asked[0].z[deep]), asked[1][..., deep]))
+    if (asked[0].z >= shallowest).any():
+        below.append(_well_spaced(*asked, shallowest))
     tops = sorted((_top(place, field) for place, field in below), key=lambda top: -top.found.value)
     found = [_of_cells(place, field) for place, field in looked_at if place.z[0] == 0]
     for top in tops:
@@ -194,6 +207,15 @@ def largest_stress(
         if top.found.value + top.found.error >= max((each.value for each in found), default=0.0):
             found.append(_settled(top, extent, shallowest, stress))
     return max(found, key=lambda each: each.value)
+
+
+def _well_spaced(place: Place, field: FloatArray, shallowest: float) -> tuple[Place, FloatArray]:
+    """Points that a user asks for, in order, as far as they are not too near to the top or to each other."""
+    kept = [_apart(axis, CLOSEST * float(np.ptp(axis))) for axis in place]
+    kept[2] = kept[2][place.z[kept[2]] >= shallowest]
+    for number, chosen in enumerate(kept, start=1):
+        field = field.take(chosen, axis=number)
+    return Place(*(axis[chosen] for axis, chosen in zip(place, kept, strict=True))), field
 
 
 def _settled(top: _Top, extent: Extent, shallowest: float, stress: Callable[[Place], FloatArray]) -> Largest:
@@ -251,6 +273,6 @@ def _closer(top: _Top, extent: Extent, shallowest: float) -> tuple[Place, bool]:
         outermost = bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
         inside = inside and not outermost
         reach = (axis[-1] - axis[0]) / 2 if outermost else 0.0
-        start, stop = min(before, at - reach), max(after, at + reach)
-        axes.append(np.unique(np.clip(np.linspace(start, stop, 5), low, high)))
+        start, stop = max(min(before, at - reach), low), min(max(after, at + reach), high)
+        axes.append(np.linspace(start, stop, 5) if axis.size > 1 else axis)
     return Place(*axes), inside
