@@ -48,6 +48,9 @@ RIM = 2
 ON_TOP = 0.02
 """Relative error of stresses on the top under a solved pressure, see the page on limits. Accuracy."""
 
+BETWEEN = 0.25
+"""Share of what polynomials add to the largest point that counts as their error: two degrees may agree by chance."""
+
 SETTLED = 3e-3
 """Relative error of the interpolation at which points are close enough."""
 
@@ -211,8 +214,10 @@ def largest_stress(
 
 def _well_spaced(place: Place, field: FloatArray, shallowest: float) -> tuple[Place, FloatArray]:
     """Points that a user asks for, in order, as far as they are not too near to the top or to each other."""
-    kept = [_apart(axis, CLOSEST * float(np.ptp(axis))) for axis in place]
-    kept[2] = kept[2][place.z[kept[2]] >= shallowest]
+    deep = np.flatnonzero(place.z >= shallowest)
+    axes = (place.x, place.y, place.z[deep])
+    in_x, in_y, in_z = (_apart(axis, CLOSEST * float(np.ptp(axis))) for axis in axes)
+    kept = (in_x, in_y, deep[in_z])
     for number, chosen in enumerate(kept, start=1):
         field = field.take(chosen, axis=number)
     return Place(*(axis[chosen] for axis, chosen in zip(place, kept, strict=True))), field
@@ -246,7 +251,8 @@ def _top(points: Place, stresses: FloatArray) -> _Top:
     at = np.unravel_index(int(von_mises_of(*stresses).argmax()), stresses.shape[1:])
     index = tuple(int(number) for number in at)
     (value, place), (rough, _) = (_between(points, stresses, index, around) for around in (2, 1))
-    return _Top(Largest(value, abs(value - rough), place), points, index)
+    sampled = float(von_mises_of(*stresses)[index])
+    return _Top(Largest(value, max(abs(value - rough), BETWEEN * (value - sampled)), place), points, index)
 
 
 def _between(
@@ -272,7 +278,7 @@ def _closer(top: _Top, extent: Extent, shallowest: float) -> tuple[Place, bool]:
         before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
         outermost = bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
         inside = inside and not outermost
-        reach = (axis[-1] - axis[0]) / 2 if outermost else 0.0
+        reach = 2 * (after - before) if outermost else 0.0
         start, stop = max(min(before, at - reach), low), min(max(after, at + reach), high)
         axes.append(np.linspace(start, stop, 5) if axis.size > 1 else axis)
     return Place(*axes), inside
