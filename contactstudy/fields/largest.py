@@ -239,11 +239,15 @@ def _settled(top: _Top, extent: Extent, shallowest: float, stress: Callable[[Pla
 
 
 def _of_cells(place: Place, stresses: FloatArray) -> Largest:
-    """Largest value at the centres of cells on the top."""
-    values = von_mises_of(*stresses)
+    """Largest value at the centres of cells on the top; in the outermost ones it may go on growing."""
+    values = von_mises_of(*stresses)[..., 0]
     best = np.unravel_index(int(values.argmax()), values.shape)
-    x, y, z = (float(axis[index]) for axis, index in zip(place, best, strict=True))
-    return Largest(float(values[best]), ON_TOP * float(values[best]), (x, y, z))
+    value, error = float(values[best]), ON_TOP * float(values[best])
+    for line, index in ((values[:, best[1]], int(best[0])), (values[best[0]], int(best[1]))):
+        if line.size > 1 and index in (0, line.size - 1):
+            error = max(error, float(abs(value - line[1 if index == 0 else -2])))
+    x, y = (float(axis[int(index)]) for axis, index in zip(place[:2], best, strict=True))
+    return Largest(value, error, (x, y, 0.0))
 
 
 def _top(points: Place, stresses: FloatArray) -> _Top:
