@@ -52,9 +52,13 @@ def regime_errors(tmp_path_factory):
     study = Study.from_toml(STUDIES / "regime_map.toml")
     small = replace(
         study,
-        base={**study.base, "accuracy": 0.05, "field_z_over_a": [0.5]},
-        sweep={**study.sweep, "e_over_a": [0.0, 1.0], "profile": study.sweep["profile"][:1]},
-        zip=[study.zip[0], {"gamma": [0.078, 0.104], "field_x_over_a": [[0.0, 1.0, 2.0, 3.0], [0.0, 2.0, 4.0]]}],
+        base={**study.base, "accuracy": 0.05},
+        sweep={
+            **study.sweep,
+            "e_over_a": [0.0, 1.0],
+            "gamma": [0.078, 0.104],
+            "profile": study.sweep["profile"][:1],
+        },
     )
     folder = tmp_path_factory.mktemp("regime_map")
     run_study(small, folder, workers=0)
@@ -77,7 +81,7 @@ def test_regime_map_compares_every_model_with_the_exact_ends(regime_errors):
         np.testing.assert_allclose(full[name].sel(friction=0.3), full[name].sel(friction=0.0), atol=1e-9)
     for profile in regime_errors["profile"].values:
         assert len(module.draw(regime_errors, profile).axes) == 16
-    assert module.table(regime_errors).count("\n") == 16
+    assert module.table(regime_errors).count("\n") == 15
 
 
 def test_regime_map_marks_what_only_the_model_makes_singular(regime_errors):
