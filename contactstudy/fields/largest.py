@@ -114,13 +114,14 @@ def _across(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
 
 
 def _along(pressure: FloatArray, grid: Grid, *, alike: bool) -> Place:
-    """Points from the ends of a contact to its middle, on one half of it only if both are alike."""
+    """Points from the ends of a contact to its middle, on one half of it and beside it only if both are alike."""
     columns = np.flatnonzero(pressure.any(axis=1))
     first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     middle, half_width = _across(pressure[int(pressure.max(axis=1).argmax())], grid)
     inside = np.append(half_width * ALONG, 0.5 * (last - first))
     inside = inside[inside <= 0.5 * (last - first)]
-    x = first + inside if alike else np.concatenate([first + inside, last - inside])
+    # Of two halves that are alike one point of the other, so that the middle is not at the edge.
+    x = np.concatenate([first + inside, last - (inside[-2:-1] if alike else inside)])
     return Place(x[_apart(x, 0.1 * half_width)], middle + half_width * ACROSS, half_width * DEEP)
 
 
