@@ -30,7 +30,7 @@ BESIDE = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
 BELOW = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
 """Depths, over the width: the largest stress under a line contact is at 0.70, under a round one at 0.48."""
 
-ALONG = np.array([0.3, 0.7, 1.2, 2.0, 3.5, 6.0, 11.0, 20.0])
+ALONG = np.array([0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
 """Distances from the ends of the contact at which it is looked at along the axis, over the half-width."""
 
 ACROSS = np.array([-0.4, 0.0, 0.4])
@@ -202,13 +202,15 @@ def largest_stress(
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
     below = [(place, field) for place, field in looked_at if place.z[0] > 0]
     shallowest = min(float(place.z[0]) for place, _ in below)
+    *at_peaks, along = below
+    found = [_settled(_top(*peak), extent, shallowest, stress) for peak in at_peaks]
+    found += [_of_cells(place, field) for place, field in looked_at if place.z[0] == 0]
+    elsewhere = [along]
     if (asked[0].z >= shallowest).any():
-        below.append(_well_spaced(*asked, shallowest))
-    tops = sorted((_top(place, field) for place, field in below), key=lambda top: -top.found.value)
-    found = [_of_cells(place, field) for place, field in looked_at if place.z[0] == 0]
-    for top in tops:
-        # Others may turn out to be larger once their points are closer.
-        if top.found.value + top.found.error >= max((each.value for each in found), default=0.0):
+        elsewhere.append(_well_spaced(*asked, shallowest))
+    for place, field in elsewhere:
+        top = _sampled(place, field)
+        if top.found.value > max(each.value for each in found):
             found.append(_settled(top, extent, shallowest, stress))
     return max(found, key=lambda each: each.value)
 
@@ -234,7 +236,8 @@ def _settled(top: _Top, extent: Extent, shallowest: float, stress: Callable[[Pla
         change = abs(next_top.found.value - top.found.value)
         if next_top.found.value < top.found.value and not inside:
             # Beyond the edge it falls.
-            return top.found._replace(error=max(top.found.error, change))
+            known = top.found.error if np.isfinite(top.found.error) else 0.0
+            return top.found._replace(error=max(known, change))
         top = next_top
     return top.found
 
@@ -249,6 +252,14 @@ def _of_cells(place: Place, stresses: FloatArray) -> Largest:
             error = max(error, float(abs(value - line[1 if index == 0 else -2])))
     x, y = (float(axis[int(index)]) for axis, index in zip(place[:2], best, strict=True))
     return Largest(value, error, (x, y, 0.0))
+
+
+def _sampled(points: Place, stresses: FloatArray) -> _Top:
+    """Largest value among points that may be too far apart for polynomials."""
+    values = von_mises_of(*stresses)
+    at = np.unravel_index(int(values.argmax()), values.shape)
+    x, y, z = (float(axis[int(number)]) for axis, number in zip(points, at, strict=True))
+    return _Top(Largest(float(values[at]), np.inf, (x, y, z)), points, tuple(int(number) for number in at))
 
 
 def _top(points: Place, stresses: FloatArray) -> _Top:
