@@ -152,10 +152,11 @@ def _off_rim(loaded: BoolArray, at: int) -> IntArray:
 
 
 def _nearest(centres: FloatArray, wanted: FloatArray, among: IntArray) -> IntArray:
-    """Those of some cells whose centres are nearest to some positions; none of none."""
+    """Those of some cells that are nearest to some positions, and neighbours of the outermost; none of none."""
     if not among.size:
         return among
-    return np.asarray(np.unique(among[np.abs(centres[among] - wanted[:, None]).argmin(axis=1)]))
+    at = np.unique(np.abs(centres[among] - wanted[:, None]).argmin(axis=1))
+    return np.asarray(among[np.unique(np.clip([*at, at[0] + 1, at[-1] - 1], 0, among.size - 1))])
 
 
 def _mirrored(loads: Loads, grid: Grid, extent: Extent) -> bool:
@@ -249,7 +250,7 @@ def _of_cells(place: Place, stresses: FloatArray) -> Largest:
     value, error = float(values[best]), ON_TOP * float(values[best])
     for line, index in ((values[:, best[1]], int(best[0])), (values[best[0]], int(best[1]))):
         if line.size > 1 and index in (0, line.size - 1):
-            error = max(error, float(abs(value - line[1 if index == 0 else -2])))
+            error = max(error, (RIM + 1) * float(abs(value - line[1 if index == 0 else -2])))
     x, y = (float(axis[int(index)]) for axis, index in zip(place[:2], best, strict=True))
     return Largest(value, error, (x, y, 0.0))
 
