@@ -22,7 +22,7 @@ STORED = {
     "friction": (33, "96f92ee20a25bd8e"),
     "gamma": (18, "7cac20daa29f13d6"),
     "profiles": (48, "de4bef948587bafc"),
-    "regime_map": (780, "53a5d7d42d069fdb"),
+    "regime_map": (780, "4255edcab9c3fd43"),
 }
 
 DEFAULTS = {
