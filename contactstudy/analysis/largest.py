@@ -27,7 +27,7 @@ AROUND = 2
 
 SINGULAR = "the pressure is singular at an end, and so is the stress"
 
-CLOSE = {"x": 1.0, "z": 0.5}
+CLOSE = {"x": 1.5, "z": 0.5}
 """Distance of points up to which polynomials follow the stresses below a peak of the pressure, over its width."""
 
 POINTWISE = ("von_mises", "tresca", "maximum_shear", "hydrostatic")

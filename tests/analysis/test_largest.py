@@ -72,7 +72,7 @@ def test_of_a_solved_case_it_is_that_of_the_body() -> None:
     assert set(found.data_vars) == {f"peak_von_mises{part}" for part in ("", "_error", "_x", "_y", "_z")}
 
 
-@pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.3, 0.02, "x")])
+@pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.4, 0.02, "x")])
 def test_points_too_far_apart_for_the_peak_of_the_pressure_have_no_error(x: float, z: float, axis: str) -> None:
     """A ridge 0.2 wide along x, and points that would agree well with polynomials."""
     at = np.arange(-1.0, 1.0, 0.02)

@@ -258,7 +258,7 @@ def test_shakedown_is_drawn_beside_the_line_contact(tmp_path):
     distances, along = study.zip[0].values()
     small = replace(
         study,
-        base={**study.base, "accuracy": 0.05, "field_z_over_a": [0.0, 0.2, 0.4, 0.6, 0.8, 1.0]},
+        base={**study.base, "accuracy": 0.05, "field_z_over_a": [0.0, 0.04, 0.08, 0.12, 0.2, 0.4, 0.6, 0.8, 1.0]},
         sweep={**study.sweep, "friction": [0.0, 0.2], "profile": study.sweep["profile"][1:]},
         zip=[{"e_over_a": [distances[0], distances[-1]], "field_x_over_a": [along[0], along[-1]]}],
     )
