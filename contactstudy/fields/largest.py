@@ -3,8 +3,8 @@
 It lies below a peak of the pressure, at a depth that goes with the peak's width: for an edge radius some hundredths of
 a half-width, between any usual depths. Or it lies near a free end, where less pressure does more. So points are laid
 around the peaks and along the contact, and laid again more closely around the largest values until polynomials
-through them agree. With much friction it lies on the top. There stresses are known at
-the centres of cells inside the contact; on the rim they show the cells.
+through them agree. With much friction it lies on the top. There stresses are known at the centres of cells inside the
+contact; on the rim they show the cells.
 """
 
 from __future__ import annotations
@@ -293,7 +293,7 @@ def _closer(top: _Top, extent: Extent, shallowest: float) -> tuple[Place, bool]:
     for axis, index, (low, high) in zip(top.points, top.at, limits, strict=True):
         at = axis[index]
         before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
-        outermost = bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
+        outermost = axis.size > 1 and bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
         inside = inside and not outermost
         reach = 2 * (after - before) if outermost else 0.0
         start, stop = max(min(before, at - reach), low), min(max(after, at + reach), high)
