@@ -181,9 +181,7 @@ def settled_peak(result: xr.Dataset, value: float, error: float, place: tuple[fl
         of_pressure = float(result["peak_pressure_error"] / result["peak_pressure"])
         found = Peak(value, error + value * of_pressure, dict(zip("xyz", place, strict=True)), "")
     else:
-        found = Peak(
-            value, np.nan, dict(zip("xyz", place, strict=True)), "how much the given cells decide is not known"
-        )
+        found = Peak(value, np.nan, dict(zip("xyz", place, strict=True)), "the error of the given cells is not known")
     return labelled_peak("von_mises", found, variable_of("von_mises", result["von_mises"].attrs))
 
 

@@ -79,6 +79,7 @@ def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) 
 
 @pytest.mark.parametrize("body", ["half", "finite"])
 def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: str, smooth_loads) -> None:
+    """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
