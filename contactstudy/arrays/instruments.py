@@ -140,7 +140,7 @@ def _x3p(path: Path) -> Heights:
     if isinstance(file, x3pio.PointCloud):
         raise _refused(path, "a profile or a surface", "it is a cloud of points: bring it onto a grid")
     if len(file.layers) != 1:
-        raise _refused(path, "a file with one layer", f"it has {len(file.layers)}")
+        raise _refused(path, "a file with one layer", f"it has {len(file.layers)}: write the one you want alone")
     points = file.layers[0].points(coordinate_system=x3pio.CoordinateSystem.VIEW)
     if isinstance(file, x3pio.Profile):
         return Heights(points[:, 0], None, points[:, 2])

@@ -284,4 +284,5 @@ def check_values(name: str, values: FloatArray, *positions: tuple[str, FloatArra
         ", ".join(f"{axis} = {where[index]:g} m" for (axis, where), index in zip(positions, entry, strict=True))
         for entry in bad[:5]
     )
-    raise InvalidInputError(name, f"missing or not finite at {shown}", "given everywhere", f"{len(bad)} values are not")
+    hint = f"{len(bad)} values are not: fill the gaps first, for example with the instrument's software"
+    raise InvalidInputError(name, f"missing or not finite at {shown}", "given everywhere", hint)

@@ -60,9 +60,9 @@ def ridge(x: FloatArray, y: FloatArray, heights: FloatArray) -> FloatArray:
     inside = (highest >= y[0]) & (highest <= y[-1])
     if not inside[known].all() or not known.any():
         raise InvalidInputError(
-            "path",
+            "height",
             "a map without the highest line of a roller in it",
-            "a map across which the surface rises to one line and falls again",
+            "such that the surface rises to one line across the map and falls again",
             "turn=90 takes the other axis for the roller's; for a part that is straight across give one line as CSV",
         )
     form = slope[:, None] * across + c * across**2
