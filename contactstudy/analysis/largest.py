@@ -16,7 +16,8 @@ from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, single_case
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.arrays.between import refined
-from contactstudy.arrays.peak_width import peak_width
+from contactstudy.arrays.grid import ON_TOP
+from contactstudy.arrays.peak_width import changes_within
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import Variable, named, variable_of
 from contactstudy.checks import FloatArray
@@ -27,8 +28,9 @@ AROUND = 2
 
 SINGULAR = "the pressure is singular at an end, and so is the stress"
 
-CLOSE = {"x": 1.5, "z": 0.5}
-"""Distance of points up to which polynomials follow the stresses below a peak of the pressure, over its width."""
+CLOSE = 0.5
+"""Distance of points up to which polynomials follow the stresses, over the length on which the pressure above changes.
+Accuracy: at 0.5 they miss up to 2 % more than they state, at 1 up to 8 %, at 1.5 up to 14 %."""
 
 POINTWISE = ("von_mises", "tresca", "maximum_shear", "hydrostatic")
 """Measures of the stress at one point."""
@@ -49,11 +51,11 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     Dataset
         ``peak_<variable>`` (Pa), its estimated error ``peak_<variable>_error``, and its place ``peak_<variable>_x``,
         ``_y``, ``_z`` in metres. A result of :func:`contactstudy.solve` has that of the von Mises stress already,
-        wherever its points lie. The error has two parts: what polynomials of two degrees through the points differ by,
-        and the relative error of `peak_pressure` where that is settled. It is infinite, with a `comment` that says why,
-        where the largest sample lies at the edge of the points, beyond which the measure may be larger, where the
-        points are too far apart for the width of the pressure's peak, or where the pressure is singular. Along an axis
-        with one point the place is that point.
+        wherever its points lie. The error has three parts: what polynomials of two degrees through the points differ
+        by, the relative error of `peak_pressure` where that is settled, and on the top 2 %, what cells make of stresses
+        there. It is infinite, with a `comment` that says why, where the largest sample lies at the edge of the points,
+        beyond which the measure may be larger, where the points are too far apart for the pressure above them, or
+        where the pressure is singular. Along an axis with one point the place is that point.
 
     Raises
     ------
@@ -142,7 +144,10 @@ def peak_between(
         error = np.inf
     elif "peak_pressure_error" in one:
         error += value * float(one["peak_pressure_error"] / one["peak_pressure"])
-    return Peak(value, error, dict(zip(over, place, strict=True)), comment)
+    found = dict(zip(over, place, strict=True))
+    if "pressure" in one and found.get("z") == 0:
+        error += ON_TOP * value
+    return Peak(value, error, found, comment)
 
 
 def labelled_peak(variable: str, found: Peak, base: Variable) -> xr.Dataset:
@@ -196,25 +201,48 @@ def _without_limit(one: xr.Dataset, places: dict[str, FloatArray], at: tuple[np.
             on_body = any(np.isclose(place[index], end, rtol=0, atol=1e-9 * np.ptp(place)) for end in extent)
         if place.size > 1 and index in (0, place.size - 1) and not on_body:
             return f"the largest sample lies at the edge of the points along {axis}"
-    width = _peak_width(one)
-    for axis, share in CLOSE.items():
-        if axis not in places or places[axis].size < 2:
-            continue
-        beside = int(at[list(places).index(axis)])
-        apart = float(np.diff(places[axis])[max(beside - 1, 0) : beside + 1].max())
-        if apart > share * width:
-            return f"the points are {apart:.2g} m apart along {axis} where the pressure's peak is {width:.2g} m wide"
+    return _too_far_apart(
+        one, places, {axis: float(places[axis][index]) for axis, index in zip(places, at, strict=True)}
+    )
+
+
+def _too_far_apart(one: xr.Dataset, places: dict[str, FloatArray], largest_at: dict[str, float]) -> str:
+    """Say where points miss what the pressure does, below its highest peak or about the largest sample; else empty."""
+    if not {"pressure", "x", "y"} <= {str(name) for name in one.variables} or one["y"].size < 2:
+        return ""
+    pressure, x = one["pressure"].transpose("x", "y").values, one["x"].values
+    dy = float(one["y"][1] - one["y"][0])
+    line = pressure.max(axis=1)
+    seen = (x >= places["x"][0]) & (x <= places["x"][-1]) if "x" in places else np.ones(x.size, bool)
+    if not line[seen].any():
+        return ""
+    peak = int(np.where(seen, line, -1.0).argmax())
+    width = min(changes_within(pressure, x, dy, peak))
+    wanted = [(peak, {"x": float(x[peak])})]
+    # On the flank of that peak stresses change as they do below it.
+    if "x" in largest_at and abs(largest_at["x"] - x[peak]) > 2 * width:
+        wanted.append((int(np.abs(x - largest_at["x"]).argmin()), largest_at))
+    for column, where in wanted:
+        along, across = changes_within(pressure, x, dy, column)
+        # Near to a free end the stresses change along x even where the pressure does not.
+        from_end = min((abs(float(x[column]) - end) for end in _extent(one)), default=np.inf)
+        scales = {"x": min(along, max(across, from_end)), "z": min(along, across)}
+        for axis, scale in scales.items():
+            apart = _apart(places[axis], where.get(axis, 0.5 * scale)) if axis in places else 0.0
+            if apart > CLOSE * scale:
+                return (
+                    f"the points are {apart:.2g} m apart along {axis} where the pressure changes within {scale:.2g} m: "
+                    f"take at most {CLOSE * scale:.2g} m"
+                )
     return ""
 
 
-def _peak_width(one: xr.Dataset) -> float:
-    """Width of the highest peak of the pressure, metres; infinite if it is not known."""
-    if not {"pressure", "x", "y"} <= {str(name) for name in one.variables} or not (one["pressure"] > 0).any():
-        return np.inf
-    pressure = one["pressure"].transpose("x", "y").values
-    y = one["y"].values
-    column = int(pressure.max(axis=1).argmax())
-    return peak_width(pressure, one["x"].values, float(y[1] - y[0]), column) if y.size > 1 else np.inf
+def _apart(points: FloatArray, at: float) -> float:
+    """Longest of the distances on either side of the point nearest to a position; 0 of a single point."""
+    if points.size < 2:
+        return 0.0
+    nearest = int(np.abs(points - at).argmin())
+    return float(np.diff(points)[max(nearest - 1, 0) : nearest + 1].max())
 
 
 def _extent(one: xr.Dataset) -> tuple[float, ...]:

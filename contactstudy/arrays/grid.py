@@ -22,6 +22,8 @@ GROWTH = 3.0
 LEAST_WIDTH = 1e-12
 """Least width of a cell over the grid's length: narrower ones are lost in rounding. Accuracy."""
 
+ON_TOP = 0.02
+"""Relative error of stresses on the top under a pressure of cells, see the page on limits. Accuracy."""
 
 MOST_CELLS = 10**8
 """A wrong unit asks for many more."""

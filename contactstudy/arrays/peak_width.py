@@ -31,9 +31,22 @@ def peak_width(pressure: FloatArray, x: FloatArray, dy: float, column: int) -> f
     >>> round(peak_width(ridge, x, 0.1, 100), 1)
     0.5
     """
+    return min(changes_within(pressure, x, dy, column, rising=False))
+
+
+def changes_within(
+    pressure: FloatArray, x: FloatArray, dy: float, column: int, *, rising: bool = True
+) -> tuple[float, float]:
+    """Lengths along the axis and across it on which a pressure changes about one column, metres.
+
+    Along the axis it is the half-width of the peak that would fall as fast; infinite if the pressure is nearly uniform.
+    Without pressure there it is the distance to the contact. Where the pressure is `rising` counts as well.
+    """
     line = pressure.max(axis=1)
-    low = np.flatnonzero(line < FLANK * line[column])
-    across = 0.5 * dy * np.count_nonzero(pressure[column] > 0)
-    if not low.size:
-        return across
-    return float(min(np.abs(x[low] - x[column]).min() / np.sqrt(1 - FLANK**2), across))
+    other = line < FLANK * line[column]
+    if rising:
+        other |= FLANK * line > line[column]
+    loaded = column if line[column] > 0 else int(line.argmax())
+    across = 0.5 * dy * np.count_nonzero(pressure[loaded] > 0)
+    along = np.abs(x[other] - x[column]).min() / np.sqrt(1 - FLANK**2) if other.any() else np.inf
+    return float(along), float(across)

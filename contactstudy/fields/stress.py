@@ -15,12 +15,13 @@ from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import Largest, largest_stress, points_looked_at
+from contactstudy.fields.largest import Largest, largest_stress
 from contactstudy.fields.loads import Loads, superposed
 from contactstudy.fields.near_top import seen_by_ends
 from contactstudy.fields.part import reference_of
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
+from contactstudy.fields.search import search_under
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping.field import Place
@@ -252,14 +253,12 @@ def contact_stresses(
     y, z : array
         Where to look on the end faces, metres.
     """
-    asked, ends, looked_at = Place(*positions.axes), _ends(body), points_looked_at(loads, grid, body.extent)
-    places = [asked, *looked_at, *([Place(ends, y, z)] if ends.size else [])]
+    asked, ends, search = Place(*positions.axes), _ends(body), search_under(loads, grid, body.extent)
+    places = [asked, *search.places, *([Place(ends, y, z)] if ends.size else [])]
     stresses = stresses_at(body, loads, grid, places)
     residual = _residual(loads, stresses[-1]) if ends.size else 0.0
-    known = list(zip(looked_at, stresses[1:], strict=False))
-    largest = largest_stress(
-        known, (asked, stresses[0]), body.extent, lambda place: stress_under(body, loads, grid, *place)
-    )
+    known = stresses[1 : 1 + len(search.places)]
+    largest = largest_stress(search, known, (asked, stresses[0]), lambda place: stress_under(body, loads, grid, *place))
     return ContactStresses(_labelled(body, grid, stresses[0], positions), residual, largest)
 
 

@@ -13,7 +13,7 @@ from contactstudy.kernels.images import snapped
 from contactstudy.kernels.influence import Influence
 from contactstudy.kernels.smooth_load import SmoothLoad
 
-FEW_POINTS = 4
+FEW_POINTS = 8
 """Points along y up to which the corners are summed one by one instead of by a convolution. Speed."""
 
 TOGETHER_AT = 16_384

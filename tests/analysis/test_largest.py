@@ -72,7 +72,7 @@ def test_of_a_solved_case_it_is_that_of_the_body() -> None:
     assert set(found.data_vars) == {f"peak_von_mises{part}" for part in ("", "_error", "_x", "_y", "_z")}
 
 
-@pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.4, 0.02, "x")])
+@pytest.mark.parametrize(("x", "z", "axis"), [(0.02, 0.2, "z"), (0.15, 0.02, "x")])
 def test_points_too_far_apart_for_the_peak_of_the_pressure_have_no_error(x: float, z: float, axis: str) -> None:
     """A ridge 0.2 wide along x, and points that would agree well with polynomials."""
     at = np.arange(-1.0, 1.0, 0.02)
@@ -82,7 +82,28 @@ def test_points_too_far_apart_for_the_peak_of_the_pressure_have_no_error(x: floa
     found = analysis.largest(field.assign(pressure=pressed), "maximum_shear")
     assert np.isinf(float(found.peak_maximum_shear_error))
     comment = found.peak_maximum_shear_error.attrs["comment"]
-    assert f"m apart along {axis} where the pressure's peak is 0.2 m wide" in comment
+    assert f"m apart along {axis} where the pressure changes within 0.2 m: take at most 0.1 m" in comment
+
+
+def beside_a_narrow_peak(near: np.ndarray) -> xr.Dataset:
+    """A pressure that is uniform but for a peak 0.1 wide at x = 5, and a hill of stress at 0.3, far from it."""
+    at = np.arange(-2.0, 6.0, 0.02)
+    line = 1.0 + np.sqrt(np.maximum(1 - ((at - 5.0) / 0.1) ** 2, 0.0))
+    pressed = xr.DataArray(line[:, None] * np.ones(40), coords={"x": at, "y": 0.1 * np.arange(40)}, dims=("x", "y"))
+    x = np.concatenate([np.arange(-1.0, 1.5, 0.3), near])
+    return hill(x, np.arange(0.0, 2.0, 0.04)).rename(x="x_field", y="y_field").assign(pressure=pressed)
+
+
+@pytest.mark.parametrize("near", [np.array([2.0, 3.0]), np.concatenate([[2.0], np.arange(4.8, 5.2, 0.04)])])
+def test_points_far_apart_where_the_pressure_is_uniform_have_an_error(near: np.ndarray) -> None:
+    """The narrow peak lies outside of the points, or they are close there."""
+    found = analysis.largest(beside_a_narrow_peak(near), "maximum_shear")
+    assert abs(float(found.peak_maximum_shear) - 3) <= float(found.peak_maximum_shear_error) < 0.1
+
+
+def test_points_that_miss_a_peak_of_the_pressure_have_no_error_wherever_the_largest_of_them_is() -> None:
+    found = analysis.largest(beside_a_narrow_peak(np.array([2.0, 3.0, 4.0, 4.8, 5.3])), "maximum_shear")
+    assert np.isinf(float(found.peak_maximum_shear_error))
 
 
 def test_a_singular_end_has_no_largest_stress() -> None:

@@ -9,7 +9,6 @@ import xarray as xr
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
 from contactstudy.arrays.invariants import von_mises_of
 from contactstudy.checks import FloatArray
-from contactstudy.fields.largest import points_looked_at
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import ContactStresses, contact_stresses
@@ -151,17 +150,43 @@ def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None
     assert np.isnan(at(refined)).all()
 
 
-def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
-    grid = Grid((0.0, 10.0), (-1.0, 1.0), 100, 20)
-    ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
-    ends[:, [0, -1]] = 0.0
-    uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
-    low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [
-        sum(place.z[0] == 0 for place in points_looked_at(sliding(each, 0.0), grid, (0.0, 10.0)))
-        for each in (ends, uneven, low)
-    ]
-    assert counts == [1, 2, 1]
-    for place in points_looked_at(sliding(uneven, 0.0), grid, (0.0, 10.0)):
-        assert place.x.min() >= 0.0
-        assert place.x.max() <= 10.0
+FREE_ENDS = {
+    "sharp, without friction": (1.2e-3, 1.8e9, 0.0, None),
+    "sharp": (1.2e-3, 1.8e9, 0.3, None),
+    "crowned": (1e-3, 1.5e9, 0.3, profiles.FullCrown(1.0)),
+}
+"""Length, pressure, friction and profile of rollers that are flush with the body."""
+
+
+@pytest.mark.parametrize(("length", "pressure", "friction", "profile"), FREE_ENDS.values(), ids=FREE_ENDS)
+def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
+    length: float, pressure: float, friction: float, profile: profiles.Profile | None
+) -> None:
+    material = Material(208e9, 0.3)
+    roller = Roller(radius=4e-3, length=length, profile=profile or profiles.Cylinder())
+    body = FiniteLengthSpace(length=length, material=material)
+    case = Case(body=body, roller=roller, max_pressure=pressure, friction=friction)
+    a = case.hertz_half_width
+    far = solve(case, x=[0.5 * length], y=[0.0], z=[a])
+    columns = (far.x.values > 0.05 * a) & (far.x.values < a)
+    x, z = far.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
+    dense = stress_field(body, far.pressure, friction, x=x, y=far.y.values, z=z)
+    inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
+    largest = float(dense.von_mises.where(inside).max())
+    assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
+    assert at(far)[2] == 0.0
+    assert min(at(far)[0], length - at(far)[0]) < a
+    assert float(far.peak_von_mises_error) < 0.04 * float(far.peak_von_mises)
+
+
+def test_points_asked_for_do_not_worsen_the_error() -> None:
+    length = 1.2e-3
+    body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=4e-3, length=length), max_pressure=1.8e9)
+    few = solve(case, accuracy=0.003)
+    where = float(few.peak_von_mises_x)
+    depths = [0.0, 1e-7, 3e-7, 1e-6, 2e-6, 15e-6]
+    more = solve(case, accuracy=0.003, x=[where, length - where], y=[0.0], z=depths)
+    assert float(more.peak_von_mises) >= float(more.von_mises.sel(z=0.0).max())
+    assert float(more.peak_von_mises_error) == pytest.approx(float(few.peak_von_mises_error), rel=0.1)
+    assert float(more.peak_von_mises) == pytest.approx(float(few.peak_von_mises), rel=3e-3)

@@ -1,0 +1,45 @@
+"""Where the largest stress is looked for."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy import Grid
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.search import RIM, search_under
+
+
+def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
+    grid = Grid((0.0, 10.0), (-1.0, 1.0), 100, 20)
+    ends = np.exp(-(np.minimum(grid.x - 1, 9 - grid.x) ** 2))[:, None] * np.ones(20)
+    ends[:, [0, -1]] = 0.0
+    uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
+    low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
+    counts = [
+        sum(place.z[0] > 0 for place in search_under(sliding(each, 0.0), grid, (0.0, 10.0)).places)
+        for each in (ends, uneven, low)
+    ]
+    assert counts == [2, 3, 2]
+    for place in search_under(sliding(uneven, 0.0), grid, (0.0, 10.0)).places:
+        assert place.x.min() >= 0.0
+        assert place.x.max() <= 10.0
+
+
+def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
+    grid = Grid((0.0, 10.0), (-1.0, 1.0), 100, 20)
+    pressure = np.ones((100, 20))
+    pressure[:, [0, -1]] = 0.0
+    pressure[70:] = 0.0
+    search = search_under(sliding(pressure, 0.0), grid, (0.0, 10.0))
+    # The body ends with the cells: there is no rim at its end.
+    assert search.off_rim[: 70 - RIM, 1 + RIM : 19 - RIM].all()
+    assert search.off_rim.sum() == (70 - RIM) * (18 - 2 * RIM)
+    top = [place for place in search.places if place.z[0] == 0]
+    assert top
+    for place in top:
+        assert search.off_rim_at(place).all()
+
+
+def test_nothing_is_looked_at_without_pressure() -> None:
+    grid = Grid((0.0, 1.0), (-1.0, 1.0), 10, 10)
+    assert not search_under(sliding(np.zeros((10, 10)), 0.0), grid, (0.0, 1.0)).places
