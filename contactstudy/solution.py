@@ -61,7 +61,7 @@ def solve(
     case: Case,
     grid: Grid | None = None,
     *,
-    accuracy: float = ACCURACY,
+    accuracy: float | None = None,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions | None = None,
@@ -79,9 +79,10 @@ def solve(
     grid : Grid, optional
         Cells of pressure and gap. Default: columns of different widths, refined along the axis until `accuracy` is
         reached; for rough surfaces the uniform cells of `choose_grid`.
-    accuracy : float
+    accuracy : float, optional
         Error, over the peak pressure, to which the peak and the pressures at the roller's ends are settled: from 0.001
-        to 0.1. Where a sharp end makes the pressure singular, its law is stated instead.
+        to 0.1; default 0.01. Where a sharp end makes the pressure singular, its law is stated instead. Not for given
+        cells or rough surfaces, which are solved as they are.
     x, y : sequence of float, optional
         Positions of the stresses, metres; default: the cell centres.
     z : sequence of float, optional
@@ -139,8 +140,11 @@ def solve(
     found: FrictionalContact | None = None
     cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
     asked = case
+    if cells != "refined" and accuracy is not None:
+        instead = "a grid is solved as it is" if grid is not None else "rough surfaces are solved on uniform cells"
+        raise InvalidInputError("accuracy", accuracy, f"left out here: {instead}", "see error_estimate")
     if grid is None and roughness is None:
-        accuracy = check_accuracy(accuracy)
+        accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
         at = _settled(case, accuracy, checks.positive("tolerance", tolerance))
         case, settled = at
         contact, known = _checked(case, settled.contact), settled_values(settled)
@@ -200,7 +204,7 @@ def solve(
     LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
     settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
-    if cells == "refined":
+    if accuracy is not None:
         settings["accuracy"] = float(accuracy)
     return with_provenance(described, asked, settings, stages)
 

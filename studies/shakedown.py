@@ -62,7 +62,7 @@ def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
         limit = study["shakedown_limit"].sel(profile=crown).transpose("e_over_a", "friction")
         friction, distance = limit["friction"].values, limit["e_over_a"].values
         filled = upper.contourf(friction, distance, limit.values, levels=LEVELS, cmap="viridis", extend="both")
-        lines = upper.contour(friction, distance, limit.values, levels=LEVELS[::2], colors="white", linewidths=0.8)
+        lines = upper.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
         upper.clabel(lines, fmt="%.1f", fontsize="small")
         upper.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
         for one, style in zip(distance, line_styles(distance.size), strict=True):

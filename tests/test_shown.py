@@ -40,12 +40,14 @@ def test_a_measured_profile_does_not_list_its_points() -> None:
 def test_a_case_says_load_pressure_and_place_first() -> None:
     body = FiniteLengthSpace(length=16e-3, material=STEEL)
     roller = Roller(radius=6e-3, length=14e-3, profile=profiles.PartialCrown(6e-3, 2.0), material=STEEL)
-    case = Case(body=body, roller=roller, load=9e3, friction=0.05, tilt=1e-3, load_position=8e-3)
+    case = Case(body=body, roller=roller, load=9e3, friction=0.05, tilt=1e-3)
     lines = repr(case).splitlines()
     assert lines[0].startswith("Case: W = 9 kN, p0 = ")
     assert lines[0].endswith("e = 1 mm")
     assert "end drop 4 µm, E = 210 GPa" in lines[1]
-    assert lines[3] == "  friction 0.05, full sliding along +y; tilt 1 mrad; load at x = 8 mm"
+    assert lines[3] == "  friction 0.05, full sliding along +y; tilt 1 mrad"
+    balanced = replace(case, tilt=0.0, load_position=8e-3)
+    assert repr(balanced).splitlines()[3].endswith("load at x = 8 mm")
     assert "Rolling(" in repr(replace(case, motion=Rolling(longitudinal_creepage=1e-3)))
     page = case._repr_html_()
     assert page.count("<tr>") == page.count("</tr>") > 15

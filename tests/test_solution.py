@@ -169,3 +169,9 @@ def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
     assert np.allclose(inside.von_mises.values, other.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
     with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
         roller_stress(case, result.pressure, z=[5e-5])
+
+
+def test_given_cells_take_no_accuracy() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9)
+    with pytest.raises(InvalidInputError, match=r"accuracy = 0.01: must be left out here: a grid is solved as it is"):
+        solve(case, choose_grid(case), accuracy=0.01)

@@ -92,10 +92,13 @@ class ContactLaw:
         low, high = (1e6 * end for end in self._range("approach"))
         least, most = (1e3 * end for end in self._range("tilt"))
         loads = self.table["normal_load"]
+        errors = 100 * self.table["relative_load_error"].broadcast_like(loads)
+        worst = errors[errors.argmax(...)]
         return (
             f"ContactLaw(approach {low:.3g} to {high:.3g} um, tilt {least:.3g} to {most:.3g} mrad, "
             f"load {float(loads.min()):.3g} to {float(loads.max()):.3g} N, "
-            f"error of the load up to {100 * float(self.table['relative_load_error'].max()):.1g} %)"
+            f"error of the load {float(errors.median()):.1g} % by the median, up to {float(errors.max()):.1g} % at "
+            f"{1e6 * float(worst.approach):.3g} um and {1e3 * float(worst.tilt):.3g} mrad)"
         )
 
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:

@@ -104,6 +104,7 @@ def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) ->
     at = [index for index, tilt in enumerate(tilts) if not reflected or tilt >= -MIRRORED * tilts[-1]]
     values = np.full((3, approaches.size, tilts.size), np.nan)
     level = min(at, key=lambda index: abs(tilts[index]))
+    LOGGER.info("%d contacts at %d approaches and %d tilts", len(at) * approaches.size, approaches.size, len(at))
     # Each tilt begins with the loads of the one before it, from the least on.
     for index in sorted(at, key=lambda index: abs(index - level)):
         neighbour = index + int(np.sign(level - index))

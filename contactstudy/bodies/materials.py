@@ -25,3 +25,10 @@ DUCTILE_IRON = Material(young=173e9, poisson=0.3)
 
 STRUCTURAL_STEEL = Material(young=210e9, poisson=0.3)
 """Structural steel: 210 GPa, 0.3. EN 1993-1-1, 3.2.6."""
+
+
+def __getattr__(name: str) -> Material:
+    """Say which materials there are when another is asked for."""
+    raise AttributeError(
+        f"no material {name!r}; there are {', '.join(__all__)}, and Material(young, poisson)", name=name
+    )

@@ -30,9 +30,9 @@ INCLINED_POINTS = 41
 GAP_NODES = 6
 """Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
 
-SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-10, 0.5
+SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-7, 0.5
 """Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
-means 10 Pa on steel."""
+means 10 kPa on steel."""
 
 SHALLOWEST = 1e-12
 """Depth of the approach beyond first touch, over the roller's radius, below which rounding decides what touches."""
@@ -40,7 +40,7 @@ SHALLOWEST = 1e-12
 TOUCH_POINTS = 2001
 """Points along the axis among which first touch is sought."""
 
-SHORTEST, LONGEST = 1e-4, 1e10
+SHORTEST, LONGEST = 1e-4, 1e7
 """Lengths of contact and body over the Hertz half-width outside which, likewise, a unit is wrong."""
 
 
@@ -76,8 +76,8 @@ class Case:
         Misalignment, radians: by how much the roller is inclined about its mid-length against the undeformed top,
         positive if larger x is pressed deeper. Whatever moment holds it there is applied.
     load_position : float, optional
-        Position x on which the load acts, metres: a roller that is free to tilt takes the inclination, beyond `tilt`,
-        at which the pressure balances it. Default: the roller keeps its tilt.
+        Position x on which the load acts, metres: a roller that is free to tilt takes the inclination at which the
+        pressure balances it, so `tilt` is left out. Default: the roller keeps its tilt.
     motion : Sliding, Shift or Rolling
         How the roller moves against the body. Default: full sliding.
 
@@ -160,6 +160,13 @@ class Case:
                 allowed = f"where roller and body face each other, {start:g} to {stop:g} m"
                 raise InvalidInputError("load_position", position, allowed)
             checks.store(self, load_position=position)
+            if self.tilt:
+                raise InvalidInputError(
+                    "tilt",
+                    self.tilt,
+                    "left out with load_position",
+                    "the load tilts the roller until the pressure balances it, wherever it begins",
+                )
             self._check_inclination(start, stop)
 
     def _check_inclination(self, start: float, stop: float) -> None:
@@ -193,7 +200,8 @@ class Case:
                 value,
                 f"such that the Hertz half-width, {self.hertz_half_width:.3g} m, is at most {LARGEST_HALF_WIDTH:g} "
                 f"and at least {SMALLEST_HALF_WIDTH:g} of the roller's radius, {self.roller.radius:g} m",
-                f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here), loads in N, lengths in metres",
+                f"pressures and moduli are in Pa ({self.modulus:.3g} Pa here; 1500 MPa is 1.5e9 Pa), loads in N, "
+                "lengths in metres",
             )
 
         low, high = self.body.extent

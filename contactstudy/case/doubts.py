@@ -19,7 +19,8 @@ import numpy as np
 from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.errors import MagnitudeWarning
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import Shape, checked_drop
+from contactstudy.profiles.logarithmic import Logarithmic
 
 if TYPE_CHECKING:
     from contactstudy.bodies.material import Material
@@ -80,6 +81,7 @@ def doubts(case: Case) -> tuple[str, ...]:
         _doubt("friction", "friction", _largest(case.friction)),
         _doubt("tilt", "tilt", abs(case.tilt)),
         _of_crown(case),
+        _of_design(case),
         _of_load(case),
     ]
     if isinstance(case.body, FiniteLengthSpace):
@@ -155,6 +157,33 @@ def _largest(friction: object) -> float:
     return float(np.max(np.abs(np.asarray(values, dtype=np.float64))))
 
 
+def _logarithmic(profile: object) -> Iterator[Logarithmic]:
+    """Logarithmic profiles that a profile is, or is made of."""
+    if isinstance(profile, Logarithmic):
+        yield profile
+    elif isinstance(profile, tuple):
+        for part in profile:
+            yield from _logarithmic(part)
+    elif isinstance(profile, Shape):
+        yield from _logarithmic(tuple(vars(profile).values()))
+
+
+def _of_design(case: Case) -> str:
+    """Return the question on the load that the roller's logarithmic crown is designed for."""
+    usual, radius = USUAL["half_width"], case.roller.radius
+    for profile in _logarithmic(case.roller.profile):
+        amplitude = profile.amplitude
+        # A = R (p0 / E*)**2, and so the half-width of the design is 2 (A R)**0.5.
+        over = 2 * np.sqrt(amplitude / radius)
+        if amplitude and not usual.least <= over <= usual.most:
+            word = "low" if over < usual.least else "high"
+            return (
+                f"{type(profile).__name__}.amplitude = {amplitude:.3g} m is that of a very {word} design load, "
+                f"half-width {over:.1g} of the roller's radius: pressures and moduli are in Pa, 1500 MPa is 1.5e9 Pa"
+            )
+    return ""
+
+
 def _of_load(case: Case) -> str:
     """Return the question on load or pressure: what it makes of the half-width; or on the approach."""
     if case.approach is not None:
@@ -162,7 +191,7 @@ def _of_load(case: Case) -> str:
     usual, over = USUAL["half_width"], case.hertz_half_width / case.roller.radius
     if usual.least <= over <= usual.most:
         return ""
-    given = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
     word = "low" if over < usual.least else "high"
+    given = f"load = {case.load:g} N" if case.max_pressure is None else f"max_pressure = {case.max_pressure:g} Pa"
     pressure = quantity(case.hertz_max_pressure, "Pa")
     return f"{given} is very {word}: Hertz pressure {pressure}, half-width {over:.1g} of the roller's radius"

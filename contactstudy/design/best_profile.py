@@ -15,7 +15,7 @@ from contactstudy.case.case import Case, small_tilt
 from contactstudy.case.settings import check_accuracy
 from contactstudy.checks import FloatArray
 from contactstudy.design.evaluations import Design, Evaluations, Measure, Range
-from contactstudy.design.search import flat_range, optimum
+from contactstudy.design.search import fewest, flat_range, optimum
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Profile
 
@@ -59,7 +59,8 @@ def best_profile(
     settings : mapping
         Further arguments of `solve`: a measure of stresses needs ``{"y": ..., "z": ...}``.
     evaluations : int
-        Number of designs after which the search ends. The ends of the flat part are sought after that.
+        Number of designs after which the search ends, at least 8; with two, three, ... parameters at least 9, 17, ...
+        The ends of the flat part are sought after that, with some 3 to 6 designs for each parameter.
 
     Returns
     -------
@@ -105,7 +106,7 @@ def best_profile(
         check_accuracy(accuracy),
         dict(settings),
     )
-    best = optimum(looked_at, checks.count("evaluations", evaluations, least=2))
+    best = optimum(looked_at, checks.count("evaluations", evaluations, least=fewest(len(ranges))))
     ends = [flat_range(looked_at, best, index) for index in range(len(ranges))]
     # While the ends were sought, something may have turned out to be as good, within the errors.
     return _dataset(looked_at, min(looked_at.known, key=lambda design: design.value), ends)

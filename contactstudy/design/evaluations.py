@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -156,21 +157,35 @@ class Evaluations:
 
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
-        result = solve(case, accuracy=self.accuracy, **self.settings)  # type: ignore[arg-type]
+        given = bool({"grid", "roughness"} & self.settings.keys())
+        result = solve(case, accuracy=None if given else self.accuracy, **self.settings)  # type: ignore[arg-type]
         if isinstance(self.measure, str):
-            if self.measure not in result:
-                names = ", ".join(str(name) for name, each in result.data_vars.items() if each.ndim == 0)
-                raise InvalidInputError("measure", self.measure, f"a scalar of the result: {names}")
+            scalars = [str(name) for name, each in result.data_vars.items() if each.ndim == 0]
+            if self.measure not in scalars:
+                if self.measure in result:
+                    hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
+                    raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
+                checks.known_name("measure", self.measure, scalars)
             found: object = result[self.measure]
             self.units = str(result[self.measure].attrs.get("units", ""))
             if f"{self.measure}_error" in result:
                 found = (found, result[f"{self.measure}_error"])
         else:
             found = self.measure(result)
-        value, error = found if isinstance(found, tuple) else (found, None)
-        number = float(value)
+        number, error = _number_and_error(found)
         if np.isnan(number):
             raise InvalidInputError("measure", number, "a number in every case", f"it is none for {case!r}")
-        if error is None:
-            return number, self.accuracy * abs(number)
-        return number, float(error)
+        return number, self.accuracy * abs(number) if error is None else error
+
+
+def _number_and_error(found: object) -> tuple[float, float | None]:
+    """Take what a measure returned apart: a number, or a number and its error."""
+    try:
+        value, error = found if isinstance(found, tuple) else (found, None)
+        if isinstance(value, str) or isinstance(error, str):
+            raise TypeError
+        return float(value), None if error is None else float(error)
+    except (TypeError, ValueError):
+        shape = getattr(found, "shape", ())
+        shown = f"an array of shape {shape}" if shape else found
+        raise InvalidInputError("measure", shown, "a function that returns a number, or (number, error)") from None

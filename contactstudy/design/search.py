@@ -24,8 +24,13 @@ CUT = 20.0
 """Errors beyond which a difference from the optimum is not told apart while its end is sought. Speed."""
 
 
+def fewest(parameters: int) -> int:
+    """Least number of designs of a search: those that are looked at first, and one more."""
+    return (SCAN if parameters == 1 else SPREAD * 2 ** (parameters - 2)) + 1
+
+
 def optimum(evaluations: Evaluations, most: int) -> Design:
-    """Return the best design that at most about so many evaluations find.
+    """Return the best design that at most so many evaluations find.
 
     Raises
     ------
@@ -58,7 +63,7 @@ def _spread(count: int) -> FloatArray:
         return np.linspace(0.0, 1.0, SCAN)[:, None]
     from scipy.stats.qmc import Sobol
 
-    return np.asarray(Sobol(count, scramble=False).random(SPREAD * 2 ** (count - 2)))
+    return np.asarray(Sobol(count, scramble=False).random(fewest(count) - 1))
 
 
 def _along_one(least: object, start: float, most: int) -> None:

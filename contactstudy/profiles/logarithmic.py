@@ -49,6 +49,8 @@ def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) ->
 class Logarithmic(Shape):
     """Base of the profiles whose amplitude follows from a design load."""
 
+    amplitude: float
+
     @classmethod
     def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **others: float) -> Self:
         """Profile for a design load (N) on a roller.

@@ -92,7 +92,7 @@ def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, ti
     source : Dataset, str or Path
         As for :func:`html`.
     path : str or Path, optional
-        The file. Default: beside the netCDF file, or ``report.html`` in the study's folder.
+        The file, ``.html``. Default: beside the netCDF file, or ``report.html`` in the study's folder.
     title : str, optional
         As for :func:`html`.
 
@@ -104,7 +104,8 @@ def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, ti
     Raises
     ------
     InvalidInputError
-        If there is no such result, the path is missing for a Dataset in memory, or the file cannot be written.
+        If there is no such result, the path is missing for a Dataset in memory or does not end in .html, or the file
+        cannot be written.
 
     Examples
     --------
@@ -120,8 +121,11 @@ def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, ti
         checks.instance("source", source, (str, Path), "a Dataset, a netCDF file or a study's folder")
         place = Path(source)
         path = place / "report.html" if place.is_dir() else place.with_suffix(".html")
-    page = html(source, title=title)
     target = Path(path)
+    if target.suffix.lower() not in (".html", ".htm"):
+        hint = "a browser prints the page to PDF" if target.suffix.lower() == ".pdf" else ""
+        raise InvalidInputError("path", str(path), "a name that ends in .html: the report is a page", hint)
+    page = html(source, title=title)
     with checks.writing(target):
         target.write_text(page, encoding="utf-8")
     return target

@@ -34,6 +34,9 @@ VISIBLE = 0.02
 POINTS = 241
 """Points of the generatrix."""
 
+ROUNDING = 1e-12
+"""Distance that counts as none, metres."""
+
 BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"
 
 
@@ -203,7 +206,8 @@ def _end(edge: float, face: float, bottom: float, name: str, distance: float) ->
         f'<line x1="{at:.1f}" y1="{bottom - 8:.1f}" x2="{at:.1f}" y2="{y + 6:.1f}" stroke="{LINE}" stroke-width="0.8"/>'
         for at in (low, high)
     )
-    text = f"end {name}: e = {quantity(distance, 'm')}"
+    # The difference of two positions may be a rounding error, of either sign.
+    text = f"end {name}: e = {quantity(0.0 if abs(distance) < ROUNDING else distance, 'm')}"
     at = min(edge, face) if name == "I" else max(edge, face)
     first = name == "I"
     label = _text(max(at - 40, 4) if first else min(at + 40, WIDTH - 4), y + 22, text, "start" if first else "end")

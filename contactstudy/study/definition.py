@@ -319,7 +319,8 @@ class Study:
                 f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
-        return make_plan(self.name, self.level, self.combinations(), self.axes(), bool(self.cases))
+        kept, unknown = self._expanded()
+        return make_plan(self.name, self.level, kept, self.axes(), bool(self.cases), unknown)
 
     def axes(self) -> tuple[Axis, ...]:
         """Swept parameters, then those that change together."""
@@ -331,6 +332,10 @@ class Study:
 
     def combinations(self) -> list[Combination]:
         """Values of every case that is not excluded, in the order of the plan."""
+        return self._expanded()[0]
+
+    def _expanded(self) -> tuple[list[Combination], tuple[str, ...]]:
+        """Return the cases that are not excluded, and what exclusions name but no case has."""
         rules = tuple({**rule} for rule in self.exclude)
         return combinations(self._complete(), self.axes(), tuple(self.cases), rules)
 

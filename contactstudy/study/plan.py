@@ -16,7 +16,7 @@ from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
 from contactstudy.study.parameters import PARAMETERS, completed, counted
 from contactstudy.study.profile_kinds import profile_label
-from contactstudy.study.setup import Described, setup_of
+from contactstudy.study.setup import Described, check_cells, setup_of
 
 Level = str
 LEVELS: tuple[Level, ...] = ("summary", "surface", "fields")
@@ -92,12 +92,15 @@ class Plan:
         Every case that is not excluded, skipped ones included.
     cube : Cube
         Dimensions and labels.
+    unknown : tuple of str
+        What the study excludes but no case has.
     """
 
     name: str
     level: Level
     cases: tuple[PlannedCase, ...]
     cube: Cube
+    unknown: tuple[str, ...] = ()
 
     @property
     def skipped(self) -> tuple[PlannedCase, ...]:
@@ -173,10 +176,11 @@ def combinations(
     axes: tuple[Axis, ...],
     cases: tuple[Mapping[str, Any], ...],
     exclude: tuple[Mapping[str, list[Any]], ...],
-) -> list[Combination]:
+) -> tuple[list[Combination], tuple[str, ...]]:
     """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
 
-    All values are checked already; rules of `exclude` hold lists of labels.
+    All values are checked already; rules of `exclude` hold lists of labels. Also returned is what of them no
+    combination has.
     """
     chosen: list[Combination] = []
     if axes or not cases:
@@ -186,10 +190,21 @@ def combinations(
                 swept |= axis.entries[index]
             chosen.append(Combination({**base, **swept}, swept, position))
     chosen += [Combination({**base, **case}, dict(case), ()) for case in cases]
-    return [entry for entry in chosen if not _excluded(entry.values, exclude)]
+    unknown = []
+    for name, wanted in ((name, value) for rule in exclude for name, values in rule.items() for value in values):
+        if all(label(name, entry.values.get(name)) != wanted for entry in chosen):
+            unknown.append(f"exclude.{name} = {wanted!r}: no case has this value, so nothing is left out by it")
+    return [entry for entry in chosen if not _excluded(entry.values, exclude)], tuple(dict.fromkeys(unknown))
 
 
-def make_plan(name: str, level: Level, kept: list[Combination], axes: tuple[Axis, ...], explicit: bool) -> Plan:
+def make_plan(
+    name: str,
+    level: Level,
+    kept: list[Combination],
+    axes: tuple[Axis, ...],
+    explicit: bool,
+    unknown: tuple[str, ...] = (),
+) -> Plan:
     """Lay out the combinations of a study along its axes, or along what differs if it has explicit cases."""
     if explicit:
         cube, positions = cube_of_cases([entry.values for entry in kept], label)
@@ -200,7 +215,7 @@ def make_plan(name: str, level: Level, kept: list[Combination], axes: tuple[Axis
     planned = [
         planner.planned(entry.values, entry.own, position) for entry, position in zip(kept, positions, strict=True)
     ]
-    return Plan(name, level, tuple(planned), cube)
+    return Plan(name, level, tuple(planned), cube, unknown)
 
 
 class Planner:
@@ -219,6 +234,7 @@ class Planner:
 
     def planned(self, values: Mapping[str, Any], swept: Mapping[str, Any], position: tuple[int, ...]) -> PlannedCase:
         """Return a case with its identity, its size, and why it cannot be solved if so."""
+        given = values
         values = completed(values)
         fragments = {name: self._said(name, value)[1] for name, value in values.items()}
         identity = identity_of(fragments)
@@ -226,6 +242,8 @@ class Planner:
         parameters = {name: counted(name, value) for name, value in values.items() if fragments[name]}
         try:
             setup = setup_of(parameters)
+            # Values at their default do not count for the identity, but they were said.
+            check_cells(given)
         except ContactStudyError as error:
             return PlannedCase(identity, parameters, words, position, reason=str(error))
         cells = math.prod(setup.shape)

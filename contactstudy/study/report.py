@@ -98,7 +98,8 @@ def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterat
 
 
 def forecast_lines(plan: Plan, entries: list[Entry]) -> Iterator[str]:
-    """Lines on doubtful magnitudes, and on the bytes and the time that the cases to come will take."""
+    """Lines on exclusions without effect and doubtful magnitudes, and on bytes and time of the cases to come."""
+    yield from (f"  {unknown}" for unknown in plan.unknown[:SHOWN])
     for doubt in plan.doubts[:SHOWN]:
         yield f"  doubtful, for units are SI: {doubt}"
     pairs = list(zip(plan.cases, entries, strict=True))

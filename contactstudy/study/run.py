@@ -199,6 +199,8 @@ def run_study(
             log.say(took_over)
         place.clean()
         place.write_study(study)
+        for unknown in plan.unknown[:MOST_DOUBTS]:
+            log.remark(unknown)
         for doubt in plan.doubts[:MOST_DOUBTS]:
             log.remark(f"doubtful, for units are SI: {doubt}")
         jobs = _todo(plan, place, again, log.say)

@@ -163,6 +163,15 @@ def _one_of(values: Mapping[str, Any], *names: str) -> None:
         )
 
 
+def check_cells(parameters: Mapping[str, Any]) -> None:
+    """Raise if a case says both how far its columns are refined and how wide uniform cells are."""
+    said = {name: parameters[name] for name in ("accuracy", *UNIFORM) if name in parameters}
+    if "accuracy" in said and len(said) > 1:
+        raise InvalidInputError(
+            ", ".join(said), tuple(said.values()), "given as one of the two, accuracy or uniform cells"
+        )
+
+
 def _check_approach(values: Mapping[str, Any], given: Mapping[str, Any]) -> None:
     """Raise if a case at an approach says anything over the half-width, which follows from the solution."""
     if "approach" not in values:
@@ -258,6 +267,7 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         if name not in values:
             raise InvalidInputError(name, None, "given")
     _check_approach(values, parameters)
+    check_cells(parameters)
     for names in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load", "approach")):
         _one_of(values, *names)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
@@ -288,12 +298,6 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         "profile": profile_label(values["profile"]),
     }
     if "accuracy" in values:
-        said = [name for name in UNIFORM if name in parameters]
-        if said:
-            given = {name: values[name] for name in ("accuracy", *said)}
-            raise InvalidInputError(
-                ", ".join(given), tuple(given.values()), "given as one of the two, accuracy or uniform cells"
-            )
         accuracy = check_accuracy(values["accuracy"])
         return Setup(case, None, options | {"tolerance": tolerance, "accuracy": accuracy}, described, {})
     gridding = taken_by(choose_grid, values)

@@ -125,7 +125,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
             {"amplitude": (1e-7, 4e-7)},
             lambda result: (1.0, 1.0),
             accuracy=0.1,
-            evaluations=2,
+            evaluations=8,
         ),
         "flash_temperature": cs.flash_temperature(
             case, solved, body=metal, roller=metal, body_speed=-1.0, roller_speed=1.0, z=depths

@@ -55,7 +55,7 @@ def test_usual_cases_raise_no_question() -> None:
         ({"friction": 5}, "friction = 5, usual are 0 to 1.5; 5 % is 0.05"),
         ({"friction": xr.DataArray([0.1, -8.0], dims="x", coords={"x": [0.0, 1e-2]})}, "friction = 8"),
         ({"tilt": 0.05}, "tilt = 0.05 rad, usual are 0 to 0.01 rad; 0.05 deg is 0.000872665 rad"),
-        ({"load": None, "max_pressure": 1500}, "max_pressure = 1500 Pa is very low: Hertz pressure 0.0015 MPa"),
+        ({"load": None, "max_pressure": 1.5e5}, "max_pressure = 150000 Pa is very low: Hertz pressure 0.15 MPa"),
         ({"load": None, "approach": 5e-3}, "approach = 0.005 m, usual are up to 0.0006 m on .*; 0.005 mm is 5e-06 m"),
         ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
     ],
@@ -149,3 +149,17 @@ def test_a_study_in_millimetres(tmp_path: Path) -> None:
         "body.length = 14 m",
     ]
     assert np.isfinite(only.cells)
+
+
+@pytest.mark.parametrize(("pressure", "modulus", "word"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
+def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, modulus: float, word: str) -> None:
+    crown = profiles.JohnsGohar.for_pressure(1.5e9, radius=6e-3, modulus=113e9)
+    wrong = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
+    case = made()
+    for profile in (wrong, profiles.Halves(crown, wrong)):
+        with unquestioned():
+            asked = doubts(replace(case, roller=replace(case.roller, profile=profile)))
+        said = f"Lundberg.amplitude = {wrong.amplitude:.3g} m is that of a very {word} design load"
+        assert any(said in each for each in asked)
+    with unquestioned():
+        assert not doubts(replace(case, roller=replace(case.roller, profile=crown)))

@@ -129,9 +129,13 @@ def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) ->
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        ({"measure": "peak_pressur"}, "measure = 'peak_pressur': must be a scalar of the result: peak_pressure"),
+        ({"measure": "peak_pressur"}, "measure = 'peak_pressur': must be one of .*did you mean 'peak_pressure'"),
         ({"measure": lambda result: np.nan}, "measure = nan"),
         ({"measure": 3}, "measure = 3"),
+        ({"measure": lambda result: np.ones(3)}, r"measure = 'an array of shape \(3,\)': must be a function that"),
+        ({"measure": lambda result: "1"}, "measure = '1': must be a function that returns a number"),
+        ({"measure": lambda result: (1.0, 0.1, 2.0)}, r"measure = \(1.0, 0.1, 2.0\): must be a function that returns"),
+        ({"evaluations": 3}, "evaluations = 3: must be a whole number not below 8"),
         ({"profile": "Lundberg"}, "profile = 'Lundberg'"),
         ({"bounds": {}}, "bounds = {}"),
         ({"bounds": {"edge_drop": (1e-4, 1e-6)}}, r"bounds\['edge_drop'\]"),

@@ -149,3 +149,8 @@ assert "distributed" not in sys.modules
 def test_a_report_imports_nothing_of_clusters(tmp_path: Path) -> None:
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
     subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
+
+
+def test_a_report_is_a_page_and_no_other_file(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match=r"x.pdf': must be a name that ends in .html.*prints the page to PDF"):
+        report.write(xr.Dataset(), tmp_path / "x.pdf")

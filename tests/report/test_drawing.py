@@ -49,3 +49,12 @@ def test_bodies_without_ends_go_on(body) -> None:
     assert ("end I:" in drawing.svg) == isinstance(body, QuarterSpace)
     assert "end II:" not in drawing.svg
     assert "cut below its axis" in drawing.caption
+
+
+def test_a_flush_roller_has_no_distance_of_rounding() -> None:
+    length = 1.2e-3
+    body = FiniteLengthSpace(length=length, material=Material(210e9, 0.3))
+    # The roller is at end II, but for rounding.
+    roller = Roller(radius=4e-3, length=0.9e-3)
+    shown = str(draw(Case(body=body, roller=roller, max_pressure=1e9, end_distance=0.3e-3 * (1 + 1e-14))).svg)
+    assert "end II: e = 0 " in shown

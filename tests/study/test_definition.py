@@ -173,3 +173,14 @@ def test_evenly_spaced_numbers_are_swept():
         small_study(sweep={"friction": {"start": 0.0}})
     with pytest.raises(InvalidInputError, match=r"sweep.friction.count = 100000000"):
         small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 100_000_000}})
+
+
+def test_what_is_excluded_but_is_in_no_case_is_named():
+    plan = small_study(exclude=[{"e_over_a": [1, 7], "friction": 0.1}]).plan()
+    assert plan.unknown == ("exclude.e_over_a = 7.0: no case has this value, so nothing is left out by it",)
+    assert not small_study(exclude=[{"e_over_a": [1], "friction": 0.1}]).plan().unknown
+
+
+def test_uniform_cells_at_their_default_contradict_an_accuracy_as_well():
+    plan = small_study(base={**small_study().base, "cells_x": 8, "accuracy": 0.02}).plan()
+    assert all("must be given as one of the two, accuracy or uniform cells" in case.reason for case in plan.cases)
