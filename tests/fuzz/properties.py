@@ -13,6 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 import xarray as xr
+from scipy import ndimage
 
 from contactstudy import (
     ConvergenceWarning,
@@ -334,6 +335,30 @@ def stated_errors(solved: Solved) -> bool:
     return True
 
 
+def largest_stress(solved: Solved) -> bool:
+    """Nowhere is more than the stated largest stress and its error: on the top off the rim, and below."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    if solved.drawn.grid is not None or solved.moves:
+        return False
+    at = {"x": [float(grid.x.mean())], "y": [0.0], "z": [case.hertz_half_width]}
+    result = run(solved.drawn, **at)
+    most = float(result["peak_von_mises"] + result["peak_von_mises_error"])
+    if not np.isfinite(most):
+        return False
+    loaded = result["pressure"].values > 0
+    inside = ndimage.binary_erosion(loaded, iterations=2, border_value=1)
+    columns, rows = (
+        np.sort(chance.sample(list(which), min(len(which), 25)))
+        for which in (np.flatnonzero(loaded.any(axis=1)), np.flatnonzero(loaded.any(axis=0)))
+    )
+    depths = case.hertz_half_width * np.array([0.0, 0.1, 0.2, 0.4, 0.7, 1.0])
+    places = {"x": grid.x[columns], "y": grid.y[rows], "z": depths}
+    field = stress_field(case.body, result["pressure"], case.friction, **places)["von_mises"].values
+    field[..., 0][~inside[np.ix_(columns, rows)]] = 0.0
+    require(field.max() <= most, f"a von Mises stress of {field.max() / most:.4g} of the stated largest")
+    return True
+
+
 ALWAYS: tuple[Callable[[Solved], bool], ...] = (
     finite_values,
     certificate,
@@ -355,6 +380,7 @@ IN_TURN: tuple[Callable[[Solved], bool], ...] = (
     reciprocity,
     equilibrium,
     loads_on_the_top,
+    largest_stress,
     same_points_among_others,
 )
 """Those that solve again or need stresses: two for each case."""

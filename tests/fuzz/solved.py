@@ -83,7 +83,7 @@ def run(drawn: Drawn, **at: list[float]) -> xr.Dataset:
         result = solve(
             drawn.case,
             drawn.grid,
-            accuracy=drawn.accuracy,
+            accuracy=None if drawn.grid is not None else drawn.accuracy,
             stresses=bool(at),
             tolerance=TOLERANCE,
             **at,  # type: ignore[arg-type]
