@@ -94,6 +94,20 @@ def _axis_of(dim: str) -> str:
     return dim.removesuffix("_index").removesuffix("_over_a")
 
 
+def in_order(dataset: xr.Dataset) -> xr.Dataset:
+    """Return one case with its positions increasing, in which stresses may be asked for in any order.
+
+    Examples
+    --------
+    >>> in_order(xr.Dataset({"von_mises": ("z", [3.0, 1.0])}, {"z": [1e-3, 0.0]})).von_mises.values.tolist()
+    [1.0, 3.0]
+    """
+    turned = [
+        dim for dim, index in dataset.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
+    ]
+    return dataset.sortby(turned) if turned else dataset
+
+
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
     """Width of the cells along an axis, metres: as told by ``<axis>_width``, or the distance of uniform positions.
 

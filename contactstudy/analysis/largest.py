@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, positions, single_case
+from contactstudy.analysis.axes import axis_dimensions, in_order, positions, single_case
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.arrays.between import refined
 from contactstudy.arrays.grid import ON_TOP
@@ -78,6 +78,7 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     one = single_case(dataset)
     if f"peak_{variable}_error" in one:
         return one[[name for name in one.data_vars if str(name).startswith(f"peak_{variable}")]].drop_attrs(deep=False)
+    one = in_order(one)
     found = peak_between(one, names, measure(one, variable), lambda stresses: measure(stresses, variable))
     base = variable_of(variable, measure(one, variable).attrs)
     return labelled_peak(variable, found, base)
@@ -143,10 +144,10 @@ def peak_between(
     if comment:
         error = np.inf
     elif "peak_pressure_error" in one:
-        error += value * float(one["peak_pressure_error"] / one["peak_pressure"])
+        error += abs(value) * float(one["peak_pressure_error"] / one["peak_pressure"])
     found = dict(zip(over, place, strict=True))
     if "pressure" in one and found.get("z") == 0:
-        error += ON_TOP * value
+        error += ON_TOP * abs(value)
     return Peak(value, error, found, comment)
 
 

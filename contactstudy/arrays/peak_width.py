@@ -48,5 +48,7 @@ def changes_within(
         other |= FLANK * line > line[column]
     loaded = column if line[column] > 0 else int(line.argmax())
     across = 0.5 * dy * np.count_nonzero(pressure[loaded] > 0)
-    along = np.abs(x[other] - x[column]).min() / np.sqrt(1 - FLANK**2) if other.any() else np.inf
+    along = np.abs(x[other] - x[column]).min() if other.any() else np.inf
+    if line[column] > 0:
+        along /= np.sqrt(1 - FLANK**2)
     return float(along), float(across)

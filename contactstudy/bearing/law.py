@@ -165,6 +165,7 @@ class ContactLaw:
         """Approach and tilt under one load (N) and one moment (N m)."""
         from scipy.optimize import least_squares
 
+        load = checks.positive("normal_load", load, "N")
         (low, high), (least, most) = self._range("approach"), self._range("tilt")
         length = float(self.table["contact_length"])
         loads, moments = (self.table[name].transpose("approach", "tilt").values for name in ("normal_load", "moment"))

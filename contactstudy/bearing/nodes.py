@@ -146,7 +146,9 @@ def discretisation_errors(presser: Presser, nodes: Nodes) -> FitErrors:
     finer = replace(presser, accuracy=presser.accuracy / FINER)
     length = presser.case.contact_length
     worst = FitErrors(0.0, 0.0)
-    for index in {int(np.abs(nodes.tilts).argmin()), nodes.tilts.size - 1}:
+    sizes = np.abs(nodes.tilts)
+    # Of two largest ones the last: the first may be its reflection.
+    for index in {int(sizes.argmin()), sizes.size - 1 - int(sizes[::-1].argmax())}:
         load, moment = nodes.load[-1, index], nodes.moment[-1, index]
         fine = finer.pressed(float(nodes.approaches[-1]), float(nodes.tilts[index]), float(load))
         worst = worst.larger(FitErrors(abs(fine.load / load - 1), abs(fine.moment - moment) / (load * length)))

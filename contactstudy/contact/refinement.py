@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, split
+from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, overlooked, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
 from contactstudy.contact.end_values import Laws, end_loads, from_end, read_ends
 from contactstudy.contact.problem import between_columns
@@ -53,8 +53,24 @@ SHARPEST, SMALLEST = 2e-3, 2e-4
 ROUGH, POLISHED = 1e-2, 1e-5
 """Tolerances of the contact at the levels and where values are read. Speed and accuracy."""
 
-Solve = Callable[[FloatArray, FloatArray | None, float], FloatArray]
-"""From edges, a first guess of the pressure (or none) and a tolerance to the pressure (column, y)."""
+
+class Pressed(NamedTuple):
+    """A contact on some columns.
+
+    Attributes
+    ----------
+    pressure : array (column, y)
+        Pressure, Pa.
+    opening : array (column)
+        Least gap of each column under load, metres.
+    """
+
+    pressure: FloatArray
+    opening: FloatArray
+
+
+Solve = Callable[[FloatArray, FloatArray | None, float], Pressed]
+"""From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,6 +171,7 @@ class _State:
     shape: AxialShape
     edges: FloatArray
     pressure: FloatArray = field(init=False)
+    opening: FloatArray = field(init=False)
     first: FloatArray | None = None
     peaks: list[tuple[float, float]] = field(default_factory=list)
     ends: list[tuple[float, float]] = field(default_factory=list)
@@ -164,23 +181,30 @@ class _State:
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
 
     def __post_init__(self) -> None:
-        self.pressure = self.solve(self.edges, None, ROUGH)
+        self.pressure, self.opening = self.solve(self.edges, None, ROUGH)
         self._sample()
 
     def refine(self, theta: float) -> None:
         """Split columns until none is marked."""
-        while self.edges.size <= MOST_COLUMNS:
-            marks = self._marks(theta)
-            if not marks.any():
+        while True:
+            while self.edges.size <= MOST_COLUMNS and (marks := self._marks(theta)).any():
+                self._split(marks)
+            self.pressure, self.opening = self.solve(self.edges, self.pressure, POLISHED)
+            marks = overlooked(self.shape, self.edges, np.asarray(self.pressure.any(axis=1)), self.opening)
+            if not marks.any() or self.edges.size > MOST_COLUMNS:
                 break
-            finer = split(self.edges, marks)
-            guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
-            self.edges, self.pressure = finer, self.solve(finer, guess, ROUGH)
-            LOGGER.info("refined to %d columns", finer.size - 1)
-            self._sample()
-        self.pressure = self.solve(self.edges, self.pressure, POLISHED)
+            self._split(marks)
         if self.first is None:
             self.first = self.edges
+
+    def _split(self, marks: BoolArray) -> None:
+        """Split marked columns and solve the contact on them roughly."""
+        finer = split(self.edges, marks)
+        guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
+        self.edges = finer
+        self.pressure, self.opening = self.solve(finer, guess, ROUGH)
+        LOGGER.info("refined to %d columns", finer.size - 1)
+        self._sample()
 
     def _sample(self) -> None:
         """Note the outermost columns wherever they have been split, and decide on their law."""

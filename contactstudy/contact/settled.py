@@ -22,8 +22,9 @@ from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.problem import ContactProblem, solve_normal
-from contactstudy.contact.refinement import Refined, read_again, refined_contact, rough_contact
+from contactstudy.contact.refinement import Pressed, Refined, read_again, refined_contact, rough_contact
 from contactstudy.errors import WindowError
+from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
 WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)
@@ -221,8 +222,8 @@ class _Solver:
         """Return what is pressed on what."""
         return shape_on(self.case, self.grid(edges))
 
-    def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
-        """Pressure (column, y) without the displacement from friction, which changes it by a few percent."""
+    def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> Pressed:
+        """Contact without the displacement from friction, which changes the pressure by a few percent."""
         # The pressure alone decides where columns are needed.
         shape = self.shape(edges)._replace(coupled_friction=0.0)
         grid, gap = shape.grid, shape.gap.values
@@ -232,9 +233,11 @@ class _Solver:
             guess = np.zeros(grid.shape)
             guess[under] = start
         problem = ContactProblem(grid, gap, shape.prescribed.resultants(grid), 0.0, tolerance, 500)
-        pressure = solve_normal(contact_operator(shape), problem, guess).pressure
-        check_window(shape.body, pressure)
-        return np.asarray(pressure[under])
+        operator = contact_operator(shape)
+        found = solve_normal(operator, problem, guess)
+        check_window(shape.body, found.pressure)
+        gap = problem.gap + operator({Load.NORMAL: found.pressure}) - problem.level(found.motion)
+        return Pressed(found.pressure[under], gap[under].min(axis=1))
 
 
 def _under(grid: Grid, edges: FloatArray) -> slice:

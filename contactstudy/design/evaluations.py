@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import ContactStudyError, InvalidInputError, WindowError
 from contactstudy.profiles.base import Profile
 from contactstudy.solution import solve
 
@@ -102,7 +102,7 @@ class Evaluations:
         What was looked at.
     units : str
         Of the measure, once a result has said it.
-    refused : InvalidInputError or None
+    refused : ContactStudyError or None
         Why a design could not be.
     """
 
@@ -114,7 +114,7 @@ class Evaluations:
     settings: Mapping[str, object]
     known: list[Design] = field(default_factory=list)
     units: str = ""
-    refused: InvalidInputError | None = None
+    refused: ContactStudyError | None = None
 
     def __call__(self, parts: FloatArray) -> Design:
         """Return the design at these parts of the ranges."""
@@ -139,8 +139,8 @@ class Evaluations:
             for index, case in enumerate(self.cases):
                 roller = replace(case.roller, profile=profile)
                 pairs[index] = self._measured(replace(case, roller=roller))
-        except InvalidInputError as error:
-            if error.parameter in ("measure", "bounds"):
+        except (InvalidInputError, WindowError) as error:
+            if isinstance(error, InvalidInputError) and error.parameter in ("measure", "bounds"):
                 raise
             # Within the bounds there may be profiles that do not exist, or do not carry the load.
             self.refused = error
@@ -175,7 +175,7 @@ class Evaluations:
         number, error = _number_and_error(found)
         if np.isnan(number):
             raise InvalidInputError("measure", number, "a number in every case", f"it is none for {case!r}")
-        return number, self.accuracy * abs(number) if error is None else error
+        return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
 
 
 def _number_and_error(found: object) -> tuple[float, float | None]:

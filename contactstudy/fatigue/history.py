@@ -137,5 +137,9 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
         border = np.maximum(magnitude[:, 0], magnitude[:, -1])
         return (np.divide(border, largest, out=np.zeros_like(border), where=largest > 0),)
 
-    (result,) = over_history(remainder, stress, (None,))
+    require(stress, *STRESSES)
+    rolling = dimension_along(stress["tau_yz"], "y")
+    # Positions may be in any order.
+    ordered = stress.sortby(rolling) if rolling in stress.indexes else stress
+    (result,) = over_history(remainder, ordered, (None,))
     return named("window_remainder", result)

@@ -78,14 +78,14 @@ def largest_stress(
     if not search.places:
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
     known = list(zip(search.places, stresses, strict=True))
-    *at_peaks, along = [each for each in known if each[0].z[0] > 0]
+    *at_peaks, along = [(place._replace(z=place.z[1:]), field[..., 1:]) for place, field in known]
     shallowest = min(float(place.z[0]) for place, _ in (*at_peaks, along))
     largest = _highest(_settled(_top(*peak), search, shallowest, stress) for peak in at_peaks)
     elsewhere = _sampled(*along)
     if elsewhere.found.value > largest.value:
         largest = _highest([largest, _settled(elsewhere, search, shallowest, stress)])
-    for place, field in known[len(at_peaks) + 1 :]:
-        sample = _sampled(place, field, search.off_rim_at(place))
+    for place, field in known:
+        sample = _sampled(place._replace(z=place.z[:1]), field[..., :1], search.off_rim_at(place))
         # More may lie between the cells that are looked at.
         if sample.found.value * (1 + SETTLED) > largest.value:
             largest = _highest([largest, _of_cells(sample, search, stress)])
@@ -113,7 +113,9 @@ def _with_asked(
             known = known._replace(value=value, place=sample.found.place)
         elif value > known.value and depths is deep:
             about = _about(sample.found.place, search, shallowest)
-            known = _highest([sample.found, _settled(_top(about, stress(about)), search, shallowest, stress)])
+            known = _settled(_top(about, stress(about)), search, shallowest, stress)
+            if known.value < value:
+                known = Largest(value, known.error + value - known.value, sample.found.place)
         elif value > known.value:
             known = _highest([known, _of_cells(sample, search, stress)])
     return known

@@ -23,16 +23,16 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Place
 
 BESIDE = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
-"""Points along x and y around a peak, over its width and its half-width across."""
+"""Points along x around a peak, over its width."""
 
 BELOW = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
 """Depths, over the width: the largest stress under a line contact is at 0.70, under a round one at 0.48."""
 
-ALONG = np.array([0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
+ALONG = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
 """Distances from the ends of the contact at which it is looked at along the axis, over the half-width."""
 
-ACROSS = np.array([-0.4, 0.0, 0.4])
-"""Points across it, likewise."""
+ACROSS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])
+"""Points across it, over its half-width there."""
 
 DEEP = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])
 """Depths, likewise."""
@@ -56,7 +56,8 @@ class Search(NamedTuple):
     off_rim : array of bool (x, y)
         Cells inside the contact at which stresses on the top are known.
     places : list of Place
-        Points below the top, then centres of cells on it; none without pressure.
+        Centres of cells on the top, and points below these; about the peaks, then along the contact. None without
+        pressure.
     """
 
     grid: Grid
@@ -85,23 +86,27 @@ def search_under(loads: Loads, grid: Grid, extent: Extent) -> Search:
     off_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM, border_value=1))
     if not line.any():
         return Search(grid, extent, off_rim, [])
-    below: list[Place] = []
-    top: list[Place] = []
+    places: list[Place] = []
     alike = _mirrored(loads, grid, extent)
     for peak in _peaks(line, alike=alike):
         middle, half_width = _across(pressure[peak], grid)
         width = peak_width(pressure, grid.x, grid.dy, peak)
-        if any(abs(grid.x[peak] - place.x).min() < 0.2 * width for place in below):
-            continue
-        x, y = grid.x[peak] + width * BESIDE, _rows(grid, middle, half_width * BESIDE)
-        inside = np.clip(x, *extent)
-        below.append(Place(inside[apart(inside, 0.1 * width)], y, width * BELOW))
-        top += _on_top(off_rim, grid, x, y)
+        if not any(abs(grid.x[peak] - place.x).min() < 0.2 * width for place in places):
+            x = np.clip(grid.x[peak] + width * BESIDE, *extent)
+            places.append(_place(grid, x, 0.1 * width, middle + half_width * ACROSS, width * BELOW))
     middle, half_width = _across(pressure[int(line.argmax())], grid)
     x = _along(pressure, grid, half_width, alike=alike)
-    below.append(Place(x, _rows(grid, middle, half_width * ACROSS), half_width * DEEP))
-    top += _on_top(off_rim, grid, x, _rows(grid, middle, half_width * BESIDE))
-    return Search(grid, extent, off_rim, below + top)
+    places.append(_place(grid, x, 0.1 * half_width, middle + half_width * ACROSS, half_width * DEEP))
+    return Search(grid, extent, off_rim, places)
+
+
+def _place(grid: Grid, x: FloatArray, least: float, y: FloatArray, below: FloatArray) -> Place:
+    """Centres of the cells nearest to some positions, along x some `least` distance apart, on the top and below."""
+    columns, rows = (
+        np.unique(np.abs(centres - wanted[:, None]).argmin(axis=1)) for centres, wanted in ((grid.x, x), (grid.y, y))
+    )
+    along = grid.x[columns]
+    return Place(along[apart(along, least)], grid.y[rows], np.append(0.0, below))
 
 
 def _across(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
@@ -116,15 +121,7 @@ def _along(pressure: FloatArray, grid: Grid, half_width: float, *, alike: bool) 
     inside = np.append(half_width * ALONG, 0.5 * (last - first))
     inside = inside[inside <= 0.5 * (last - first)]
     # Of two halves that are alike one point of the other, so that the middle is not at the edge.
-    x = np.concatenate([first + inside, last - (inside[-2:-1] if alike else inside)])
-    return np.asarray(x[apart(x, 0.1 * half_width)])
-
-
-def _rows(grid: Grid, middle: float, beside: FloatArray) -> FloatArray:
-    """Positions along y about `beside` a middle, whole cells apart: such points see the cells alike and cost as one."""
-    half = 0.5 * grid.dy
-    start = grid.y[0] + half * round(float(middle - grid.y[0]) / half)
-    return np.asarray(start + grid.dy * np.unique(np.sign(beside) * np.maximum(np.round(np.abs(beside) / grid.dy), 1)))
+    return np.concatenate([first + inside, last - (inside[-2:-1] if alike else inside)])
 
 
 def apart(positions: FloatArray, least: float) -> IntArray:
@@ -136,26 +133,14 @@ def apart(positions: FloatArray, least: float) -> IntArray:
     return np.array(kept)
 
 
-def _on_top(off_rim: BoolArray, grid: Grid, x: FloatArray, y: FloatArray) -> list[Place]:
-    """Centres of the cells off the rim that are nearest to some positions; none if the contact is all rim."""
-    columns = _nearest(grid.x, x, np.flatnonzero(off_rim.any(axis=1)))
-    rows = _nearest(grid.y, y, np.flatnonzero(off_rim[columns].any(axis=0)))
-    return [Place(grid.x[columns], grid.y[rows], np.zeros(1))] if columns.size and rows.size else []
-
-
-def _nearest(centres: FloatArray, wanted: FloatArray, among: IntArray) -> IntArray:
-    """Those of some cells that are nearest to some positions; none of none."""
-    return np.unique(among[np.abs(centres[among] - wanted[:, None]).argmin(axis=1)]) if among.size else among
-
-
 def _mirrored(loads: Loads, grid: Grid, extent: Extent) -> bool:
     """Whether body and loads have a mirror plane at mid-length."""
     return bool(
         np.isinf(extent[0]) == np.isinf(extent[1])
         and np.allclose(grid.widths, grid.widths[::-1])
         and all(
-            np.allclose(load.cells, load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
-            for load in loads.values()
+            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            for kind, load in loads.items()
         )
     )
 

@@ -337,10 +337,6 @@ class Study:
     def _expanded(self) -> tuple[list[Combination], tuple[str, ...]]:
         """Return the cases that are not excluded, and what exclusions name but no case has."""
         rules = tuple({**rule} for rule in self.exclude)
-        return combinations(self._complete(), self.axes(), tuple(self.cases), rules)
-
-    def _complete(self) -> dict[str, Any]:
-        """Return the base with the defaults that exclusions may name."""
         named = {name for rule in self.exclude for name in rule}
         defaults = {name: PARAMETERS[name].default for name in named if PARAMETERS[name].default is not None}
-        return {**defaults, **self.base}
+        return combinations(self.base, self.axes(), tuple(self.cases), rules, defaults)

@@ -176,11 +176,12 @@ def combinations(
     axes: tuple[Axis, ...],
     cases: tuple[Mapping[str, Any], ...],
     exclude: tuple[Mapping[str, list[Any]], ...],
+    defaults: Mapping[str, Any],
 ) -> tuple[list[Combination], tuple[str, ...]]:
     """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
 
-    All values are checked already; rules of `exclude` hold lists of labels. Also returned is what of them no
-    combination has.
+    All values are checked already; rules of `exclude` hold lists of labels, and see `defaults` where a case says
+    nothing. Also returned is what of them no combination has.
     """
     chosen: list[Combination] = []
     if axes or not cases:
@@ -190,11 +191,13 @@ def combinations(
                 swept |= axis.entries[index]
             chosen.append(Combination({**base, **swept}, swept, position))
     chosen += [Combination({**base, **case}, dict(case), ()) for case in cases]
+    seen = [{**defaults, **entry.values} for entry in chosen]
     unknown = []
     for name, wanted in ((name, value) for rule in exclude for name, values in rule.items() for value in values):
-        if all(label(name, entry.values.get(name)) != wanted for entry in chosen):
+        if all(label(name, values.get(name)) != wanted for values in seen):
             unknown.append(f"exclude.{name} = {wanted!r}: no case has this value, so nothing is left out by it")
-    return [entry for entry in chosen if not _excluded(entry.values, exclude)], tuple(dict.fromkeys(unknown))
+    kept = [entry for entry, values in zip(chosen, seen, strict=True) if not _excluded(values, exclude)]
+    return kept, tuple(dict.fromkeys(unknown))
 
 
 def make_plan(

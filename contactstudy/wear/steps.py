@@ -77,11 +77,11 @@ class Stepper:
     law: str
     tolerance: float
 
-    def begun(self, distance: float, depth: FloatArray) -> State:
-        """Return the state of a worn depth."""
+    def begun(self, distance: float, depth: FloatArray, error: float) -> State:
+        """Return the state of a worn depth, which is known within an error."""
         pressed = self.contact.pressed(depth, np.zeros_like(depth), None)
         slip = self.contact.slip(depth, self.law)
-        return State(distance, depth, pressed.pressure, slip, converged=pressed.converged)
+        return State(distance, depth, pressed.pressure, slip, error, converged=pressed.converged)
 
     def first_step(self, state: State) -> float:
         """Return a step that wears off little wherever the pressure is."""

@@ -131,7 +131,9 @@ def wear_in(
     if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
-    begun, depth, cells, step = (0.0, None, _cells(case, grid), None) if after is None else _state_of(after, case, grid)
+    begun, depth, cells, step, error = (
+        (0.0, None, _cells(case, grid), None, 0.0) if after is None else _state_of(after, case, grid)
+    )
     stops, every = _stops(distance, begun)
 
     gap = case.gap(cells)
@@ -139,7 +141,7 @@ def wear_in(
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
     contact = WornContact(case, shape, Settings(max_iterations=MOST_ITERATIONS))
     stepper = Stepper(contact, rate / around, law, tolerance)
-    first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth)
+    first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth, error)
     if not first.slip.any():
         raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
     _check_depth(case, stepper, first, float(stops[-1]))
@@ -176,14 +178,16 @@ def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
     return stops, every
 
 
-def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float]:
-    """Distance, depth, cells and next step of the last state of a result."""
-    require(after, "wear_depth", "pressure", "next_step", argument="after")
+def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
+    """Distance, depth, cells, next step and error of the depth of the last state of a result."""
+    require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last = after.isel(distance=-1)
     cells = labelled_cells("after.pressure", last["pressure"], extent=case.body.extent)[1]
-    return float(last["distance"]), last["wear_depth"].values.astype(np.float64), cells, float(last["next_step"])
+    depth = last["wear_depth"].values.astype(np.float64)
+    error = float(last["wear_error"]) * float(depth.max())
+    return float(last["distance"]), depth, cells, float(last["next_step"]), error
 
 
 def _check_depth(case: Case, stepper: Stepper, first: State, until: float) -> None:

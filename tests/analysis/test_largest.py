@@ -117,3 +117,22 @@ def test_a_singular_end_has_no_largest_stress() -> None:
 def test_only_measures_of_a_point() -> None:
     with pytest.raises(InvalidInputError, match="orthogonal"):
         analysis.largest(hill(np.arange(3.0), np.arange(3.0)), "orthogonal_shear_range")
+
+
+def test_the_order_of_the_points_does_not_matter() -> None:
+    z = np.linspace(0.0, 2.0, 9)
+    inside, edge = (hill(np.linspace(-1.0, 2.0, 11), depths) for depths in (z, z[:4]))
+    for stresses in (inside, edge):
+        there = analysis.largest(stresses, "maximum_shear")
+        other = analysis.largest(stresses.isel(z=np.roll(np.arange(stresses.sizes["z"]), 2)), "maximum_shear")
+        assert float(other.peak_maximum_shear) == pytest.approx(float(there.peak_maximum_shear), rel=1e-12)
+        assert float(other.peak_maximum_shear_error) == pytest.approx(float(there.peak_maximum_shear_error), rel=1e-9)
+
+
+def test_a_negative_largest_value_has_a_positive_error() -> None:
+    x = np.linspace(-1.0, 1.2, 12)
+    pressed = xr.DataArray(-5 + np.exp(-(x**2)), dims="x", coords={"x": x}).expand_dims(y=[0.0], z=[1.0])
+    stresses = xr.Dataset({name: pressed if name.startswith("sigma") else xr.zeros_like(pressed) for name in STRESSES})
+    found = analysis.largest(stresses.assign(peak_pressure=10.0, peak_pressure_error=1.0), "hydrostatic")
+    assert float(found.peak_hydrostatic) == pytest.approx(-4.0, abs=0.01)
+    assert float(found.peak_hydrostatic_error) > 0.39

@@ -156,3 +156,8 @@ TILTS = [-1e-3, -5e-4, 0.0, 5e-4, 1e-3]
 def test_bad_arguments_are_named(short_case: Case, changes, tilts, approaches, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         contact_law(replace(short_case, **changes), tilts, approaches)
+
+
+def test_no_load_is_refused_by_name(ball: ContactLaw) -> None:
+    with pytest.raises(InvalidInputError, match=r"normal_load = 0.0"):
+        ball.under(0.0)

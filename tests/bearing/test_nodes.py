@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, QuarterSpace, Roller, profiles
-from contactstudy.bearing.nodes import Node, Presser, solved_nodes
+from contactstudy.bearing.energy_spline import Nodes
+from contactstudy.bearing.nodes import Node, Presser, discretisation_errors, solved_nodes
 
 STEEL = Material(210e9, 0.3)
 BALL = Roller(radius=5e-3, length=0.8e-3, profile=profiles.FullCrown(crown_radius=5e-3))
@@ -59,3 +60,19 @@ def test_half_of_the_tilts_are_solved_where_halves_are_mirror_images(changes, ti
 def test_a_tilt_that_no_contact_takes_is_named() -> None:
     with pytest.raises(InvalidInputError, match=r"tilts, approaches = 'a tilt of 0.09 rad under 1e\+07 N'.*smaller"):
         Presser(CASE, 0.05, 1e-6).loaded(1e7, 0.09)
+
+
+def test_errors_are_those_of_the_largest_tilt_whatever_its_sign(monkeypatch) -> None:
+    tilts = 1e-4 * np.array([-9.0, -6.0, -3.0, 0.0, 2.0])
+    loads = np.ones((2, 5))
+    nodes = Nodes(np.array([1e-6, 2e-6]), tilts, loads, loads, 0 * loads)
+    asked = []
+
+    def pressed(self: Presser, approach: float, tilt: float, load: float) -> Node:
+        asked.append(tilt)
+        return Node(1.0 + abs(tilt), 0.0, 1.0)
+
+    monkeypatch.setattr(Presser, "pressed", pressed)
+    found = discretisation_errors(Presser(CASE, 0.01, 1e-6), nodes)
+    assert sorted(asked) == [tilts[0], 0.0]
+    assert found.load == pytest.approx(9e-4)

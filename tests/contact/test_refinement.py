@@ -18,6 +18,7 @@ from contactstudy.contact.refinement import (
     LAST_COLUMNS,
     LESSER_HALF,
     SHARPEST,
+    Pressed,
     Rough,
     _jumps,
     _moved,
@@ -35,16 +36,21 @@ def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), sti
     return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, stiff)
 
 
-def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., FloatArray]:
+def pressed(pressure: FloatArray) -> Pressed:
+    """Contact whose columns that are not pressed are far from it."""
+    return Pressed(np.asarray(pressure), np.where(pressure.any(axis=1), 0.0, np.inf))
+
+
+def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., Pressed]:
     """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
     nodes, weights = np.polynomial.legendre.leggauss(20)
 
-    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> Pressed:
         if start is not None:
             assert start.shape == (edges.size - 1, Y.size)
         within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
         means = 0.5 * along(within) @ weights
-        return np.asarray(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     return solve
 
@@ -135,10 +141,10 @@ def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: flo
 def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent: float) -> None:
     bend = 0.02
 
-    def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+    def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> Pressed:
         first, second = (edges**power / power for power in (1 - exponent, 2 - exponent))
         means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
-        return np.asarray(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     found = refined_contact(exact, shape(room=(np.inf, 0.0), stiff=exponent == 0.5), 0.01)
     law, other = found.laws
@@ -154,10 +160,10 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
 
 
 def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
-    def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+    def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> Pressed:
         noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
         noise[[0, 1, -2, -1]] = 0.0
-        return np.asarray((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
+        return pressed((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
 
     found = refined_contact(restless, shape(), 0.001)
     assert not found.settled
@@ -194,9 +200,9 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
     def height(x: FloatArray) -> FloatArray:
         return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
 
-    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> FloatArray:
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> Pressed:
         back = slice(None, None, 1 - 2 * side)
-        return np.asarray(pressure * along(own(edges)[back], None, tolerance)[back])
+        return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
 
     room = (3.0, 0.0)
     plain = refined_contact(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room), 0.02)
@@ -274,7 +280,7 @@ def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, 
     if side:
         edges, along = LENGTH - edges[::-1], along[::-1]
     asked = AxialShape(0.0, unit * LENGTH, unit * HALF_WIDTH, 0.05 * unit, np.zeros_like, (0.0, 0.0))
-    state = _State(lambda *_: np.asarray(along[:, None] * np.sqrt(1 - Y**2)), asked, unit * edges)
+    state = _State(lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), asked, unit * edges)
     for theta, marked in ((0.19, True), (0.21, False)):
         assert state._marks(theta)[-side] == marked
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy import Grid
-from contactstudy.fields.loads import sliding
+from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.search import RIM, search_under
+from contactstudy.kernels.load import Load
 
 
 def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
@@ -15,10 +16,7 @@ def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -
     ends[:, [0, -1]] = 0.0
     uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
     low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [
-        sum(place.z[0] > 0 for place in search_under(sliding(each, 0.0), grid, (0.0, 10.0)).places)
-        for each in (ends, uneven, low)
-    ]
+    counts = [len(search_under(sliding(each, 0.0), grid, (0.0, 10.0)).places) for each in (ends, uneven, low)]
     assert counts == [2, 3, 2]
     for place in search_under(sliding(uneven, 0.0), grid, (0.0, 10.0)).places:
         assert place.x.min() >= 0.0
@@ -34,12 +32,24 @@ def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
     # The body ends with the cells: there is no rim at its end.
     assert search.off_rim[: 70 - RIM, 1 + RIM : 19 - RIM].all()
     assert search.off_rim.sum() == (70 - RIM) * (18 - 2 * RIM)
-    top = [place for place in search.places if place.z[0] == 0]
-    assert top
-    for place in top:
-        assert search.off_rim_at(place).all()
+    for place in search.places:
+        assert place.z[0] == 0.0
+        assert search.off_rim_at(place).any()
+        assert set(place.x) <= set(grid.x)
+        assert set(place.y) <= set(grid.y)
 
 
 def test_nothing_is_looked_at_without_pressure() -> None:
     grid = Grid((0.0, 1.0), (-1.0, 1.0), 10, 10)
     assert not search_under(sliding(np.zeros((10, 10)), 0.0), grid, (0.0, 1.0)).places
+
+
+def test_a_traction_along_the_axis_is_mirrored_only_if_it_turns_round() -> None:
+    grid = Grid((0.0, 10.0), (-1.0, 1.0), 100, 20)
+    pressure = np.ones((100, 20))
+    pressure[:, [0, -1]] = 0.0
+    normal = TopLoad(pressure)
+    for traction, alike in ((pressure, False), (pressure * np.sign(grid.x - 5.0)[:, None], True)):
+        loads = {Load.NORMAL: normal, Load.ALONG_X: TopLoad(traction)}
+        far = max(place.x.max() for place in search_under(loads, grid, (0.0, 10.0)).places)
+        assert (far < 9.5) == alike

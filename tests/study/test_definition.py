@@ -1,4 +1,5 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -184,3 +185,12 @@ def test_what_is_excluded_but_is_in_no_case_is_named():
 def test_uniform_cells_at_their_default_contradict_an_accuracy_as_well():
     plan = small_study(base={**small_study().base, "cells_x": 8, "accuracy": 0.02}).plan()
     assert all("must be given as one of the two, accuracy or uniform cells" in case.reason for case in plan.cases)
+
+
+def test_an_exclusion_changes_nothing_of_the_cases_that_stay():
+    sweep, cases = {"friction": [0.0, 0.1]}, [{"cells_x": 12}]
+    plain = small_study(sweep=sweep, cases=cases, base={**small_study().base, "cells_x": None})
+    ruled = replace(plain, exclude=[{"friction": 0.1, "cells_x": 12}])
+    kept = {case.id: case.parameters for case in ruled.plan().cases}
+    assert kept.items() <= {case.id: case.parameters for case in plain.plan().cases}.items()
+    assert ruled.plan().cases[0].parameters == plain.plan().cases[0].parameters

@@ -22,7 +22,7 @@ def stepper():
 
 
 def test_a_step_whose_contact_fails_is_cut(stepper, monkeypatch):
-    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x))
+    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
     real = WornContact.pressed
     longest = 50.0
 
@@ -38,7 +38,7 @@ def test_a_step_whose_contact_fails_is_cut(stepper, monkeypatch):
 
 
 def test_what_never_converges_is_taken_in_the_end_and_says_so(stepper, monkeypatch):
-    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x))
+    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
     real = WornContact.pressed
     monkeypatch.setattr(WornContact, "pressed", lambda *arguments: real(*arguments)._replace(converged=False))
     states = stepper.states(begun, 1.0, 1.0)

@@ -115,6 +115,9 @@ def test_going_on_is_as_good_as_not_having_stopped(sharp, worn):
     assert float(second.distance[0]) == float(first.distance[-1])
     assert second.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
     assert float(second.volume_error) < 1e-12
+    # What was in doubt before is in doubt still.
+    assert float(second.wear_error[0]) == pytest.approx(float(first.wear_error[-1]))
+    assert float(second.wear_error[-1]) == pytest.approx(float(worn.wear_error[-1]), rel=0.02)
 
 
 def test_a_load_off_the_middle_ends_in_the_linear_load_that_balances_it(sharp):
