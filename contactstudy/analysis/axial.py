@@ -5,11 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, positions
 from contactstudy.analysis.border import contact_borders
 from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.required import require
+from contactstudy.arrays.required import require, require_si
 from contactstudy.arrays.variables import named
+from contactstudy.errors import InvalidInputError
 
 
 def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
@@ -28,7 +30,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If there is no pressure, or the part is empty or misses the cells.
 
     Examples
     --------
@@ -68,7 +70,10 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     [1.0, 5.0]
     """
     require(dataset, "pressure")
+    require_si(dataset, "pressure")
     pressure = dataset["pressure"]
+    if pressure.sizes[dimension_along(pressure, "y")] < 2:
+        raise InvalidInputError("dataset", dict(pressure.sizes), "a result with two positions along y or more")
     load = pressure.sum(dimension_along(pressure, "y"), min_count=1) * cell_size(pressure, "y")
     return named("line_load", load)
 
@@ -101,8 +106,15 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     >>> float(load_between(xr.Dataset({"pressure": pressure}), 0.0, 1.5))
     4.0
     """
+    for name, value in (("start", start), ("stop", stop)):
+        checks.instance(name, value, (float, int, np.number, xr.DataArray), "a number (metres) or a DataArray")
     load = line_load(dataset)
     along, place, half_cell = dimension_along(load, "x"), positions(load, "x"), 0.5 * cell_size(load, "x")
+    if np.any(np.greater_equal(start, stop)):
+        raise InvalidInputError("start, stop", (start, stop), "increasing (metres)")
+    low, high = float((place - half_cell).min()), float((place + half_cell).max())
+    if np.all(np.greater_equal(start, high)) or np.all(np.less_equal(stop, low)):
+        raise InvalidInputError("start, stop", (start, stop), f"a part of the cells, {low:.4g} to {high:.4g} m")
     shared = (np.minimum(place + half_cell, stop) - np.maximum(place - half_cell, start)).clip(0.0)
     carried = (load * shared).sum(along, min_count=1)
     return named("normal_load", carried).assign_attrs(comment="between two positions along the axis")

@@ -10,7 +10,7 @@ from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_alo
 from contactstudy.analysis.axial import axial_pressure
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.required import require
+from contactstudy.arrays.required import require, require_si
 from contactstudy.arrays.variables import named, variable_of
 from contactstudy.errors import InvalidInputError
 
@@ -100,6 +100,7 @@ def edge_factors(
     (3.0, 2.0)
     """
     require(dataset, "pressure", "hertz_half_width")
+    require_si(dataset, "pressure")
     checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)

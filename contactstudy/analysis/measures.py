@@ -55,6 +55,7 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
     [2.0]
     """
     require(dataset)
+    checks.instance("variable", name, str, "a name")
     if name in dataset.data_vars:
         return dataset[name]
     checks.known_name("variable", name, {*map(str, dataset.data_vars), *MEASURES})

@@ -9,7 +9,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.required import require
+from contactstudy.arrays.required import require, require_si
 from contactstudy.arrays.variables import STRESSES, describe, named
 from contactstudy.errors import InvalidInputError
 
@@ -52,6 +52,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     ([8.0, 2.0], [3.0, 1.0])
     """
     require(dataset, "pressure")
+    require_si(dataset, "pressure")
     one = single_case(dataset)
     number = checks.count("count", count)
     profiles = axial_profiles(one)

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import dimension_along
-from contactstudy.arrays.required import require
+from contactstudy.arrays.required import require, require_si
 from contactstudy.arrays.variables import STRESSES, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -34,6 +34,7 @@ def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
         If a component is missing, the rolling direction is, or it has fewer than three positions.
     """
     require(stress, *STRESSES)
+    require_si(stress, *STRESSES)
     rolling = dimension_along(stress["tau_yz"], "y")
     if stress.sizes[rolling] < FEWEST_POSITIONS:
         raise InvalidInputError(

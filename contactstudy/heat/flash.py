@@ -13,7 +13,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.required import require
+from contactstudy.arrays.required import require, require_si
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
 from contactstudy.case.motion import Rolling, Shift, Sliding
@@ -128,6 +128,7 @@ def flash_temperature(
     """
     checks.instance("case", case, Case, "a Case")
     require(result, "pressure", argument="result")
+    require_si(result, "pressure")
     one = single_case(result)
     pressure, grid = labelled_cells("result.pressure", one["pressure"], extent=case.body.extent)
     checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")

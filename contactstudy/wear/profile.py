@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from scipy.interpolate import make_interp_spline
+from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from contactstudy import checks
 from contactstudy.arrays.required import require
@@ -26,6 +26,13 @@ CLOSER = 10
 
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)
 """Gauss points from which a column's mean depth is taken."""
+
+BORDER = 4
+"""Worn columns beside the border of what has worn, where the shape as worn is interpolated instead of the depth.
+Accuracy."""
+
+BORDER_POINTS = 8
+"""Points in each of them. Accuracy."""
 
 CORRECTIONS = 8
 """Rounds in which points are moved until every column takes its own depth of the interpolation. Accuracy."""
@@ -85,8 +92,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     columns = _Columns.of(worn, x, under, start, stop)
     depth = worn["wear_depth"].values[at, under]
     ends = _Ends.of(case, columns, depth, worn["pressure"].values[at, under])
-    profile = _through(case, columns, ends, depth)
     own = case.roller.profile
+    profile = _through(case, columns, ends, depth)
     return Sum((*(own.terms if isinstance(own, Sum) else (own,)), profile))
 
 
@@ -166,15 +173,43 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
     rest = depth - columns.depths(ends.depth)
     volume = np.concatenate([[0.0], np.cumsum(rest * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
-    places = _points(columns, start, stop)
+    borders = _borders(case, columns, depth)
+    beside = [np.linspace(border.x[0], border.x[-1], BORDER_POINTS * border.x.size) for border in borders]
+    places = np.unique(np.concatenate([_points(columns, start, stop), *beside]))
     points = np.maximum(spline(places) + ends.depth(places), 0.0)
+    corrected = np.ones(depth.size, dtype=bool)
+    for border in borders:
+        near = (places >= border.x[0]) & (places <= border.x[-1])
+        unworn = case.roller.profile.drop(places[near], case.roller.length)
+        points[near] = np.maximum(border(places[near]) - unworn, 0.0)
+        corrected &= (columns.middles < border.x[0]) | (columns.middles > border.x[-1])
     middles = np.searchsorted(places, columns.middles)
     profile = _measured(half, places, points)
     for _ in range(CORRECTIONS):
         taken = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[middles] = np.maximum(points[middles] + depth - taken, 0.0)
+        points[middles] = np.maximum(points[middles] + np.where(corrected, depth - taken, 0.0), 0.0)
         profile = _measured(half, places, points)
     return profile
+
+
+def _borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInterpolator]:
+    """Shape as worn beside the borders of what has worn, up to the first unworn column: monotone between columns.
+
+    There the depth ends within a column. What a smooth depth leaves of an unworn edge radius is a ridge, which would
+    not have outlasted the wear; the shape as worn has none.
+    """
+    found: list[PchipInterpolator] = []
+    worn = np.flatnonzero(depth > 0)
+    if not worn.size:
+        return found
+    shape = depth + columns.depths(lambda x: case.roller.profile.drop(x, case.roller.length))
+    for outer, step in ((worn[0] - 1, 1), (worn[-1] + 1, -1)):
+        if 0 <= outer < depth.size:
+            numbers = np.sort(outer + step * np.arange(BORDER + 1))
+            numbers = numbers[(numbers >= 0) & (numbers < depth.size)]
+            if np.isfinite(shape[numbers]).all() and numbers.size > 2:
+                found.append(PchipInterpolator(columns.middles[numbers], shape[numbers]))
+    return found
 
 
 def _points(columns: _Columns, start: float, stop: float) -> FloatArray:

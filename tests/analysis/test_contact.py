@@ -32,12 +32,36 @@ def test_along_the_axis_by_hand() -> None:
 
 @pytest.mark.parametrize(
     ("start", "stop", "expected"),
-    [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0), (3, 2, 0)],
+    [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0)],
 )
 def test_load_between_counts_cells_by_their_part(start: float, stop: float, expected: float) -> None:
     load = analysis.load_between(contact(VALUES), start, stop)
     assert float(load) == pytest.approx(expected)
     assert load.attrs["units"] == "N"
+
+
+@pytest.mark.parametrize(
+    ("start", "stop", "message"),
+    [
+        (3, 2, r"start, stop = \(3, 2\): must be increasing"),
+        (100.0, 300.0, r"must be a part of the cells"),
+        ("0", 1.0, r"start = '0': must be a number"),
+        ([0, 1], [1, 2], r"start = \[0, 1\]: must be a number"),
+    ],
+)
+def test_no_part_of_the_cells_carries_no_load_but_is_refused(start, stop, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        analysis.load_between(contact(VALUES), start, stop)
+
+
+def test_results_over_a_and_one_row_of_cells_are_refused() -> None:
+    scaled = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
+    with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
+        analysis.line_load(scaled)
+    with pytest.raises(InvalidInputError, match="two positions along y or more"):
+        analysis.line_load(contact(VALUES).isel(y=[1]))
+    with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
+        analysis.peak(contact(VALUES), 5)  # type: ignore[arg-type]
 
 
 def test_scalars_by_hand() -> None:

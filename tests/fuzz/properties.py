@@ -353,9 +353,8 @@ def largest_stress(solved: Solved) -> bool:
     )
     depths = case.hertz_half_width * np.array([0.0, 0.1, 0.2, 0.4, 0.7, 1.0])
     places = {"x": grid.x[columns], "y": grid.y[rows], "z": depths}
-    tractions = {"traction_x": result["traction_x"], "traction_y": result["traction_y"]} if solved.moves else {}
-    friction = 0.0 if solved.moves else case.friction
-    field = stress_field(case.body, result["pressure"], friction, **places, **tractions)["von_mises"].values
+    # On refined cells random cases slide.
+    field = stress_field(case.body, result["pressure"], case.friction, **places)["von_mises"].values
     field[..., 0][~inside[np.ix_(columns, rows)]] = 0.0
     require(field.max() <= most, f"a von Mises stress of {field.max() / most:.4g} of the stated largest")
     return True

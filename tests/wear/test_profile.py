@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, fatigue, solve
+from contactstudy.profiles import Cylinder
 from contactstudy.wear import wear_in, worn_profile
 
 STEEL = Material(210e9, 0.3)
@@ -106,3 +107,12 @@ def test_no_ridge_is_left_where_the_body_ends_under_the_roller() -> None:
     depth = worn["wear_depth"].values[-1]
     ends = profile.drop(np.array([-0.15e-3, 0.15e-3]), LENGTH)
     assert ends == pytest.approx(depth[[0, -1]], rel=0.05)
+
+
+def test_no_ridge_is_left_at_the_border_of_what_has_worn_of_an_edge_radius() -> None:
+    """There the columns are wide: interpolated depths left a ridge that was pressed higher than the unworn radius."""
+    case = pressed(Cylinder(fillet_radius=0.1e-3))
+    worn = wear_in(case, K, [0.0, 1e4])
+    again = solve(pressed(worn_profile(case, worn)), stresses=False)
+    unworn, own = (float(worn["pressure"].isel(distance=at).max()) for at in (0, -1))
+    assert own < float(again.peak_pressure) < 0.8 * unworn
