@@ -130,8 +130,8 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        With positions as dimensions instead of ``x_index`` or ``x_over_a``, and without padding; a result of
-        :func:`contactstudy.solve` as it is.
+        With positions as dimensions instead of ``x_index`` or ``x_over_a``, increasing, and without padding; a result
+        of :func:`contactstudy.solve` mostly as it is.
 
     Raises
     ------
@@ -158,4 +158,4 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
         kept = np.flatnonzero(np.isfinite(one[name].values))
         # A case without stresses has no positions at all.
         one = one.isel({dim: kept}).swap_dims({dim: name}) if kept.size else one.drop_dims(dim)
-    return one
+    return in_order(one)

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import axis_dimensions, in_order, positions, single_case
+from contactstudy.analysis.axes import axis_dimensions, positions, single_case
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.arrays.between import refined
 from contactstudy.arrays.grid import ON_TOP
@@ -81,7 +81,6 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
     one = single_case(dataset)
     if f"peak_{variable}_error" in one:
         return one[[name for name in one.data_vars if str(name).startswith(f"peak_{variable}")]].drop_attrs(deep=False)
-    one = in_order(one)
     sampled = measure(one, variable)
     found = peak_between(one, names, sampled, lambda stresses: measure(stresses, variable))
     if "pressure" in one and found.place.get("z") == 0:

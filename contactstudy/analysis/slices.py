@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, single_case
+from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.arrays.required import require, require_si
@@ -83,7 +83,8 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     for name in ("half_width", "unloaded_gap"):
         if name in cells:
             result[name] = (weights * cells[name]).sum(x) / weights.sum(x)
-    return describe(_with_shears(result, one, borders) if all(name in one for name in STRESSES) else result)
+    deep = all(name in one and "z" in axis_dimensions(one[name]) for name in STRESSES)
+    return describe(_with_shears(result, one, borders) if deep else result)
 
 
 def _with_shears(result: xr.Dataset, one: xr.Dataset, borders: np.ndarray) -> xr.Dataset:

@@ -22,7 +22,6 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
-from contactstudy.analysis.axes import in_order
 from contactstudy.analysis.largest import Peak, labelled_peak, peak_between
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named
@@ -168,7 +167,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     swept = dict(stress["hertz_half_width"].sizes) if "hertz_half_width" in stress else {}
     if any(size > 1 for size in swept.values()):
         return _of_study(stress, swept, axial=axial)
-    one = in_order(single_case(stress))
+    one = single_case(stress)
     rolling = dimension_along(one["tau_yz"], "y")
     names = list(STRESSES)
     # One of the two halves of the instants lacks the one that matters most.

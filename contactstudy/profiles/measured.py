@@ -160,6 +160,8 @@ class Measured(Shape):
         ContactStudyError
             If the file needs the extra `measured`, and that is not installed.
         """
+        for flag, value in (("remove_tilt", remove_tilt), ("remove_offset", remove_offset)):
+            checks.instance(flag, value, (bool, np.bool_), "True or False")
         x, drop, name = _read(Path(path), turn)
         if remove_tilt or remove_offset:
             check_positions("x", x, FEWEST)

@@ -77,6 +77,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
+    if "distance" not in worn.dims:
+        worn = worn.expand_dims("distance")
     known = worn["distance"].values
     at = known.size - 1
     if distance is not None:

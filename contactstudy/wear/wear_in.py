@@ -183,7 +183,7 @@ def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, 
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
-    last = after.isel(distance=-1)
+    last = after.isel(distance=-1) if "distance" in after.dims else after
     cells = labelled_cells("after.pressure", last["pressure"], extent=case.body.extent)[1]
     depth = last["wear_depth"].values.astype(np.float64)
     error = float(last["wear_error"]) * float(depth.max())

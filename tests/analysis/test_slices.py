@@ -56,3 +56,10 @@ def test_bad_input(strip_result, opened: xr.Dataset) -> None:
         analysis.slices(strip_result(), 0)
     with pytest.raises(InvalidInputError, match="single case"):
         analysis.slices(opened)
+
+
+def test_order_does_not_matter_and_stresses_at_one_depth_are_left_out(solved: xr.Dataset) -> None:
+    there = analysis.slices(solved, 4)
+    turned = analysis.slices(solved.isel(x=slice(None, None, -1)), 4)
+    assert turned["normal_load"].values == pytest.approx(there["normal_load"].values)
+    assert "peak_maximum_shear" not in analysis.slices(solved.isel(z=1), 4)

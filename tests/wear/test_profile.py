@@ -116,3 +116,10 @@ def test_no_ridge_is_left_at_the_border_of_what_has_worn_of_an_edge_radius() -> 
     again = solve(pressed(worn_profile(case, worn)), stresses=False)
     unworn, own = (float(worn["pressure"].isel(distance=at).max()) for at in (0, -1))
     assert own < float(again.peak_pressure) < 0.8 * unworn
+
+
+def test_one_distance_of_a_result_is_a_result(settled) -> None:
+    case = pressed()
+    x = np.linspace(-0.5, 0.5, 41) * LENGTH
+    chosen, alone = worn_profile(case, settled, 2e4), worn_profile(case, settled.sel(distance=2e4))
+    assert alone.drop(x, LENGTH) == pytest.approx(chosen.drop(x, LENGTH))
