@@ -142,7 +142,8 @@ def test_real_roller_is_softer_at_its_own_ends():
         # Two bodies that end together are like each other, and a rigid roller on one of half the stiffness like both.
         assert float(flush[name].sel(model=both)) == pytest.approx(float(flush[name].sel(model=rigid)), rel=2e-3)
         first, second = (float(each[name].sel(model="half-spaces")) for each in (wide, flush))
-        assert first == pytest.approx(second, rel=1e-6)
+        # The largest stress is looked for from points that differ.
+        assert first == pytest.approx(second, rel=1e-6 if name == "end_load" else 1e-4)
     for table in (module.table, module.load_table):
         assert "| Lundberg |" in table(found.isel(raceway=0))
         assert "±" in table(found.isel(raceway=0))
