@@ -30,7 +30,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If there is no pressure, or the part is empty or misses the cells.
+        If there is no pressure.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If there is no pressure, or the part is empty, misses the cells or is no number.
 
     Examples
     --------

@@ -150,29 +150,17 @@ def peak_between(
     comment = _without_limit(one, places, at)
     if comment:
         error = np.inf
-    elif "peak_pressure_error" in one:
-        error += abs(value) * float(one["peak_pressure_error"] / one["peak_pressure"])
-    elif "pressure" not in one:
-        # Nothing else says whether the points are close enough.
-        error = max(error, DOUBLED * abs(value - _of_every_second(one[names], evaluate, over, places, at)))
+    else:
+        if "pressure" not in one:
+            # Nothing else says whether the points are close enough.
+            doubled, _ = _between(one[names], evaluate, over, places, at, AROUND, every=2)
+            error = max(error, DOUBLED * abs(value - doubled))
+        if "peak_pressure_error" in one:
+            error += abs(value) * float(one["peak_pressure_error"] / one["peak_pressure"])
     found = dict(zip(over, place, strict=True))
     if "pressure" in one and found.get("z") == 0:
         error += ON_TOP * abs(value)
     return Peak(value, error, found, comment)
-
-
-def _of_every_second(
-    stresses: xr.Dataset,
-    evaluate: Callable[[xr.Dataset], xr.DataArray],
-    over: dict[str, str],
-    places: dict[str, FloatArray],
-    at: tuple[np.intp, ...],
-) -> float:
-    """Largest value of polynomials through every second point, the largest sample among them."""
-    every = {dim: slice(int(index) % 2, None, 2) for dim, index in zip(over.values(), at, strict=True)}
-    fewer = {axis: place[int(index) % 2 :: 2] for (axis, place), index in zip(places.items(), at, strict=True)}
-    there = tuple(np.intp(int(index) // 2) for index in at)
-    return _between(stresses.isel(every), evaluate, over, fewer, there, AROUND)[0]
 
 
 def labelled_peak(variable: str, found: Peak, base: Variable) -> xr.Dataset:
@@ -285,12 +273,14 @@ def _between(
     places: dict[str, FloatArray],
     at: tuple[np.intp, ...],
     around: int,
+    every: int = 1,
 ) -> tuple[float, list[float]]:
-    """Largest value, and its place, of polynomials through the points `around` the largest sample."""
+    """Largest value, and its place, of polynomials about the largest sample, with every point or `every` second."""
     window, fine, matrices = {}, [], []
     for (axis, dim), index in zip(over.items(), at, strict=True):
-        near = refined(places[axis], int(index), around)
-        window[dim] = near.window
+        numbers = np.arange(places[axis].size)[int(index) % every :: every]
+        near = refined(places[axis][numbers], int(index) // every, around)
+        window[dim] = numbers[near.window]
         fine.append(near.points)
         matrices.append(near.matrix)
     inside = stresses.isel(window)

@@ -61,12 +61,12 @@ class Pressed(NamedTuple):
     ----------
     pressure : array (column, y)
         Pressure, Pa.
-    opening : array (column)
-        Least gap of each column under load, metres.
+    opening : callable
+        Least gap of each column under load, metres: array (column). It takes one more application of the operator.
     """
 
     pressure: FloatArray
-    opening: FloatArray
+    opening: Callable[[], FloatArray]
 
 
 Solve = Callable[[FloatArray, FloatArray | None, float], Pressed]
@@ -171,7 +171,6 @@ class _State:
     shape: AxialShape
     edges: FloatArray
     pressure: FloatArray = field(init=False)
-    opening: FloatArray = field(init=False)
     first: FloatArray | None = None
     peaks: list[tuple[float, float]] = field(default_factory=list)
     ends: list[tuple[float, float]] = field(default_factory=list)
@@ -181,7 +180,7 @@ class _State:
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
 
     def __post_init__(self) -> None:
-        self.pressure, self.opening = self.solve(self.edges, None, ROUGH)
+        self.pressure = self.solve(self.edges, None, ROUGH).pressure
         self._sample()
 
     def refine(self, theta: float) -> None:
@@ -189,8 +188,8 @@ class _State:
         while True:
             while self.edges.size <= MOST_COLUMNS and (marks := self._marks(theta)).any():
                 self._split(marks)
-            self.pressure, self.opening = self.solve(self.edges, self.pressure, POLISHED)
-            marks = overlooked(self.shape, self.edges, np.asarray(self.pressure.any(axis=1)), self.opening)
+            self.pressure, opening = self.solve(self.edges, self.pressure, POLISHED)
+            marks = overlooked(self.shape, self.edges, np.asarray(self.pressure.any(axis=1)), opening())
             if not marks.any() or self.edges.size > MOST_COLUMNS:
                 break
             self._split(marks)
@@ -202,7 +201,7 @@ class _State:
         finer = split(self.edges, marks)
         guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
         self.edges = finer
-        self.pressure, self.opening = self.solve(finer, guess, ROUGH)
+        self.pressure = self.solve(finer, guess, ROUGH).pressure
         LOGGER.info("refined to %d columns", finer.size - 1)
         self._sample()
 

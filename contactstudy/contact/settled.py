@@ -236,8 +236,12 @@ class _Solver:
         operator = contact_operator(shape)
         found = solve_normal(operator, problem, guess)
         check_window(shape.body, found.pressure)
-        gap = problem.gap + operator({Load.NORMAL: found.pressure}) - problem.level(found.motion)
-        return Pressed(found.pressure[under], gap[under].min(axis=1))
+
+        def opening() -> FloatArray:
+            opened = gap + operator({Load.NORMAL: found.pressure}) - problem.level(found.motion)
+            return np.asarray(opened[under].min(axis=1))
+
+        return Pressed(found.pressure[under], opening)
 
 
 def _under(grid: Grid, edges: FloatArray) -> slice:

@@ -257,7 +257,10 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     >>> round(1e3 * setup.case.body.length, 3), round(1e3 * setup.case.roller_start, 3)
     (10.26, 0.13)
     """
-    return setup_of(checked(parameters))
+    known = checked(parameters)
+    setup = setup_of(known)
+    check_cells(known)
+    return setup
 
 
 def setup_of(parameters: Mapping[str, Any]) -> Setup:
@@ -267,7 +270,6 @@ def setup_of(parameters: Mapping[str, Any]) -> Setup:
         if name not in values:
             raise InvalidInputError(name, None, "given")
     _check_approach(values, parameters)
-    check_cells(parameters)
     for names in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load", "approach")):
         _one_of(values, *names)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)

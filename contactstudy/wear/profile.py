@@ -94,8 +94,8 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     columns = _Columns.of(worn, x, under, start, stop)
     depth = worn["wear_depth"].values[at, under]
     ends = _Ends.of(case, columns, depth, worn["pressure"].values[at, under])
-    own = case.roller.profile
     profile = _through(case, columns, ends, depth)
+    own = case.roller.profile
     return Sum((*(own.terms if isinstance(own, Sum) else (own,)), profile))
 
 
@@ -176,8 +176,11 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
     volume = np.concatenate([[0.0], np.cumsum(rest * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _borders(case, columns, depth)
-    beside = [np.linspace(border.x[0], border.x[-1], BORDER_POINTS * border.x.size) for border in borders]
-    places = np.unique(np.concatenate([_points(columns, start, stop), *beside]))
+    places = _points(columns, start, stop)
+    for border in borders:
+        more = np.linspace(border.x[0], border.x[-1], BORDER_POINTS * border.x.size)
+        apart = np.abs(places - more[:, None]).min(axis=1) > ROUNDING * case.roller.length
+        places = np.sort(np.append(places, more[apart]))
     points = np.maximum(spline(places) + ends.depth(places), 0.0)
     corrected = np.ones(depth.size, dtype=bool)
     for border in borders:

@@ -38,7 +38,7 @@ def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), sti
 
 def pressed(pressure: FloatArray) -> Pressed:
     """Contact whose columns that are not pressed are far from it."""
-    return Pressed(np.asarray(pressure), np.where(pressure.any(axis=1), 0.0, np.inf))
+    return Pressed(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
 
 
 def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., Pressed]:
