@@ -87,7 +87,7 @@ def largest_stress(
     for place, field in known:
         sample = _sampled(place._replace(z=place.z[:1]), field[..., :1], search.off_rim_at(place))
         # More may lie between the cells that are looked at.
-        if sample.found.value * (1 + SETTLED) > largest.value:
+        if sample.found.value * (1 + ON_TOP) > largest.value:
             largest = _highest([largest, _of_cells(sample, search, stress)])
     return _with_asked(largest, asked, search, shallowest, stress)
 
@@ -137,19 +137,26 @@ def _highest(found: Iterable[Largest]) -> Largest:
 
 
 def _of_cells(sample: _Top, search: Search, stress: Callable[[Place], FloatArray]) -> Largest:
-    """Largest value at the centres of the cells about the largest sample; beside the rim it may go on growing."""
-    columns, rows = (
-        _between_neighbours(cells, at, centres.size)
-        for cells, at, centres in zip(
-            search.cells(sample.points), sample.at, (search.grid.x, search.grid.y), strict=False
+    """Largest value at the centres of cells, looked for from the largest sample on until no cell beside it has more."""
+    grid = search.grid
+    for _ in range(MOST):
+        before = sample.found.value
+        columns, rows = (
+            _between_neighbours(cells, at, count)
+            for cells, at, count in zip(search.cells(sample.points), sample.at, grid.shape, strict=False)
         )
-    )
-    centres = Place(search.grid.x[columns], search.grid.y[rows], sample.points.z)
-    off_rim = search.off_rim[np.ix_(columns, rows)]
-    stresses = stress(centres)
-    found = _sampled(centres, stresses, off_rim)
-    values, (column, row, _) = von_mises_of(*stresses)[..., 0], found.at
-    error = ON_TOP * found.found.value
+        centres = Place(grid.x[columns], grid.y[rows], sample.points.z)
+        stresses = stress(centres)
+        sample = _sampled(centres, stresses, search.off_rim[np.ix_(columns, rows)])
+        if sample.found.value <= before * (1 + SETTLED):
+            break
+    return _beside_the_rim(sample, von_mises_of(*stresses)[..., 0], search.off_rim_at(centres))
+
+
+def _beside_the_rim(sample: _Top, values: FloatArray, off_rim: BoolArray) -> Largest:
+    """Return the largest value of cells with its error: beside the rim it may go on growing."""
+    column, row, _ = sample.at
+    error = ON_TOP * sample.found.value
     for line, known, index in (
         (values[:, row], off_rim[:, row], column),
         (values[column], off_rim[column], row),
@@ -157,7 +164,7 @@ def _of_cells(sample: _Top, search: Search, stress: Callable[[Place], FloatArray
         beside = slice(max(index - 1, 0), index + 2)
         if not known[beside].all():
             error = max(error, (RIM + 1) * float(np.ptp(line[beside][known[beside]])))
-    return found.found._replace(error=error)
+    return sample.found._replace(error=error)
 
 
 def _between_neighbours(cells: IntArray, at: int, count: int) -> IntArray:

@@ -93,18 +93,20 @@ def search_under(loads: Loads, grid: Grid, extent: Extent) -> Search:
         width = peak_width(pressure, grid.x, grid.dy, peak)
         if not any(abs(grid.x[peak] - place.x).min() < 0.2 * width for place in places):
             x = np.clip(grid.x[peak] + width * BESIDE, *extent)
-            places.append(_place(grid, x, 0.1 * width, middle + half_width * ACROSS, width * BELOW))
+            places.append(_place(grid, off_rim, x, 0.1 * width, middle + half_width * ACROSS, width * BELOW))
     middle, half_width = _across(pressure[int(line.argmax())], grid)
     x = _along(pressure, grid, half_width, alike=alike)
-    places.append(_place(grid, x, 0.1 * half_width, middle + half_width * ACROSS, half_width * DEEP))
+    places.append(_place(grid, off_rim, x, 0.1 * half_width, middle + half_width * ACROSS, half_width * DEEP))
     return Search(grid, extent, off_rim, places)
 
 
-def _place(grid: Grid, x: FloatArray, least: float, y: FloatArray, below: FloatArray) -> Place:
+def _place(grid: Grid, off_rim: BoolArray, x: FloatArray, least: float, y: FloatArray, below: FloatArray) -> Place:
     """Centres of the cells nearest to some positions, along x some `least` distance apart, on the top and below."""
-    columns, rows = (
-        np.unique(np.abs(centres - wanted[:, None]).argmin(axis=1)) for centres, wanted in ((grid.x, x), (grid.y, y))
-    )
+    columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
+    # The outermost rows off the rim are among them: with friction the stress on the top may grow towards it.
+    known = np.flatnonzero(off_rim[columns].any(axis=0))
+    among = known if known.size else np.arange(grid.cells_y)
+    rows = among[np.unique(np.abs(grid.y[among] - y[:, None]).argmin(axis=1))]
     along = grid.x[columns]
     return Place(along[apart(along, least)], grid.y[rows], np.append(0.0, below))
 
