@@ -28,6 +28,9 @@ SETTLED = 3e-3
 AROUND = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
 """Points about one that a user asks for, over its depth: no load is nearer, so stresses change within that."""
 
+NEARLY = 1.25
+"""Factor by which the largest cell of some on the top may miss the largest of all: beside it the search goes on."""
+
 MOST = 6
 """Times that points are laid anew."""
 
@@ -86,8 +89,7 @@ def largest_stress(
         largest = _highest([largest, _settled(elsewhere, search, shallowest, stress)])
     for place, field in known:
         sample = _sampled(place._replace(z=place.z[:1]), field[..., :1], search.off_rim_at(place))
-        # More may lie between the cells that are looked at.
-        if sample.found.value * (1 + ON_TOP) > largest.value:
+        if sample.found.value * NEARLY > largest.value:
             largest = _highest([largest, _of_cells(sample, search, stress)])
     return _with_asked(largest, asked, search, shallowest, stress)
 
