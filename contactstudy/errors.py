@@ -64,7 +64,7 @@ class ConvergenceWarning(UserWarning):
 
 
 class MagnitudeWarning(UserWarning):
-    """A value of a case is of a size that is mostly a mistake in the unit; the case is taken as it is."""
+    """A value is of a size that is mostly a mistake in the unit; it is taken as it is."""
 
 
 class TemperatureWarning(UserWarning):

@@ -108,6 +108,19 @@ def in_order(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.sortby(turned) if turned else dataset
 
 
+def increasing(array: xr.DataArray, axis: str) -> xr.DataArray:
+    """Return a field with its positions along an axis increasing; one that is padded has them so already.
+
+    Examples
+    --------
+    >>> increasing(xr.DataArray([3.0, 1.0], dims="x", coords={"x": [0.5, 0.0]}), "x").values.tolist()
+    [1.0, 3.0]
+    """
+    dim = dimension_along(array, axis)
+    known = array.indexes.get(dim)
+    return array if known is None or known.is_monotonic_increasing else array.sortby(dim)
+
+
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
     """Width of the cells along an axis, metres: as told by ``<axis>_width``, or the distance of uniform positions.
 

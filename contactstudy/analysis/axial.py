@@ -6,10 +6,11 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, positions
+from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
 from contactstudy.analysis.border import contact_borders
 from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import named
 from contactstudy.errors import InvalidInputError
 
@@ -69,9 +70,7 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     >>> line_load(xr.Dataset({"pressure": pressure})).values.tolist()
     [1.0, 5.0]
     """
-    require(dataset, "pressure")
-    require_si(dataset, "pressure")
-    pressure = dataset["pressure"]
+    pressure = required_in_si(dataset, "pressure")["pressure"]
     if pressure.sizes[dimension_along(pressure, "y")] < 2:
         raise InvalidInputError("dataset", dict(pressure.sizes), "a result with two positions along y or more")
     load = pressure.sum(dimension_along(pressure, "y"), min_count=1) * cell_size(pressure, "y")
@@ -150,7 +149,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     [1.0]
     """
     require(dataset, "pressure")
-    pressure = dataset["pressure"]
+    pressure = increasing(dataset["pressure"], "y")
     along = dimension_along(pressure, "y")
     low, high = reduced(contact_borders, [(pressure, [along]), (positions(pressure, "y"), [along])], 2)
     exists = pressure.notnull().any(along)

@@ -6,13 +6,16 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, positions
+from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
+
+CUT = 0.01
+"""Part of the load that is missing where a Dataset is a part of a contact. Accuracy."""
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:
@@ -22,6 +25,37 @@ def _first_and_last(values: Array) -> tuple[Array, Array]:
     ends = [np.take_along_axis(values, at[..., None], axis=-1)[..., 0] for at in (first, last)]
     none = ~loaded.any(axis=-1)
     return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
+
+
+def _cut(pressure: Array, load: Array, dx: Array, dy: Array) -> tuple[Array, Array]:
+    """Whether contacts (..., x, y) go on beyond the first and the last x: pressed there, and short of their load."""
+    carried = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
+    pressed = pressure > 0
+    # One that is cut along y carries less for that reason.
+    short = (carried < (1 - CUT) * load) & ~pressed[..., [0, -1]].any(axis=(-2, -1))
+    return short * pressed[..., 0, :].any(axis=-1), short * pressed[..., -1, :].any(axis=-1)
+
+
+def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Whether the contact goes on beyond the first and the last x, as in a part of a result: 1 if so, else 0.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5, 2.5], "y": [-1.0, 0.0, 1.0]}
+    >>> pressure = xr.DataArray([[0, 2, 0], [0, 1, 0], [0, 1, 0]], dims=("x", "y"), coords=cells)
+    >>> contact = xr.Dataset({"pressure": pressure, "normal_load": 4.0})
+    >>> [[float(end) for end in cut_ends(each)] for each in (contact, contact.isel(x=[1, 2]))]
+    [[0.0, 0.0], [1.0, 1.0]]
+    """
+    pressure = dataset["pressure"]
+    for axis in "xy":
+        pressure = increasing(pressure, axis)
+    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    if "normal_load" not in dataset or pressure.sizes[y] < 2:
+        return xr.DataArray(0.0), xr.DataArray(0.0)
+    widths = [(_width_at_each(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))]
+    first, last = reduced(_cut, [(pressure, [x, y]), (dataset["normal_load"], []), *widths], 2)
+    return first, last
 
 
 def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
@@ -35,7 +69,8 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        `edge_pressure_first` and `edge_pressure_last`, Pa; NaN if nothing is loaded.
+        `edge_pressure_first` and `edge_pressure_last`, Pa; NaN if nothing is loaded, and at an end where the Dataset
+        is only a part of the contact, which goes on there.
 
     Raises
     ------
@@ -49,8 +84,10 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     >>> float(ends.edge_pressure_first), float(ends.edge_pressure_last)
     (3.0, 2.0)
     """
-    axial = axial_pressure(dataset)
+    axial = increasing(axial_pressure(dataset), "x")
     first, last = reduced(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+    cut_first, cut_last = cut_ends(dataset)
+    first, last = first.where(cut_first == 0), last.where(cut_last == 0)
     return xr.Dataset(
         {
             "edge_pressure_first": named("edge_pressure_first", first),

@@ -8,9 +8,11 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure
+from contactstudy.analysis.contact import cut_ends
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import named, variable_of
 from contactstudy.errors import InvalidInputError
 
@@ -32,11 +34,12 @@ def _along_axis(dataset: xr.Dataset, variable: str) -> xr.DataArray:
 
 
 def _borders(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
-    """First and last loaded position along x."""
+    """First and last loaded position along x; NaN where the contact goes on beyond a part of it."""
     axial = axial_pressure(dataset)
     x = dimension_along(axial, "x")
     loaded = positions(axial, "x").where(axial > 0)
-    return loaded.min(x).compute(), loaded.max(x).compute()
+    cut_first, cut_last = cut_ends(dataset)
+    return loaded.min(x).where(cut_first == 0).compute(), loaded.max(x).where(cut_last == 0).compute()
 
 
 def _at(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
@@ -99,8 +102,7 @@ def edge_factors(
     >>> float(result.end_over_middle_first), float(result.end_over_middle_last)
     (3.0, 2.0)
     """
-    require(dataset, "pressure", "hertz_half_width")
-    require_si(dataset, "pressure")
+    dataset = required_in_si(dataset, "pressure", "hertz_half_width")
     checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     near = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     first, last, middle, largest = _values(dataset, variable, near)

@@ -6,20 +6,28 @@ Both stand in attributes of the Dataset as JSON, so that they are in every file 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
 from typing import Any
 
 import xarray as xr
 
 from contactstudy.arrays.required import require
+from contactstudy.bodies.models import Body
 from contactstudy.case.case import Case
-from contactstudy.case.stored import case_from, case_table
+from contactstudy.case.stored import case_from, case_table, table_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.versions import versions
 
 INPUTS_ATTRIBUTE, RUN_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run"
 """What was solved; and by what, when and how long. The files of a study have the second one, too."""
+
+SAME = 1e-9
+"""Part by which two numbers may differ and be the same: load and pressure follow from one another. Accuracy."""
+
+MOST_SHOWN = 3
+"""Values that a message names."""
 
 
 def with_provenance(
@@ -77,7 +85,8 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Raises
     ------
     InvalidInputError
-        If the Dataset does not say it: one that was computed from a result, or solved before results said it.
+        If the Dataset does not say it: one that was computed from a result, or solved before results said it; or a
+        case of an opened study, whose own file says it.
 
     Examples
     --------
@@ -90,7 +99,85 @@ def solved_case(dataset: xr.Dataset) -> Case:
     require(dataset)
     inputs = attribute(dataset, INPUTS_ATTRIBUTE)
     if "case" not in inputs:
-        raise InvalidInputError(
-            "dataset", sorted(map(str, dataset.attrs)), f"a result of solve, with the attribute {INPUTS_ATTRIBUTE}"
-        )
+        wanted = f"a result of solve, with the attribute {INPUTS_ATTRIBUTE}"
+        raise InvalidInputError("dataset", sorted(map(str, dataset.attrs)), wanted, _where_else(dataset))
     return case_from(inputs["case"])
+
+
+def _where_else(dataset: xr.Dataset) -> str:
+    """Return the advice where the case stands that a part of an opened study was solved for."""
+    if "case_id" not in dataset:
+        return ""
+    named = f", {dataset['case_id'].item()[:8]}..." if dataset["case_id"].ndim == 0 else ""
+    return f"each case's own file in the study's folder, under cases, says it: its name begins as case_id does{named}"
+
+
+def check_solved_for(
+    result: xr.Dataset, given: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
+) -> None:
+    """Raise if a result says that it was solved for another case, or in another body, than the one given.
+
+    Parameters
+    ----------
+    result : Dataset
+        One that says nothing of its case is taken as it is.
+    given : Case or Body
+        What was given beside it.
+    argument : str
+        Name of the result among the arguments, for the message.
+    only : tuple of str
+        Parts of the case that have to agree. Default: all.
+
+    Raises
+    ------
+    InvalidInputError
+        With the values that differ.
+    """
+    stored = attribute(result, INPUTS_ATTRIBUTE).get("case")
+    if stored is None:
+        return
+    solved = case_from(stored)
+    pair = [_compared(each) for each in ((solved, given) if isinstance(given, Case) else (solved.body, given))]
+    names = [
+        name
+        for name in {**pair[0], **pair[1]}
+        if (not only or name.split(".")[0] in only) and not _same(pair[0].get(name), pair[1].get(name))
+    ]
+    if names:
+        found, wanted = (", ".join(_said(name, each.get(name)) for name in names[:MOST_SHOWN]) for each in pair)
+        what = "case" if isinstance(given, Case) else "body"
+        raise InvalidInputError(argument, f"solved with {found}", f"a result of the {what} that is given, {wanted}")
+
+
+def _compared(part: Case | Body) -> dict[str, Any]:
+    """Values of a case or a body by name, the same for the same contact however it was prescribed."""
+    if not isinstance(part, Case):
+        return dict(_leaves({"body": table_of(part)}))
+    table = case_table(part) | {"end_distance": part.roller_start}
+    if part.approach is None:
+        table |= {"load": part.normal_load, "max_pressure": part.hertz_max_pressure}
+    return dict(_leaves(table))
+
+
+def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield what a table holds, with dotted names."""
+    if isinstance(entry, Mapping):
+        for key, value in entry.items():
+            yield from _leaves(value, f"{name}.{key}" if name else str(key))
+    elif isinstance(entry, (list, tuple)):
+        for number, value in enumerate(entry):
+            yield from _leaves(value, f"{name}.{number}")
+    else:
+        yield name, entry
+
+
+def _said(name: str, value: Any) -> str:
+    """Return a value with its name."""
+    return f"{name} = {value:.6g}" if isinstance(value, float) else f"{name} = {value}"
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Whether two values are the same but for rounding."""
+    if isinstance(one, float) and isinstance(other, float):
+        return math.isclose(one, other, rel_tol=SAME)
+    return bool(one == other)

@@ -12,6 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from contactstudy.analysis.axes import single_case
+from contactstudy.analysis.contact import cut_ends
 from contactstudy.analysis.edges import contact_length
 from contactstudy.analysis.largest import largest
 from contactstudy.arrays.engineering import quantity, with_error
@@ -150,7 +151,7 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
             yield _intensity(one, end, place)
         if f"end_load_{end}" in one:
             yield _settled(one, f"end_load_{end}", f"load on the last half-width, {place}")
-    if {"pressure", "gap"} <= set(one.data_vars) and bool((one["pressure"] > 0).any()):
+    if {"pressure", "gap"} <= set(one.data_vars) and bool((one["pressure"] > 0).any()) and not any(cut_ends(one)):
         yield _row(one.assign(contact_length=contact_length(one)), "contact_length", "length of the contact", UNBOUNDED)
     elif "contact_length" in one:
         yield _row(one, "contact_length", "length of the contact", UNBOUNDED)

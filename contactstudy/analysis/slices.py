@@ -9,7 +9,7 @@ from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, single_case
 from contactstudy.analysis.axial import axial_profiles
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES, describe, named
 from contactstudy.errors import InvalidInputError
 
@@ -51,9 +51,7 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
     >>> table["normal_load"].tolist(), table["axial_pressure"].tolist()
     ([8.0, 2.0], [3.0, 1.0])
     """
-    require(dataset, "pressure")
-    require_si(dataset, "pressure")
-    one = single_case(dataset)
+    one = single_case(required_in_si(dataset, "pressure"))
     number = checks.count("count", count)
     profiles = axial_profiles(one)
     x = dimension_along(profiles["line_load"], "x")

@@ -48,20 +48,3 @@ def require(dataset: object, *names: str, argument: str = "dataset") -> None:
         level = "fields" if "z" in known.dims else "surface"
         hint += f"; a study keeps it at level {level!r}"
     raise InvalidInputError(argument, sorted(map(str, dataset.data_vars)), wanted, hint)
-
-
-def require_si(dataset: xr.Dataset, *names: str) -> None:
-    """Raise if variables are over a or p0: where lengths and pressures meet the half-width, that is another number.
-
-    Examples
-    --------
-    >>> pressure = xr.DataArray([0.5], dims="x", attrs={"units": "1"})
-    >>> require_si(xr.Dataset({"pressure": pressure}), "pressure")
-    Traceback (most recent call last):
-    contactstudy.errors.InvalidInputError: dataset = 'pressure without unit': must be in SI, pressure in Pa; ...
-    """
-    for name in names:
-        units = VARIABLES[name].units
-        if dataset[name].attrs.get("units", units) == "1" != units:
-            hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
-            raise InvalidInputError("dataset", f"{name} without unit", f"in SI, {name} in {units}", hint)

@@ -8,10 +8,12 @@ from typing import Any
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.required import require
+from contactstudy.arrays.vocabulary import VARIABLES
 from contactstudy.errors import InvalidInputError
 
 KNOWN: dict[str, dict[str, float]] = {
-    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9},
+    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9, "km": 1e3},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},
     "N m": {"N m": 1.0, "Nm": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
@@ -20,6 +22,9 @@ KNOWN: dict[str, dict[str, float]] = {
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
 }
 """Units that input may have, by the one in SI, and their sizes in it."""
+
+POSITIONS = ("x", "y", "z", "x_field", "y_field", "x_width")
+"""Coordinates in metres."""
 
 
 def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
@@ -38,13 +43,43 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
     [0.001]
     """
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
-    factors = {
-        axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in ("x", "y", "z", "x_width") if axis in array.coords
-    }
+    factors = {axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in POSITIONS if axis in array.coords}
     moved = {axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1}
     own = _factor(name, array, unit)
     converted = array.assign_coords(moved) if moved else array
     return converted if own == 1 else (converted * own).assign_attrs(units=unit)
+
+
+def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset") -> xr.Dataset:
+    """Return a Dataset that must hold some variables, with these and their positions in SI.
+
+    Raises
+    ------
+    InvalidInputError
+        If a variable is missing, is over a or p0, where another number is needed, or has a unit that is not known.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([0.5], dims="x", attrs={"units": "MPa"})
+    >>> required_in_si(xr.Dataset({"pressure": pressure}), "pressure").pressure.values.tolist()
+    [500000.0]
+    >>> required_in_si(xr.Dataset({"pressure": pressure.assign_attrs(units="1")}), "pressure")
+    Traceback (most recent call last):
+    contactstudy.errors.InvalidInputError: dataset = 'pressure without unit': must be in SI, pressure in Pa; ...
+    """
+    require(dataset, *names, argument=argument)
+    changed = {}
+    for name in names:
+        units, array = VARIABLES[name].units, dataset[name]
+        if array.attrs.get("units", units) == "1" != units:
+            hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
+            raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
+        if (converted := in_si(f"{argument}.{name}", array, units)) is not array:
+            changed[name] = converted
+    if not changed:
+        return dataset
+    moved = {str(axis): place for each in changed.values() for axis, place in each.coords.items() if axis in POSITIONS}
+    return dataset.assign_coords(moved).assign({name: each.variable for name, each in changed.items()})
 
 
 def metres(name: str, positions: Any) -> Any:

@@ -11,7 +11,8 @@ from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
 from contactstudy.arrays.across import largest_across
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies import hertz
 from contactstudy.case.case import Case
@@ -70,8 +71,8 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     >>> bool(factors.stress_riser[0] < 1 < factors.stress_riser[1])  # between free ends the ends carry less
     True
     """
-    require(result, "pressure", "tilt")
-    require_si(result, "pressure")
+    require(result, "tilt", argument="result")
+    result = required_in_si(result, "pressure", argument="result")
     one = single_case(result)
     case, count = solved_case(one), checks.count("laminae", laminae, least=2)
     sliced = slice_model(replace(case, load_position=None, tilt=float(one["tilt"])), slices=count)

@@ -8,25 +8,35 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
 
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray
 """A number, several, or labelled ones."""
 
-UNITS = {"approach": "metres", "tilt": "radians", "normal_load": "N", "moment": "N m"}
+UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}
 """Of the arguments."""
 
 
 def broadcast(**values: Values) -> tuple[xr.DataArray, ...]:
     """Arguments as arrays of the same dimensions: a sequence has a dimension of its own name."""
-    return tuple(each.astype(np.float64) for each in xr.broadcast(*(_labelled(*item) for item in values.items())))
+    labelled = [_labelled(*item) for item in values.items()]
+    try:
+        aligned = xr.align(*labelled, join="exact")
+    except ValueError:
+        shown = {name: dict(each.sizes) for name, each in zip(values, labelled, strict=True)}
+        allowed = "with the same coordinates along common dimensions, or without"
+        raise InvalidInputError(", ".join(values), shown, allowed) from None
+    return tuple(each.astype(np.float64) for each in xr.broadcast(*aligned))
 
 
 def _labelled(name: str, value: Values) -> xr.DataArray:
     """One argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
+        value = in_si(name, value, UNITS[name])
         checks.coordinates(name, value.values.ravel(), UNITS[name])
         return value.drop_vars(name, errors="ignore") if name not in value.dims else value
     if np.ndim(value) == 0:

@@ -13,6 +13,7 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bearing.laminae import LIFE_POWER, lamina_factors
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import question_values
 from contactstudy.case.motion import Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -57,6 +58,11 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     InvalidInputError
         If a value is out of range.
 
+    Warns
+    -----
+    MagnitudeWarning
+        If the rating is of a size that is mostly a mistake in the unit.
+
     Notes
     -----
     ``Q_c = C_r / (0.83 c Z rows**(7/9)) (1 + r**(+-9/2))**(2/9)`` with c = 0.378 inside and 0.364 outside, and
@@ -73,6 +79,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     part = checks.positive("gamma", gamma)
     if part >= 1:
         raise InvalidInputError("gamma", part, "below 1, roller diameter over pitch diameter")
+    question_values(dynamic_rating=rating, stacklevel=2)
     ratio = 1.038 * ((1 - part) / (1 + part)) ** (143 / 108)
     base = rating / (REDUCTION * count * rows ** (7 / 9))
     inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)

@@ -15,6 +15,7 @@ from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
 from contactstudy.case.doubts import question
 from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
+from contactstudy.case.gap import gap_on_cells
 from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
 from contactstudy.case.roller import Roller
 from contactstudy.case.words import as_html, in_lines
@@ -26,9 +27,6 @@ LARGEST_TILT = 0.1
 
 INCLINED_POINTS = 41
 """Points along the axis from which the mean inclination of the roller is taken."""
-
-GAP_NODES = 6
-"""Gauss points over the width of a cell from which the mean gap is taken. Accuracy."""
 
 SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-7, 0.5
 """Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
@@ -328,19 +326,7 @@ class Case:
         It is that at the centres of uniform cells, and the mean along x over others. A tilted roller turns about its
         mid-length, where its clearance stays as it is.
         """
-        from_middle = grid.x - self.roller_middle
-        gap = self._clearance(from_middle, grid.y)
-        if grid.uniform:
-            return gap
-        nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
-        within = from_middle[:, None] + 0.5 * grid.widths[:, None] * nodes
-        along = self._clearance(within.ravel(), np.zeros(1)).reshape(within.shape)
-        under = np.isfinite(along)
-        shares = np.maximum(under @ weights, weights.min())
-        mean = np.where(under, along, 0.0) @ weights / shares
-        at_centre = self._clearance(from_middle, np.zeros(1))[:, 0]
-        moved = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
-        return np.asarray(gap + moved[:, None])
+        return gap_on_cells(self._clearance, grid, self.roller_middle, 0.5 * self.roller.length)
 
     def _clearance(self, from_middle: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the roller at distances from its mid-length."""

@@ -8,7 +8,7 @@ stop makes it an error.
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import replace
@@ -43,6 +43,9 @@ class Usual(NamedTuple):
 LENGTH = Usual(1e-5, 3.0, "m", (("mm", 1e-3), ("µm", 1e-6)))
 """From a pin of a watch to the roll of a mill."""
 
+STRENGTH = Usual(1e5, 1e10, "Pa", (("GPa", 1e9), ("MPa", 1e6)))
+"""From soft lead to hard metal."""
+
 USUAL = {
     "young": Usual(1e6, 1.5e12, "Pa", (("GPa", 1e9), ("MPa", 1e6))),  # soft rubber to diamond
     "radius": LENGTH._replace(most=1.5),
@@ -55,6 +58,14 @@ USUAL = {
     "approach": Usual(0.0, 0.1, "m", (("mm", 1e-3), ("µm", 1e-6))),
     "drop": Usual(0.0, 0.15, "m", (("mm", 1e-3), ("µm", 1e-6))),  # crowns are micrometres, balls are cut short
     "end drop": Usual(0.0, 0.5, "m", (("mm", 1e-3), ("µm", 1e-6))),  # with corners
+    "bending": STRENGTH,
+    "torsion": STRENGTH,
+    "yield_stress": STRENGTH,
+    "dynamic_rating": Usual(500.0, 1e8, "N", (("kN", 1e3),)),  # from needles to the bearings of a mill
+    "roughness": Usual(0.0, 2e-4, "m", (("mm", 1e-3), ("µm", 1e-6))),  # from peak to valley
+    "conductivity": Usual(0.01, 5e3, "W/(m K)"),
+    "density": Usual(10.0, 3e4, "kg/m3", (("g/cm3", 1e3),)),
+    "specific_heat": Usual(50.0, 1e4, "J/(kg K)", (("J/(g K)", 1e3),)),
 }
 """What is usual for a contact of engineering, by name."""
 
@@ -91,8 +102,19 @@ def doubts(case: Case) -> tuple[str, ...]:
 
 def question(case: Case) -> None:
     """Warn of doubtful magnitudes of a case, once for all of them; the warning points to where the case is made."""
-    if _QUESTIONED.get() and (found := doubts(case)):
-        warnings.warn(f"doubtful, for units are SI: {'; '.join(found)}; {SILENCE}", MagnitudeWarning, stacklevel=4)
+    if _QUESTIONED.get():
+        _warn(doubts(case), stacklevel=5)
+
+
+def question_values(*, stacklevel: int, **values: float) -> None:
+    """Warn of doubtful magnitudes of values by name; `stacklevel` as of `warnings.warn`, from the caller of this."""
+    _warn([_doubt(name, name, value) for name, value in values.items()], stacklevel=stacklevel + 2)
+
+
+def _warn(questions: Iterable[str], stacklevel: int) -> None:
+    """Warn of the questions that there are."""
+    if found := "; ".join(question for question in questions if question):
+        warnings.warn(f"doubtful, for units are SI: {found}; {SILENCE}", MagnitudeWarning, stacklevel=stacklevel)
 
 
 def changed(case: Case, **changes: Any) -> Case:

@@ -18,6 +18,7 @@ from contactstudy.arrays.instruments import Heights, of_instrument, read_heights
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
 from contactstudy.arrays.units import in_si
 from contactstudy.arrays.variables import labels, named
+from contactstudy.case.doubts import question_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -200,6 +201,11 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     InvalidInputError
         If it is not such a map, holds values that are not numbers, or does not cover the grid.
 
+    Warns
+    -----
+    MagnitudeWarning
+        If the heights from peak to valley are of a size that is mostly a mistake in the unit.
+
     Examples
     --------
     >>> cells = Grid((0.0, 4.0), (0.0, 2.0), 4, 2)
@@ -208,6 +214,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     [[1.5], [2.5]]
     """
     values, own = labelled_cells("roughness", in_si("roughness", heights, "m"))
+    question_values(roughness=float(np.ptp(values)), stacklevel=5)  # where `solve` is called
     if own.shape == grid.shape and all(
         np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
         for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))

@@ -84,24 +84,24 @@ def case_table(case: Case) -> dict[str, Any]:
     >>> table["roller"]["profile"], table["body"]["material"]["young"]
     ({'kind': 'Cylinder', 'fillet_radius': 0.0}, 210000000000.0)
     """
-    return dict(_as_table(case, case.roller.length))
+    return dict(table_of(case, case.roller.length))
 
 
-def _as_table(part: Any, length: float) -> Any:
-    """Return a part of a case as plain values."""
+def table_of(part: Any, length: float = 0.0) -> Any:
+    """Return a part of a case as plain values; a profile of the user's own over a length."""
     name = type(part).__name__
     if isinstance(part, profiles.EffectiveLength):
         length = part.effective_length  # what is within it is asked with this length
     if KINDS.get(name) is type(part):
-        values = {entry.name: _as_table(getattr(part, entry.name), length) for entry in fields(part)}
+        values = {entry.name: table_of(getattr(part, entry.name), length) for entry in fields(part)}
         return {"kind": name, **{key: value for key, value in values.items() if value is not None}}
     if isinstance(part, Profile):
         positions = np.linspace(-0.5, 0.5, SAMPLES)
         drops = checked_drop(part, positions * length, length)
         known = [float(drop) if np.isfinite(drop) else None for drop in drops]
-        return _as_table(Sampled(in_words(part), tuple(positions.tolist()), tuple(known)), length)
+        return table_of(Sampled(in_words(part), tuple(positions.tolist()), tuple(known)), length)
     if isinstance(part, (tuple, list)):
-        return [_as_table(entry, length) for entry in part]
+        return [table_of(entry, length) for entry in part]
     if isinstance(part, (bool, np.bool_)):
         return bool(part)
     return part if part is None or isinstance(part, str) else float(part)

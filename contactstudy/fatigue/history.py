@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import dimension_along
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -33,8 +33,7 @@ def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
     InvalidInputError
         If a component is missing, the rolling direction is, or it has fewer than three positions.
     """
-    require(stress, *STRESSES)
-    require_si(stress, *STRESSES)
+    stress = required_in_si(stress, *STRESSES, argument="stress")
     rolling = dimension_along(stress["tau_yz"], "y")
     if stress.sizes[rolling] < FEWEST_POSITIONS:
         raise InvalidInputError(
@@ -138,7 +137,7 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
         border = np.maximum(magnitude[:, 0], magnitude[:, -1])
         return (np.divide(border, largest, out=np.zeros_like(border), where=largest > 0),)
 
-    require(stress, *STRESSES)
+    stress = required_in_si(stress, *STRESSES, argument="stress")
     rolling = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
     ordered = stress.sortby(rolling) if rolling in stress.indexes else stress

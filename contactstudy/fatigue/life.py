@@ -19,9 +19,13 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, measure, positions
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.required import require
+from contactstudy.arrays.units import in_si, required_in_si
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
+
+CUT_OFF = 0.01
+"""Part of the risk from sections whose history or depths are cut off, above which there is no result. Accuracy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,8 +114,10 @@ def _integral(density: Array, place: Array) -> Array:
     return np.asarray(np.where(absent.all(axis=-1), np.nan, total))
 
 
-def _along_axis(density: xr.DataArray, exponents: LifeExponents) -> xr.Dataset:
-    """Risk along x, and integrated over x."""
+def _along_axis(
+    density: xr.DataArray, exponents: LifeExponents, theory: dict[str, str | float], cut: dict[str, xr.DataArray]
+) -> xr.Dataset:
+    """Risk along x, and integrated over x; `cut` says of sections what of their stress is cut off."""
     x = dimension_along(density, "x")
     if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
@@ -120,10 +126,19 @@ def _along_axis(density: xr.DataArray, exponents: LifeExponents) -> xr.Dataset:
     if (place.diff(x) <= 0).any():
         raise InvalidInputError("x", place.values, "increasing positions")
     risk = xr.apply_ufunc(_integral, density, place, input_core_dims=[[x], [x]])
+    for what, where in cut.items():
+        part = density.where(where, 0.0).sum(x) / density.sum(x).where(risk > 0)
+        if (part > CUT_OFF).any():
+            raise InvalidInputError(
+                "stress",
+                f"{what} in sections with {float(part.max()):.2g} of the risk",
+                f"largest inside; at most {CUT_OFF:g} of the risk may be cut off",
+                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0.05 to 2",
+            )
     return xr.Dataset(
         {
             "risk_density": named("risk_density", density).assign_attrs(units=exponents.units(1)),
-            "risk": named("risk", risk.reset_coords(drop=True)).assign_attrs(units=exponents.units(2)),
+            "risk": named("risk", risk.reset_coords(drop=True)).assign_attrs(units=exponents.units(2), **theory),
         }
     )
 
@@ -150,12 +165,13 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     Raises
     ------
     InvalidInputError
-        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none.
+        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none; if the shear is
+        largest at the first or last position along y or z, so that more than 1 % of the risk is cut off.
 
     Examples
     --------
-    >>> y, z = xr.DataArray([-1.0, 0, 1], dims="y"), xr.DataArray([0.25, 0.5, 0.75], dims="z")
-    >>> shear = (-y * (1 - (z - 0.5) ** 2)).expand_dims(x=[0.0, 2.0]).assign_coords(y=y, z=z)
+    >>> y, z = xr.DataArray([-2.0, -1, 0, 1, 2], dims="y"), xr.DataArray([0.25, 0.5, 0.75], dims="z")
+    >>> shear = (y * (y**2 - 4) / 3 * (1 - (z - 0.5) ** 2)).expand_dims(x=[0.0, 2.0]).assign_coords(y=y, z=z)
     >>> result = lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
     >>> result.shear_amplitude.values.round(9).tolist(), result.shear_depth.values.round(9).tolist()
     ([1.0, 1.0], [0.5, 0.5])
@@ -164,6 +180,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     """
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
+    stress = required_in_si(stress, "tau_yz", argument="stress")
     amplitude = measure(stress, "orthogonal_shear_amplitude")
     dim, depths = _depths(amplitude)
     crest, at = reduced(_crest, [(amplitude, [dim]), (depths, [dim])], 2)
@@ -176,9 +193,22 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
             "largest below it",
             "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
         )
-    return _along_axis(density, chosen).assign(
+    cut = {"orthogonal shear largest at the last depth": at >= depths.max(dim), **_outside(stress, amplitude)}
+    return _along_axis(density, chosen, {"theory": "Lundberg and Palmgren"}, cut).assign(
         shear_amplitude=named("shear_amplitude", crest.compute()), shear_depth=named("shear_depth", at.compute())
     )
+
+
+def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataArray]:
+    """Sections whose largest shear amplitude is that of the first or the last position along y."""
+    shear = stress["tau_yz"]
+    rolling, depth = dimension_along(shear, "y"), dimension_along(shear, "z")
+    border = positions(shear, "y")
+    at_border = (border == border.min(rolling)) | (border == border.max(rolling))
+    inside = shear.where(~at_border)
+    held = 0.5 * (inside.max(rolling) - inside.min(rolling))
+    crest = amplitude == amplitude.max(depth)
+    return {"orthogonal shear largest at the first or last y": (crest & (held < amplitude)).any(depth)}
 
 
 def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
@@ -217,7 +247,8 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     Raises
     ------
     InvalidInputError
-        If the measure is no DataArray along x and z, still extends along y, or there are too few positions.
+        If the measure is no DataArray along x and z, still extends along y, or there are too few positions; if it is
+        largest at the last depth, so that more than 1 % of the risk is cut off.
 
     Examples
     --------
@@ -230,7 +261,7 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    threshold = checks.not_negative("limit", limit, "Pa")
+    stress, threshold = in_si("stress", stress, "Pa"), checks.not_negative("limit", limit, "Pa")
     if any(str(dim) == "y" or str(dim).startswith("y_") for dim in stress.dims):
         raise InvalidInputError(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
@@ -239,7 +270,12 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     density, mean = reduced(
         partial(_risk_of_sections, limit=threshold, exponents=chosen), [(stress, [dim]), (depths, [dim])], 2
     )
-    return _along_axis(density, chosen).assign(mean_depth=named("mean_depth", mean.compute()))
+    theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
+    last = depths.max(dim)
+    deepest = stress.where(depths == last).max(dim) >= stress.max(dim)
+    return _along_axis(density, chosen, theory, {"a measure largest at the last depth": deepest}).assign(
+        mean_depth=named("mean_depth", mean.compute())
+    )
 
 
 def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents | None = None) -> xr.DataArray:
@@ -261,7 +297,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     Raises
     ------
     InvalidInputError
-        If one has no risk, or the two were computed with different exponents.
+        If one has no risk, or the two were computed with different exponents, theories or limits.
 
     Examples
     --------
@@ -276,6 +312,10 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     units = [dataset["risk"].attrs.get("units") for dataset in (risk, reference)]
     if units[0] != units[1]:
         raise InvalidInputError("reference", units[1], f"computed with the same exponents, {units[0]}")
+    for name in ("theory", "fatigue_limit"):
+        own_said, other_said = (dataset["risk"].attrs.get(name) for dataset in (risk, reference))
+        if own_said != other_said:
+            raise InvalidInputError("reference", f"{name} = {other_said}", f"computed as risk was, {name} = {own_said}")
     own, other = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
     ratio = (other / own.where(own > 0)).where((own != 0) | (other == 0), np.inf)

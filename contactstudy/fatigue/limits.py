@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.case.doubts import question_values
 from contactstudy.errors import InvalidInputError
 
 ROUNDING = 1e-9
@@ -30,6 +31,11 @@ class FatigueLimits:
         If a limit is not positive, or their ratio is not between 1/2 and 1, where Dang Van's and Findley's criteria
         have a meaning (Crossland's asks for 1/sqrt(3) at least).
 
+    Warns
+    -----
+    MagnitudeWarning
+        If a limit is of a size that is mostly a mistake in the unit.
+
     Examples
     --------
     >>> limits = FatigueLimits(bending=500e6, torsion=300e6)
@@ -48,6 +54,7 @@ class FatigueLimits:
             raise InvalidInputError(
                 "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
             )
+        question_values(bending=self.bending, torsion=self.torsion, stacklevel=3)
 
     @property
     def ratio(self) -> float:

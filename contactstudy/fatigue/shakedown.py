@@ -23,7 +23,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.analysis.largest import Peak, labelled_peak, peak_between
-from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -163,7 +163,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     >>> round(float(found.peak_shakedown_stress_z), 2)
     0.5
     """
-    require(stress, *STRESSES)
+    stress = required_in_si(stress, *STRESSES, argument="stress")
     swept = dict(stress["hertz_half_width"].sizes) if "hertz_half_width" in stress else {}
     if any(size > 1 for size in swept.values()):
         return _of_study(stress, swept, axial=axial)

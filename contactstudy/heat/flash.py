@@ -11,14 +11,16 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import single_case
+from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.required import require, require_si
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
-from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.case.motion import Shift
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
+from contactstudy.heat.friction import FrictionalHeat, frictional_heat
 from contactstudy.heat.moving_source import MovingBody, SourceOperator
 from contactstudy.heat.partition import shared_heat
 from contactstudy.heat.properties import ThermalProperties
@@ -26,15 +28,6 @@ from contactstudy.heat.spreading import Ends
 
 LARGEST_MISMATCH = 1e-6
 """Difference of the surfaces' temperatures, over the largest, that counts as equal. Accuracy."""
-
-
-class _Heat(NamedTuple):
-    """Frictional heat on the cells, and how the surfaces move against the contact."""
-
-    density: FloatArray
-    power: float
-    body_speed: float
-    roller_speed: float
 
 
 class _Temperatures(NamedTuple):
@@ -95,8 +88,8 @@ def flash_temperature(
     Raises
     ------
     InvalidInputError
-        If thermal properties or speeds are missing, the speeds contradict the friction, the result is not of the
-        case's motion, or a finite body's surface rests under the contact: its temperature would rise without limit.
+        If thermal properties or speeds are missing, the speeds contradict the friction, the result says that it is of
+        another case, or a finite body's surface rests under the contact: its temperature would rise without limit.
 
     Warns
     -----
@@ -127,9 +120,10 @@ def flash_temperature(
     (10, 0.51)
     """
     checks.instance("case", case, Case, "a Case")
-    require(result, "pressure", argument="result")
-    require_si(result, "pressure")
-    one = single_case(result)
+    one = single_case(required_in_si(result, "pressure", argument="result"))
+    if isinstance(case.motion, Shift):
+        raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift makes no steady heat")
+    check_solved_for(result, case)
     pressure, grid = labelled_cells("result.pressure", one["pressure"], extent=case.body.extent)
     checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")
     if partition is None and roller is None:
@@ -144,7 +138,7 @@ def flash_temperature(
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
-    heat = _frictional_heat(case, one, grid, body_speed, roller_speed, rolling_speed)
+    heat = frictional_heat(case, one, grid, body_speed, roller_speed, rolling_speed)
 
     found = _temperatures(case, grid, heat, pressure, body, roller, share)
     into_body, into_roller = found.into_body, heat.density - found.into_body
@@ -190,7 +184,7 @@ def flash_temperature(
 def _temperatures(
     case: Case,
     grid: Grid,
-    heat: _Heat,
+    heat: FrictionalHeat,
     pressure: FloatArray,
     body: ThermalProperties,
     roller: ThermalProperties | None,
@@ -243,74 +237,6 @@ def _share(partition: object) -> float:
     if share > 1:
         raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
     return share
-
-
-def _frictional_heat(
-    case: Case,
-    one: xr.Dataset,
-    grid: Grid,
-    body_speed: object,
-    roller_speed: object,
-    rolling_speed: object,
-) -> _Heat:
-    """Heat per area and speeds of a solved case."""
-    motion = case.motion
-    if isinstance(motion, Shift):
-        raise InvalidInputError("case.motion", motion, "Sliding() or Rolling(...): a shift makes no steady heat")
-    area = grid.weights * grid.cell_area
-    if isinstance(motion, Sliding):
-        require(one, "traction_y", argument="result")
-        if rolling_speed is not None:
-            raise InvalidInputError(
-                "rolling_speed", rolling_speed, "None in full sliding", "give both surfaces' speeds"
-            )
-        own, others = (
-            checks.finite(name, value, "m/s, of full sliding")
-            for name, value in (("body_speed", body_speed), ("roller_speed", roller_speed))
-        )
-        traction = labelled_cells("result.traction_y", one["traction_y"], extent=case.body.extent)[0]
-        density = traction * (others - own)
-        if (density < 0).any():
-            raise InvalidInputError(
-                "roller_speed",
-                others,
-                f"{_side(traction)} body_speed, {own:g}, for the friction to drag the body the way the roller slides",
-                "speeds are along +y",
-            )
-        return _Heat(density, float((area * traction).sum() * (others - own)), own, others)
-    for name, value in (("body_speed", body_speed), ("roller_speed", roller_speed)):
-        if value is not None:
-            raise InvalidInputError(name, value, "None in rolling", "give rolling_speed: the creepage says the rest")
-    speed = checks.positive("rolling_speed", rolling_speed, "m/s, of rolling")
-    return _rolling_heat(case, motion, one, speed, area)
-
-
-def _side(traction: FloatArray) -> str:
-    """Say on which side of the body's speed the roller's lies."""
-    if (traction < 0).any() and (traction > 0).any():
-        return "equal to, as the friction changes its sign along the axis,"
-    return "not below" if traction.max() > 0 else "not above"
-
-
-def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float, area: FloatArray) -> _Heat:
-    """Heat of a rolling contact: traction times slip per distance, times distance per time.
-
-    Cells of which a part slips say roughly how much work each does; the work of the whole contact is known better.
-    """
-    names = ("traction_x", "slip_x", "traction_y", "slip_y")
-    require(one, *names, "friction_work", argument="result")
-    q_x, s_x, q_y, s_y = (labelled_cells(f"result.{name}", one[name], extent=case.body.extent)[0] for name in names)
-    # The contact moves along +y over both surfaces, so these move backwards below it.
-    creepage = float(one["longitudinal_creepage"]) if "longitudinal_creepage" in one else motion.longitudinal_creepage
-    half = 0.5 * float(creepage or 0.0)
-    density = np.maximum(q_x * s_x + q_y * s_y, 0.0)
-    work, summed = float(one["friction_work"]), float((area * density).sum())
-    return _Heat(
-        speed * density * (work / summed if summed else 0.0),
-        speed * (work if summed else 0.0),
-        -speed * (1 + half),
-        -speed * (1 - half),
-    )
 
 
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:

@@ -41,6 +41,8 @@ def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolA
     touching : array (x, y)
         Where the surfaces touch.
     """
+    if not heat.any():  # surfaces of the same speed
+        return Shared(np.zeros(heat.shape), 0.0)
 
     def on_cells(values: FloatArray) -> FloatArray:
         full = np.zeros(heat.shape)

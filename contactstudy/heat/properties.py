@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from contactstudy import checks
+from contactstudy.case.doubts import question_values
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -25,6 +26,11 @@ class ThermalProperties:
     InvalidInputError
         If a value is not a positive finite number.
 
+    Warns
+    -----
+    MagnitudeWarning
+        If a value is of a size that is mostly a mistake in the unit.
+
     Examples
     --------
     >>> steel = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
@@ -40,6 +46,7 @@ class ThermalProperties:
         """Check the values."""
         units = {"conductivity": "W/(m K)", "density": "kg/m3", "specific_heat": "J/(kg K)"}
         checks.store(self, **{name: checks.positive(name, getattr(self, name), unit) for name, unit in units.items()})
+        question_values(**{name: getattr(self, name) for name in units}, stacklevel=3)
 
     @property
     def heat_capacity(self) -> float:

@@ -38,12 +38,14 @@ def cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
     ------
     InvalidInputError
         If positions do not increase, there are fewer than two along an axis, or they do not reach to the top and the
-        free ends.
+        free ends, or beyond these.
     """
     for name, points in (("x", x), ("z", z)):
         if points.size < 2 or (np.diff(points) <= 0).any():
             raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
     low, high = body.extent
+    if x[0] < low or x[-1] > high:
+        raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", f"positions in the body, from {low:g} to {high:g} m")
     x_edges, z_edges = edges_around(x, low, high), edges_around(z, 0.0, np.inf)
     for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
         if np.isfinite(face) and edge != face:

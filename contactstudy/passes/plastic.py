@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.units import in_si
+from contactstudy.case.doubts import question_values
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -37,6 +38,11 @@ class ElasticPlastic:
     InvalidInputError
         If a yield stress is not positive, or a hardening modulus is negative.
 
+    Warns
+    -----
+    MagnitudeWarning
+        If the yield stress is of a size that is mostly a mistake in the unit.
+
     Examples
     --------
     >>> steel = ElasticPlastic(yield_stress=1.8e9, kinematic_hardening=10e9)
@@ -64,6 +70,8 @@ class ElasticPlastic:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):
             checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
+        highest = float(np.max(getattr(self.yield_stress, "values", self.yield_stress)))
+        question_values(yield_stress=highest, stacklevel=3)
 
     @classmethod
     def from_hardness(cls, vickers: xr.DataArray, **hardening: float) -> ElasticPlastic:

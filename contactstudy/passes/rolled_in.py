@@ -20,7 +20,8 @@ from scipy.interpolate import make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, positions, single_case
-from contactstudy.arrays.required import require
+from contactstudy.analysis.provenance import check_solved_for
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray, IntArray
@@ -166,7 +167,8 @@ def rolled_in(
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind, there is more than one case, or strains are not small any more.
+        If an argument is of the wrong kind, there is more than one case, the stresses are of another body or reach
+        beyond its ends, or strains are not small any more.
 
     Warns
     -----
@@ -224,8 +226,8 @@ def rolled_in(
 
 def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_Section, tuple[str, str]]:
     """Check a case and return its cross-section, and its dimensions along x and z."""
-    require(stress, *STRESSES)
-    one = single_case(stress)
+    one = single_case(required_in_si(stress, *STRESSES, argument="stress"))
+    check_solved_for(stress, body, "stress")
     first = one[STRESSES[0]]
     dims = {axis: dimension_along(one["tau_yz"], axis) for axis in ("y", "x", "z")}
     x, y, z = (np.asarray(positions(first, axis).values, dtype=np.float64) for axis in ("x", "y", "z"))

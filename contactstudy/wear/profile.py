@@ -11,8 +11,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.required import require
-from contactstudy.case.case import GAP_NODES, Case
+from contactstudy.case.case import Case
+from contactstudy.case.gap import GAP_NODES
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum
@@ -38,6 +40,11 @@ CORRECTIONS = 8
 """Rounds in which points are moved until every column takes its own depth of the interpolation. Accuracy."""
 
 
+def check_same_roller(name: str, worn: xr.Dataset, case: Case) -> None:
+    """Raise if wear is of another roller or body than those of a case; load, friction and motion may be others."""
+    check_solved_for(worn, case, name, only=("body", "roller", "end_distance"))
+
+
 def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Sum:
     """Profile of a worn roller.
 
@@ -60,7 +67,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Raises
     ------
     InvalidInputError
-        If the result has no such distance.
+        If the result has no such distance, or is of another roller or body.
 
     Examples
     --------
@@ -77,6 +84,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
+    check_same_roller("worn", worn, case)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
     known = worn["distance"].values

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 import warnings
 from collections.abc import Iterator, Sequence
 
@@ -9,9 +10,11 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.required import require
+from contactstudy.arrays.units import metres
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
@@ -23,6 +26,7 @@ from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.profiles.base import checked_drop
+from contactstudy.wear.profile import check_same_roller
 from contactstudy.wear.steps import State, Stepper
 from contactstudy.wear.worn_contact import WornContact
 
@@ -73,7 +77,8 @@ def wear_in(
     grid : Grid, optional
         Cells. Default: in full sliding the columns that settle the unworn contact, else those of `choose_grid`.
     after : Dataset, optional
-        Result of this function from whose last state to go on.
+        Result of this function from whose last state to go on; of the same roller and body, while load, friction and
+        motion may be others.
     tolerance : float
         Error of the worn depth that one step may make, over the largest depth: from 1e-5 to 0.1.
     max_steps : int
@@ -85,13 +90,14 @@ def wear_in(
         Along `distance`, beginning with the state before the first step: `wear_depth` and `profile_drop` of the worn
         profile (distance, x), metres, `line_load` (distance, x), N/m, `pressure` (distance, x, y), `worn_volume`, m3,
         `wear_error`, the estimated error of the depth over the largest depth, and `next_step`, metres. In all,
-        `volume_error`: the volume over what the law gives, minus one. See `worn_profile` for the profile itself.
+        `volume_error`: the volume over what the law gives, minus one. Its attributes hold the unworn case and the
+        settings. See `worn_profile` for the profile itself.
 
     Raises
     ------
     InvalidInputError
-        If an argument is out of range, the motion is a shift, nothing rubs, or so much would be worn off that the
-        radius changes.
+        If an argument is out of range, the motion is a shift, nothing rubs, `after` is of another roller or body, or
+        so much would be worn off that the radius changes.
     WindowError
         If the contact grows beyond the cells.
 
@@ -117,6 +123,7 @@ def wear_in(
     >>> (load.max("x") / load.min("x")).values.round(2).tolist()
     [2.28, 1.37, 1.0]
     """
+    began = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
     checks.instance("law", law, str, "a name")
     checks.known_name("law", law, LAWS)
@@ -150,7 +157,9 @@ def wear_in(
         if every or state.distance in stops:
             states.append(state)
             steps.append(ahead)
-    return _labelled(case, stepper, states, steps, around)
+    settings = {"coefficient": rate, "law": law, "circumference": float(around), "tolerance": tolerance}
+    worn = _labelled(case, stepper, states, steps, around)
+    return with_provenance(worn, case, settings, {"wear": time.perf_counter() - began})
 
 
 def _cells(case: Case, grid: Grid | None) -> Grid:
@@ -170,7 +179,7 @@ def _cells(case: Case, grid: Grid | None) -> Grid:
 def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
     """Distances to reach, and whether every step is wanted."""
     every = np.ndim(distance) == 0  # type: ignore[arg-type]
-    stops = checks.coordinates("distance", distance)
+    stops = checks.coordinates("distance", metres("distance", distance))
     if (np.diff(stops) <= 0).any():
         raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
     if stops[0] < begun or stops[-1] <= begun:
@@ -181,6 +190,7 @@ def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
 def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
     """Distance, depth, cells, next step and error of the depth of the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
+    check_same_roller("after", after, case)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last = after.isel(distance=-1) if "distance" in after.dims else after

@@ -192,3 +192,44 @@ def test_missing_variables_are_named(function) -> None:
 def test_moment_about_something_that_is_no_number() -> None:
     with pytest.raises(InvalidInputError, match="about"):
         analysis.contact_results(contact(VALUES), np.nan)
+
+
+@pytest.mark.parametrize(
+    ("part", "first", "last"),
+    [
+        (slice(None), 1.0, 4.0),
+        (slice(2, None), np.nan, 4.0),
+        (slice(0, 3), 1.0, np.nan),
+        (slice(2, 3), np.nan, np.nan),
+    ],
+)
+def test_a_cut_is_not_the_end_of_a_contact(part: slice, first: float, last: float) -> None:
+    # Rows that carry nothing on either side of y, as in every window that holds the contact.
+    whole = contact(VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
+    whole = whole.reset_coords("normal_load").assign(hertz_half_width=1.0)
+    selected = whole.isel(x=part).assign_coords(x_width=1.0)
+    found = analysis.edge_pressure(selected)
+    assert [float(found[f"edge_pressure_{end}"]) for end in ("first", "last")] == pytest.approx(
+        [first, last], nan_ok=True
+    )
+    factors = analysis.edge_factors(selected)
+    for end, value in (("first", first), ("last", last)):
+        assert np.isnan(float(factors[f"end_over_middle_{end}"])) == (np.isnan(first) or np.isnan(last))
+        assert np.isnan(value) <= np.isnan(float(factors[f"end_over_middle_{end}"]))
+    half = analysis.edge_pressure(whole.sel(y=slice(0, None)))
+    assert [float(each) for each in half.values()] == [1.0, 4.0]
+
+
+def test_a_real_contact_cut_in_the_middle(solved: xr.Dataset) -> None:
+    half = solved.sel(x=slice(0.26e-3, None))
+    assert np.isnan(analysis.edge_pressure(half)["edge_pressure_first"])
+    whole = analysis.edge_pressure(solved)["edge_pressure_last"]
+    assert float(analysis.edge_pressure(half)["edge_pressure_last"]) == float(whole)
+    assert "contact_length" in solved.contact.short()
+    assert "contact_length" not in half.contact.short()
+
+
+def test_the_order_of_the_positions_does_not_matter(solved: xr.Dataset) -> None:
+    mixed = solved.isel(x=slice(None, None, -1), y=np.random.default_rng(1).permutation(solved.sizes["y"]))
+    xr.testing.assert_identical(analysis.edge_pressure(mixed), analysis.edge_pressure(solved))
+    xr.testing.assert_identical(analysis.half_width(mixed).sortby("x"), analysis.half_width(solved))

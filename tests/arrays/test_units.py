@@ -10,7 +10,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import Grid, HalfSpace, InvalidInputError, solve_contact, stress_field, surface_displacement
-from contactstudy.arrays.units import in_si
+from contactstudy.arrays.units import in_si, required_in_si
 from contactstudy.case.friction import AxialFriction, checked_friction
 from contactstudy.case.roughness import heights_on
 from contactstudy.passes import ElasticPlastic
@@ -93,3 +93,18 @@ def test_what_was_converted_says_so() -> None:
     found = in_si("gap", xr.DataArray([1.0], {"x": ("x", [2.0], {"units": "mm"})}, "x", attrs={"units": "um"}), "m")
     assert (found.attrs["units"], found["x"].attrs["units"]) == ("m", "m")
     xr.testing.assert_identical(in_si("gap", found, "m"), found)
+
+
+def test_variables_of_a_dataset_and_its_positions() -> None:
+    place = ("x", [0.0, 2.0], {"units": "mm"})
+    pressure = xr.DataArray([1.0, 2.0], {"x": place}, "x", attrs={"units": "GPa"})
+    whole = xr.Dataset({"pressure": pressure, "gap": xr.zeros_like(pressure).assign_attrs(units="um")})
+    found = required_in_si(whole, "pressure")
+    assert (found.pressure.values.tolist(), found.x.values.tolist()) == ([1e9, 2e9], [0.0, 2e-3])
+    assert (found.pressure.attrs["units"], found.x.attrs["units"]) == ("Pa", "m")
+    assert required_in_si(found, "pressure") is found
+    for bad, message in (("1", "in SI, pressure in Pa"), ("psi", r"result.pressure.attrs\['units'\] = 'psi'")):
+        with pytest.raises(InvalidInputError, match=message):
+            required_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
+    with pytest.raises(InvalidInputError, match="traction_y is missing"):
+        required_in_si(whole, "traction_y")

@@ -161,3 +161,11 @@ def test_bad_arguments_are_named(short_case: Case, changes, tilts, approaches, m
 def test_no_load_is_refused_by_name(ball: ContactLaw) -> None:
     with pytest.raises(InvalidInputError, match=r"normal_load = 0.0"):
         ball.under(0.0)
+
+
+def test_labelled_arguments_have_units_and_common_coordinates(ball: ContactLaw) -> None:
+    loads = xr.DataArray([0.03, 0.06], {"roller": [1, 2]}, "roller", attrs={"units": "kN"})
+    found = ball.under(loads, xr.zeros_like(loads).assign_attrs(units="N m"))
+    np.testing.assert_allclose(found.approach, ball.under([30.0, 60.0]).approach)
+    with pytest.raises(InvalidInputError, match=r"normal_load, moment = .*same coordinates along common dimensions"):
+        ball.under(loads, xr.DataArray([0.0, 0.0], {"roller": [2, 3]}, "roller"))

@@ -201,3 +201,14 @@ def test_combined_radius_of_two_curved_bodies() -> None:
 def test_radii_that_leave_no_gap_are_refused(first, second, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         Roller.combined_radius(first, second)
+
+
+def test_both_ends_of_a_roller_are_under_it_whatever_rounding_says() -> None:
+    """75 cells on 0.6 mm have middles at 0.1 and 0.5 mm, where this roller begins and ends."""
+    grid = Grid((0.0, 0.6e-3), (-1e-4, 1e-4), 75, 4)
+    for profile, ends in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
+        roller = Roller(radius=5e-3, length=0.4e-3, profile=profile)
+        case = Case(body=FiniteLengthSpace(length=0.6e-3, material=STEEL), roller=roller, max_pressure=1.5e9)
+        gap = case.gap(grid)
+        np.testing.assert_allclose(gap, gap[::-1])
+        assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == ends

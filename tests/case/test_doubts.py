@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,7 +11,23 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Case, FiniteLengthSpace, HalfSpace, MagnitudeWarning, Material, Roller, profiles, solve
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    MagnitudeWarning,
+    Material,
+    Roller,
+    ThermalProperties,
+    WindowError,
+    bearing,
+    choose_grid,
+    fatigue,
+    passes,
+    profiles,
+    roughness,
+    solve,
+)
 from contactstudy.case.doubts import doubts, unquestioned
 from contactstudy.case.stored import case_from, case_table
 from contactstudy.cli import main
@@ -163,3 +180,35 @@ def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, mod
         assert any(said in each for each in asked)
     with unquestioned():
         assert not doubts(replace(case, roller=replace(case.roller, profile=crown)))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: fatigue.FatigueLimits(bending=500, torsion=300), r"bending = 500 Pa.*500 MPa is 5e\+08 Pa; torsion"),
+        (lambda: passes.ElasticPlastic(yield_stress=1.8), r"yield_stress = 1.8 Pa.*1.8 GPa is 1.8e\+09 Pa"),
+        (
+            lambda: ThermalProperties(conductivity=46.0, density=7.85, specific_heat=0.47),
+            r"density = 7.85 kg/m3.*7.85 g/cm3 is 7850 kg/m3; specific_heat = 0.47 .*is 470 J",
+        ),
+        (lambda: bearing.roller_ratings(50, rollers=14, gamma=0.2), r"dynamic_rating = 50 N.*50 kN is 50000 N"),
+    ],
+)
+def test_materials_and_ratings_are_questioned_where_they_are_made(make, message: str) -> None:
+    with pytest.warns(MagnitudeWarning, match=message) as told:
+        make()
+    assert told[0].filename == __file__
+
+
+def test_heights_in_micrometres_are_questioned() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=1e-3), max_pressure=1e9)
+    grid = choose_grid(case)
+    rough = roughness.self_affine(grid, rms_height=0.2, hurst=0.8, longest=0.2e-3, shortest=0.05e-3, seed=1)
+    with pytest.warns(MagnitudeWarning, match=r"roughness = .* usual are 0 to 0.0002 m.* µm is") as told:
+        solve_or_not(case, rough)
+    assert told[0].filename == __file__
+
+
+def solve_or_not(case: Case, rough: xr.DataArray) -> None:
+    with suppress(WindowError):  # heights of a metre fill no window
+        solve(case, roughness=rough, stresses=False)

@@ -54,8 +54,34 @@ def test_a_fatigue_limit_makes_life_grow_without_end(strip_result) -> None:
     none = fatigue.ioannides_harris(orthogonal(lower), limit=0.3)
     assert float(none["risk"]) == 0.0
     assert np.isnan(none["mean_depth"]).all()
-    assert float(fatigue.relative_life(none, base)) == np.inf
+    loaded = fatigue.ioannides_harris(orthogonal(strip_result(1.5, 1.5)), limit=0.3)
+    assert float(fatigue.relative_life(none, loaded)) == np.inf
     assert np.isnan(float(fatigue.relative_life(none, none)))
+    with pytest.raises(InvalidInputError, match=r"fatigue_limit = 0.2.*fatigue_limit = 0.3"):
+        fatigue.relative_life(none, base)
+    with pytest.raises(InvalidInputError, match="theory = Ioannides and Harris"):
+        fatigue.relative_life(fatigue.lundberg_palmgren(lower), fatigue.ioannides_harris(orthogonal(lower)))
+
+
+def test_a_passage_that_is_cut_off_has_no_risk(strip_result) -> None:
+    """The largest shear lies at y = 0.87 a and z = 0.5 a: nothing may end short of it."""
+    result = strip_result()
+    narrow = result.sel(y_field=slice(-0.7, 0.7))
+    shallow = result.sel(z=slice(0.0, 0.45))
+    with pytest.raises(InvalidInputError, match="first or last y in sections with 1 of the risk"):
+        fatigue.lundberg_palmgren(narrow)
+    for call in (fatigue.lundberg_palmgren, lambda each: fatigue.ioannides_harris(orthogonal(each))):
+        with pytest.raises(InvalidInputError, match="last depth in sections with 1 of the risk"):
+            call(shallow)
+
+
+def test_stresses_in_megapascals(strip_result) -> None:
+    result = strip_result(1e9, 1e-3)
+    metric = result.assign({"tau_yz": (1e-6 * result["tau_yz"]).assign_attrs(units="MPa")})
+    metric = metric.assign_coords({"z": (1e3 * metric["z"]).assign_attrs(units="mm")})
+    xr.testing.assert_allclose(fatigue.lundberg_palmgren(metric), fatigue.lundberg_palmgren(result))
+    in_pascal, in_mega = orthogonal(result), (1e-6 * orthogonal(result)).assign_attrs(units="MPa")
+    xr.testing.assert_allclose(fatigue.ioannides_harris(in_mega, 1e8), fatigue.ioannides_harris(in_pascal, 1e8))
 
 
 def test_integral_by_hand() -> None:

@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -189,3 +191,16 @@ def test_the_stated_error_covers_finer_cells_and_a_singular_end_has_none(line_ca
     for unknown in ({}, {"peak_pressure": np.inf, "peak_pressure_error": np.inf}):
         open_end = flash_temperature(line_case, coarse.assign(unknown), body=steel, roller=steel, **speeds)
         assert np.isnan(float(open_end.max_temperature_rise_error))
+
+
+def test_surfaces_of_one_speed_make_no_heat(line_case, on_line, steel):
+    found = flash_temperature(line_case, on_line(), body=steel, roller=steel, body_speed=-2.0, roller_speed=-2.0)
+    assert float(found.max_temperature_rise) == float(found.friction_power) == 0.0
+    assert np.isnan(found.body_heat_share)
+
+
+def test_the_result_has_to_be_of_the_case(rolled, steel):
+    case, result = rolled
+    other = replace(case, friction=2 * case.friction)
+    with pytest.raises(InvalidInputError, match="result = 'solved with friction"):
+        flash_temperature(other, result, body=steel, roller=steel, rolling_speed=1.0)

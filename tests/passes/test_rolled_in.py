@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -230,3 +232,10 @@ def test_bodies_without_a_second_end(passing, steel_between_ends) -> None:
     for other in others:
         assert np.abs(other.isel(x=4).values - middle).max() < 0.15 * np.abs(middle).max()
         assert float(np.abs(other).max()) > 0.02
+
+
+def test_stresses_have_to_be_of_the_body(passing, steel_between_ends) -> None:
+    contact = passing(0.0, length=8.0)
+    shorter = replace(steel_between_ends, length=6.0)
+    with pytest.raises(InvalidInputError, match=r"x = '.* m': must be positions in the body, from 0 to 6 m"):
+        rolled_in(contact, shorter, perfectly_plastic(0.2))

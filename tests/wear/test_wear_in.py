@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -296,3 +298,18 @@ def test_bad_cases_and_states(sharp, worn, rolling):
         worn_profile(case, worn, 0.5)
     with pytest.raises(InvalidInputError, match="wear_depth"):
         worn_profile(case, xr.Dataset())
+
+
+def test_wear_goes_on_for_the_same_roller_alone_under_any_load(sharp, worn):
+    case, _ = sharp
+    lighter = replace(case, max_pressure=None, load=0.5 * case.normal_load)
+    further = xr.DataArray([100.0, 150.0], dims="way", attrs={"units": "km"})
+    found = wear_in(lighter, K, further, after=worn)
+    assert found.distance.values.tolist() == [1e5, 1.5e5]
+    gained = found.worn_volume[-1] - found.worn_volume[0]
+    assert float(gained) == pytest.approx(K * lighter.normal_load * 5e4, rel=1e-6)
+    smaller = replace(case, roller=replace(case.roller, radius=4e-3))
+    with pytest.raises(InvalidInputError, match=r"after = 'solved with roller.radius = 0.005'"):
+        wear_in(smaller, K, 2e5, after=worn)
+    with pytest.raises(InvalidInputError, match=r"worn = 'solved with end_distance = 0.0001'"):
+        worn_profile(replace(case, end_distance=0.0), worn)
