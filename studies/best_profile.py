@@ -62,14 +62,11 @@ class Task:
         roller = cs.Roller(radius=self.radius, length=self.length, profile=self.profile(delta))
         return cs.Case(body=body, roller=roller, max_pressure=pressure, end_distance=self.end_distance, tilt=tilt)
 
-    def worst(self, delta: float, body: cs.Body) -> float:
-        """Largest pressure over p0 of a design, in the worst of its loads and tilts; infinite if it is singular."""
-        cases = [(pressure, tilt) for pressure in self.pressures for tilt in self.tilts]
-        peaks = [
-            float(cs.solve(self.case(delta, body, *case), accuracy=self.accuracy, stresses=False)["peak_pressure"])
-            for case in cases
-        ]
-        return max(peak / pressure for peak, (pressure, _) in zip(peaks, cases, strict=True))
+    def worst(self, delta: float, body: cs.Body) -> tuple[float, float]:
+        """Largest pressure over p0 of a design and its error, in the worst of its loads and tilts."""
+        cases = [self.case(delta, body, pressure, tilt) for pressure in self.pressures for tilt in self.tilts]
+        peaks = [over_p0(cs.solve(case, accuracy=self.accuracy, stresses=False)) for case in cases]
+        return max((float(peak), float(error)) for peak, error in peaks)
 
 
 AXIS = 801
@@ -101,16 +98,19 @@ def judged(task: Task, delta: float) -> xr.Dataset:
     """One design on the real body: worst pressure; and at the design load with the largest tilt the field of stress."""
     case = task.case(delta, task.body, task.design_pressure, task.tilts[-1])
     a = task.half_width
-    points = {"y": a * np.linspace(-3.0, 3.0, 61), "z": a * np.linspace(0.1, 1.5, 15)}
+    points = {"y": a * np.linspace(-3.0, 3.0, 121), "z": a * np.linspace(0.1, 1.5, 43)}
     # The tilt presses the end at large x deeper; the mirrored half of the body carries less.
     x = np.append(np.linspace(0.5 * task.body.length, task.body.length, 49), task.body.length - 0.05 * a)
     result = cs.solve(case, accuracy=task.accuracy, x=np.unique(x), **points)
-    risk = cs.fatigue.lundberg_palmgren(result)["risk"]
+    risk = cs.fatigue.lundberg_palmgren(result)[["risk", "risk_error"]]
+    worst, worst_error = task.worst(delta, task.body)
     return xr.Dataset(
         {
-            "worst_pressure": ((), task.worst(delta, task.body), {"units": "1", "long_name": "worst pressure over p0"}),
+            "worst_pressure": ((), worst, {"units": "1", "long_name": "worst pressure over p0"}),
+            "worst_pressure_error": ((), worst_error, {"units": "1"}),
             "largest_von_mises": ((), float(result["peak_von_mises"]), {"units": "Pa"}),
-            "risk": risk,
+            "largest_von_mises_error": ((), float(result["peak_von_mises_error"]), {"units": "Pa"}),
+            **risk.data_vars,
             # Each design has its own columns.
             "axial_pressure": result["pressure"]
             .max("y")
@@ -130,8 +130,9 @@ def designs(task: Task) -> xr.Dataset:
     for name in ("delta", "looked_at", "flat_from", "flat_to", "looked_at_pressure"):
         result[name].attrs["units"] = "1"
     own = result.sel(design="free ends")
-    life = cs.fatigue.relative_life(result[["risk"]], own[["risk"]])
-    result["relative_life"] = life.assign_attrs(units="1", long_name="life over that of the design for free ends")
+    life = cs.fatigue.relative_life(result, own.drop_vars("design"))
+    result = result.assign(life.to_dataset().reset_coords("relative_life_error").data_vars)
+    result["relative_life"].attrs["long_name"] = "life over that of the design for free ends"
     result.attrs = {"Conventions": "CF-1.11", "title": "best crown of a roller between free ends"}
     return result
 
@@ -172,6 +173,11 @@ def draw(task: Task, found: xr.Dataset) -> plt.Figure:
     return figure
 
 
+def said(one: xr.Dataset, name: str, digits: int, unit: float = 1.0) -> str:
+    """Value with its error."""
+    return f"{float(one[name]) / unit:.{digits}f} ± {float(one[f'{name}_error']) / unit:.{digits}f}"
+
+
 def table(found: xr.Dataset) -> str:
     """Markdown: both designs on the real body."""
     lines = ["| designed for | delta | as good | worst pressure | von Mises, tilted | relative life |"]
@@ -180,8 +186,8 @@ def table(found: xr.Dataset) -> str:
         one = found.sel(design=design)
         lines.append(
             f"| {design} | {float(one['delta']):.2f} | {float(one['flat_from']):.2f} to {float(one['flat_to']):.2f} | "
-            f"{float(one['worst_pressure']):.3f} p0 | "
-            f"{float(one['largest_von_mises']) / 1e9:.2f} GPa | {float(one['relative_life']):.2f} |"
+            f"{said(one, 'worst_pressure', 3)} p0 | {said(one, 'largest_von_mises', 2, 1e9)} GPa | "
+            f"{said(one, 'relative_life', 2)} |"
         )
     return "\n".join(lines)
 

@@ -9,8 +9,9 @@ from contactstudy.fatigue.critical_plane import findley
 from contactstudy.fatigue.history import window_remainder
 from contactstudy.fatigue.in_plane import shakedown_in_plane
 from contactstudy.fatigue.invariant_criteria import crossland, dang_van
-from contactstudy.fatigue.life import LifeExponents, ioannides_harris, lundberg_palmgren, relative_life
+from contactstudy.fatigue.life import LifeExponents, relative_life
 from contactstudy.fatigue.limits import FatigueLimits
+from contactstudy.fatigue.risk import ioannides_harris, lundberg_palmgren
 from contactstudy.fatigue.shakedown import shakedown, shakedown_limit
 
 __all__ = [

@@ -1,31 +1,20 @@
-"""Relative life after Lundberg and Palmgren, and after Ioannides and Harris: risk integrated over the stressed volume.
+"""Relative life: the ratio of two lives with the same probability to survive, from their risks.
 
-Both say ``ln(1/S) = const N**e risk`` for the probability S to survive N passages; the constant belongs to material
-and lubrication and cancels in the ratio of two lives. Sources: G. Lundberg, A. Palmgren, Dynamic capacity of rolling
-bearings, Acta Polytechnica, Mechanical Engineering Series 1 (1947) no. 3, and Dynamic capacity of roller bearings,
-ibid. 2 (1952) no. 4; E. Ioannides, T. A. Harris, A new fatigue life model for rolling bearings, Journal of Tribology
-107 (1985) 367-378.
+Lundberg and Palmgren's theory and Ioannides and Harris' (see risk.py) both say ``ln(1/S) = const N**e risk`` for the
+probability S to survive N passages; the constant belongs to material and lubrication and cancels in the ratio.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import dimension_along, measure, positions
-from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.required import require
-from contactstudy.arrays.units import in_si, required_in_si
 from contactstudy.arrays.variables import named
-from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
-
-CUT_OFF = 0.01
-"""Part of the risk from sections whose history or depths are cut off, above which there is no result. Accuracy."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -76,208 +65,6 @@ class LifeExponents:
         return f"Pa**{self.stress:.6g} m**{lengths - self.depth:.6g}"
 
 
-def _depths(stress: xr.DataArray) -> tuple[str, xr.DataArray]:
-    """Dimension and positions along the depth, NaN where padded."""
-    dim = dimension_along(stress, "z")
-    if stress.sizes[dim] < 3:
-        raise InvalidInputError("stress", dict(stress.sizes), "given at three or more depths")
-    return dim, positions(stress, "z")
-
-
-def _crest(stress: Array, depth: Array) -> tuple[Array, Array]:
-    """Largest stress over the depth and where it is, by a parabola through the three points around it."""
-    depth = np.broadcast_to(depth, stress.shape)
-    filled = np.where(np.isnan(stress), -np.inf, stress)
-    at = filled.argmax(axis=-1)
-
-    def take(values: Array, step: int) -> Array:
-        column = np.clip(at + step, 0, values.shape[-1] - 1)[..., None]
-        return np.asarray(np.take_along_axis(values, column, axis=-1)[..., 0])
-
-    (z1, z2, z3), (s1, s2, s3) = ([take(values, step) for step in (-1, 0, 1)] for values in (depth, filled))
-    with np.errstate(divide="ignore", invalid="ignore"):
-        left, right = (s2 - s1) / (z2 - z1), (s3 - s2) / (z3 - z2)
-        curvature = (right - left) / (z3 - z1)
-        top = 0.5 * (z1 + z2) - left / (2 * curvature)
-        crest = s2 + (top - z2) * (left + curvature * (top - z1))
-    inside = np.isfinite(crest) & (curvature < 0)
-    known = np.isfinite(s2)
-    return np.where(known, np.where(inside, crest, s2), np.nan), np.where(known, np.where(inside, top, z2), np.nan)
-
-
-def _integral(density: Array, place: Array) -> Array:
-    """Trapezoidal integral along the last axis; padded positions count nothing."""
-    place = np.broadcast_to(place, density.shape)
-    absent = np.isnan(density) | np.isnan(place)
-    pieces = 0.5 * (density[..., 1:] + density[..., :-1]) * np.abs(np.diff(place, axis=-1))
-    total = np.where(absent[..., 1:] | absent[..., :-1], 0.0, pieces).sum(axis=-1)
-    return np.asarray(np.where(absent.all(axis=-1), np.nan, total))
-
-
-def _along_axis(
-    density: xr.DataArray, exponents: LifeExponents, theory: dict[str, str | float], cut: dict[str, xr.DataArray]
-) -> xr.Dataset:
-    """Risk along x, and integrated over x; `cut` says of sections what of their stress is cut off."""
-    x = dimension_along(density, "x")
-    if density.sizes[x] < 2:
-        raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
-    density = density.compute()
-    place = positions(density, "x")
-    if (place.diff(x) <= 0).any():
-        raise InvalidInputError("x", place.values, "increasing positions")
-    risk = xr.apply_ufunc(_integral, density, place, input_core_dims=[[x], [x]])
-    for what, where in cut.items():
-        part = density.where(where, 0.0).sum(x) / density.sum(x).where(risk > 0)
-        if (part > CUT_OFF).any():
-            raise InvalidInputError(
-                "stress",
-                f"{what} in sections with {float(part.max()):.2g} of the risk",
-                f"largest inside; at most {CUT_OFF:g} of the risk may be cut off",
-                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0.05 to 2",
-            )
-    return xr.Dataset(
-        {
-            "risk_density": named("risk_density", density).assign_attrs(units=exponents.units(1)),
-            "risk": named("risk", risk.reset_coords(drop=True)).assign_attrs(units=exponents.units(2), **theory),
-        }
-    )
-
-
-def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None) -> xr.Dataset:
-    """Risk of fatigue after Lundberg and Palmgren, section by section along the roller.
-
-    Each cross-section contributes ``tau_0**c z_0**(1 - h) dx``: its largest amplitude of the orthogonal shear, the
-    depth where that is, and a volume as deep as that depth, per length of the raceway.
-
-    Parameters
-    ----------
-    stress : Dataset
-        `tau_yz` with the rolling direction y over the whole passage, at three or more depths and two or more x.
-    exponents : LifeExponents, optional
-        Default: those of roller bearings.
-
-    Returns
-    -------
-    Dataset
-        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`),
-        `shear_amplitude` (Pa) ``tau_0`` and `shear_depth` (m) ``z_0`` along x.
-
-    Raises
-    ------
-    InvalidInputError
-        If `tau_yz` or an axis is missing, there are too few positions, or the exponents are none; if the shear is
-        largest at the first or last position along y or z, so that more than 1 % of the risk is cut off.
-
-    Examples
-    --------
-    >>> y, z = xr.DataArray([-2.0, -1, 0, 1, 2], dims="y"), xr.DataArray([0.25, 0.5, 0.75], dims="z")
-    >>> shear = (y * (y**2 - 4) / 3 * (1 - (z - 0.5) ** 2)).expand_dims(x=[0.0, 2.0]).assign_coords(y=y, z=z)
-    >>> result = lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
-    >>> result.shear_amplitude.values.round(9).tolist(), result.shear_depth.values.round(9).tolist()
-    ([1.0, 1.0], [0.5, 0.5])
-    >>> round(float(result.risk / 0.5 ** (1 - 7 / 3)), 9)
-    2.0
-    """
-    chosen = LifeExponents() if exponents is None else exponents
-    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
-    stress = required_in_si(stress, "tau_yz", argument="stress")
-    amplitude = measure(stress, "orthogonal_shear_amplitude")
-    dim, depths = _depths(amplitude)
-    crest, at = reduced(_crest, [(amplitude, [dim]), (depths, [dim])], 2)
-    # Where nothing is loaded there is no risk, wherever the largest of nothing may be.
-    density = (crest**chosen.stress * at.where(at > 0) ** (1 - chosen.depth)).where(crest != 0, 0.0)
-    if ((crest > 0) & (at <= 0)).any():
-        raise InvalidInputError(
-            "stress",
-            "orthogonal shear largest on the surface",
-            "largest below it",
-            "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
-        )
-    cut = {"orthogonal shear largest at the last depth": at >= depths.max(dim), **_outside(stress, amplitude)}
-    return _along_axis(density, chosen, {"theory": "Lundberg and Palmgren"}, cut).assign(
-        shear_amplitude=named("shear_amplitude", crest.compute()), shear_depth=named("shear_depth", at.compute())
-    )
-
-
-def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataArray]:
-    """Sections whose largest shear amplitude is that of the first or the last position along y."""
-    shear = stress["tau_yz"]
-    rolling, depth = dimension_along(shear, "y"), dimension_along(shear, "z")
-    border = positions(shear, "y")
-    at_border = (border == border.min(rolling)) | (border == border.max(rolling))
-    inside = shear.where(~at_border)
-    held = 0.5 * (inside.max(rolling) - inside.min(rolling))
-    crest = amplitude == amplitude.max(depth)
-    return {"orthogonal shear largest at the first or last y": (crest & (held < amplitude)).any(depth)}
-
-
-def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
-    """Integral over the depth of what exceeds the limit, over the stress-weighted mean depth."""
-    excess = np.clip(stress - limit, 0.0, None) ** exponents.stress
-    volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        mean = moment / volume
-        density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-    return density, mean
-
-
-def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
-    """Risk of fatigue after Ioannides and Harris: what exceeds a fatigue limit, over the stressed volume.
-
-    ``risk = integral of (sigma - sigma_u)**c / z'**h dx dz`` where the stress exceeds its limit, per length of the
-    raceway. ``z'`` is the mean depth of that in each cross-section, weighted with the integrand's numerator.
-
-    Parameters
-    ----------
-    stress : DataArray
-        A measure of the passage along x and z, Pa, at three or more depths and two or more x: for example
-        ``analysis.measure(result, "orthogonal_shear_amplitude")``, ``dang_van(...).dang_van``, or the largest von Mises
-        stress along y.
-    limit : float
-        ``sigma_u`` below which nothing fails, of the same measure, Pa.
-    exponents : LifeExponents, optional
-        Default: those of roller bearings.
-
-    Returns
-    -------
-    Dataset
-        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`), and
-        `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit.
-
-    Raises
-    ------
-    InvalidInputError
-        If the measure is no DataArray along x and z, still extends along y, or there are too few positions; if it is
-        largest at the last depth, so that more than 1 % of the risk is cut off.
-
-    Examples
-    --------
-    >>> z = xr.DataArray([0.0, 0.5, 1.0], dims="z")
-    >>> stress = xr.DataArray([[0.0, 2.0, 0.0]] * 2, dims=("x", "z"), coords={"x": [0.0, 3.0], "z": z})
-    >>> result = ioannides_harris(stress, limit=1.0, exponents=LifeExponents(stress=1, depth=1, weibull=1))
-    >>> float(result.risk), result.mean_depth.values.tolist()
-    (3.0, [0.5, 0.5])
-    """
-    chosen = LifeExponents() if exponents is None else exponents
-    checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
-    checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    stress, threshold = in_si("stress", stress, "Pa"), checks.not_negative("limit", limit, "Pa")
-    if any(str(dim) == "y" or str(dim).startswith("y_") for dim in stress.dims):
-        raise InvalidInputError(
-            "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
-        )
-    dim, depths = _depths(stress)
-    density, mean = reduced(
-        partial(_risk_of_sections, limit=threshold, exponents=chosen), [(stress, [dim]), (depths, [dim])], 2
-    )
-    theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
-    last = depths.max(dim)
-    deepest = stress.where(depths == last).max(dim) >= stress.max(dim)
-    return _along_axis(density, chosen, theory, {"a measure largest at the last depth": deepest}).assign(
-        mean_depth=named("mean_depth", mean.compute())
-    )
-
-
 def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExponents | None = None) -> xr.DataArray:
     """Life of one contact over that of another, for the same probability to survive.
 
@@ -292,7 +79,8 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     Returns
     -------
     DataArray
-        ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk.
+        ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk. Its coordinate
+        `relative_life_error` is what the errors of both risks make of it.
 
     Raises
     ------
@@ -319,4 +107,9 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     own, other = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
     ratio = (other / own.where(own > 0)).where((own != 0) | (other == 0), np.inf)
-    return named("relative_life", ratio ** (1 / chosen.weibull))
+    life = named("relative_life", ratio ** (1 / chosen.weibull))
+    if not all("risk_error" in dataset for dataset in (risk, reference)):
+        return life
+    parts = (dataset["risk_error"] / dataset["risk"].where(dataset["risk"] > 0) for dataset in (risk, reference))
+    error = life * sum(parts) / chosen.weibull
+    return life.assign_coords(relative_life_error=named("relative_life_error", error.reset_coords(drop=True)))

@@ -63,6 +63,45 @@ def test_a_fatigue_limit_makes_life_grow_without_end(strip_result) -> None:
         fatigue.relative_life(fatigue.lundberg_palmgren(lower), fatigue.ioannides_harris(orthogonal(lower)))
 
 
+@pytest.mark.parametrize("step", [1, 2, 3])
+def test_the_stated_error_covers_the_distance_of_the_positions(strip_result, step: int) -> None:
+    result = strip_result().isel(z=slice(None, None, step), y_field=slice(None, None, step))
+    found = fatigue.lundberg_palmgren(result)
+    expected = 0.25 ** (31 / 3) * 0.5 ** (1 - 7 / 3) * 4.0
+    error = float(found["risk_error"])
+    assert abs(float(found["risk"]) - expected) < error < 0.9 * step**2 * expected
+    assert "positions alone" in found["risk_error"].attrs["comment"]
+    assert found["risk_error"].attrs["units"] == found["risk"].attrs["units"]
+
+
+def test_the_error_of_the_pressure_counts_with_the_power_of_the_stress(strip_result) -> None:
+    plain = fatigue.lundberg_palmgren(strip_result())
+    stated = strip_result().assign(peak_pressure=1.0, peak_pressure_error=0.01)
+    found = fatigue.lundberg_palmgren(stated)
+    added = float(found["risk_error"] - plain["risk_error"]) / float(plain["risk"])
+    assert added == pytest.approx(0.01 * 31 / 3)
+    both = sum(float(each["risk_error"] / each["risk"]) for each in (found, plain))
+    life = fatigue.relative_life(found, plain)
+    assert float(life["relative_life_error"]) == pytest.approx(both * 8 / 9)
+
+
+def test_too_few_positions_tell_no_error(strip_result) -> None:
+    found = fatigue.lundberg_palmgren(strip_result().isel(z=slice(0, None, 12)))
+    assert float(found["risk_error"]) == np.inf
+    assert float(fatigue.relative_life(found, found)["relative_life_error"]) == np.inf
+
+
+def test_the_error_holds_for_a_real_contact_and_each_case_of_a_study(solved: xr.Dataset) -> None:
+    """On half of the positions the risk is within the error of that on all."""
+    whole = fatigue.lundberg_palmgren(solved)
+    assert 0 < float(whole["risk_error"]) < np.inf
+    half = fatigue.lundberg_palmgren(solved.isel(x_field=slice(None, None, 2)))
+    assert abs(float(half["risk"] - whole["risk"])) <= float(half["risk_error"] + whole["risk_error"])
+    pair = xr.concat([solved[["tau_yz"]], 1.1 * solved[["tau_yz"]]], "case")
+    alone = [fatigue.lundberg_palmgren(pair.isel(case=number))["risk_error"] for number in (0, 1)]
+    np.testing.assert_allclose(fatigue.lundberg_palmgren(pair)["risk_error"], alone)
+
+
 def test_a_passage_that_is_cut_off_has_no_risk(strip_result) -> None:
     """The largest shear lies at y = 0.87 a and z = 0.5 a: nothing may end short of it."""
     result = strip_result()
