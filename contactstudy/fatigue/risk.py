@@ -131,15 +131,13 @@ def _error(given: Given, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable
 
 def _with_error(result: xr.Dataset, error: Array, pressure: xr.DataArray | None = None) -> xr.Dataset:
     """Return a result with the error of its risk: of the positions, and of the pressure if that is known."""
-    risk = result["risk"]
-    comment = "from the distance of the positions, and of the pressure"
-    if pressure is None:
-        comment = POSITIONS_ALONE
-    else:
-        error = error + (risk * pressure).values
-    attributes = {"units": risk.attrs["units"], "comment": comment}
-    stated = named("risk_error", risk.copy(data=np.where(risk > 0, error, 0.0))).assign_attrs(attributes)
-    return result.assign(risk_error=stated)
+    risk, comment = result["risk"], POSITIONS_ALONE
+    stated = risk.copy(data=error)
+    if pressure is not None:
+        comment = "from the distance of the positions, and of the pressure"
+        stated = stated + (risk * pressure).reset_coords(drop=True)
+    stated = named("risk_error", stated.where(risk != 0, 0.0))
+    return result.assign(risk_error=stated.assign_attrs(units=risk.attrs["units"], comment=comment))
 
 
 def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None) -> xr.Dataset:
