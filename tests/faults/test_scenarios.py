@@ -41,7 +41,7 @@ def test_the_page_has_a_place_for_it() -> None:
 def test_faults_hold(calm: xr.Dataset) -> None:
     for row in (
         scenarios.damaged_files(calm, len(scenarios.DAMAGES)),
-        scenarios.kills(calm, 2),
+        scenarios.kills(calm, 1),
         hosts.two_systems(calm, 4),
     ):
         assert row.held == row.tried, row

@@ -56,7 +56,7 @@ def regime_errors(tmp_path_factory):
         sweep={
             **study.sweep,
             "e_over_a": [0.0, 1.0],
-            "gamma": [0.078, 0.104],
+            "gamma": [0.078],
             "profile": study.sweep["profile"][:1],
         },
     )
@@ -126,7 +126,7 @@ def test_best_profile_needs_less_crown_between_free_ends():
     assert float(found["worst_pressure"].sel(design="free ends")) <= float(
         found["worst_pressure"].sel(design="half-space")
     )
-    assert task.worst(float(crowned[1]), HalfSpace(material=task.material)) > 1.2
+    assert task.worst(float(crowned[1]), HalfSpace(material=task.material))[0] > 1.2
     assert "| free ends |" in module.table(found)
 
 

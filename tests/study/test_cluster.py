@@ -60,9 +60,9 @@ def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
 @pytest.mark.system
 def test_the_solvers_results_are_the_same_wherever_cases_are_solved(tmp_path):
     """Bit for bit: in this process, with one and two workers, and on a cluster."""
-    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 0.1], "max_pressure": [1.0e9, 1.5e9]})
+    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.1], "max_pressure": [1.0e9, 1.5e9]})
     for workers in (0, 1, 2):
-        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 8}
+        assert run_study(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
     with cluster(tmp_path) as address:
         run_study(study, tmp_path / "cluster", scheduler=address)
     first = opened(tmp_path / "0")
