@@ -39,8 +39,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     >>> axial_pressure(xr.Dataset({"pressure": pressure})).values.tolist()
     [1.0, 2.0]
     """
-    require(dataset, "pressure")
-    pressure = dataset["pressure"]
+    pressure = required_in_si(dataset, "pressure", normalized=True)["pressure"]
     largest = pressure.max(dimension_along(pressure, "y"))
     return named("axial_pressure", largest)
 
@@ -148,8 +147,7 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     >>> half_width(xr.Dataset({"pressure": pressure})).half_width.values.round(9).tolist()
     [1.0]
     """
-    require(dataset, "pressure")
-    pressure = increasing(dataset["pressure"], "y")
+    pressure = increasing(required_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
     along = dimension_along(pressure, "y")
     low, high = reduced(contact_borders, [(pressure, [along]), (positions(pressure, "y"), [along])], 2)
     exists = pressure.notnull().any(along)

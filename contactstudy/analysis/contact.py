@@ -8,14 +8,12 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
+from contactstudy.analysis.cut_ends import cut_ends
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
-
-CUT = 0.01
-"""Part of the load that is missing where a Dataset is a part of a contact. Accuracy."""
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:
@@ -25,37 +23,6 @@ def _first_and_last(values: Array) -> tuple[Array, Array]:
     ends = [np.take_along_axis(values, at[..., None], axis=-1)[..., 0] for at in (first, last)]
     none = ~loaded.any(axis=-1)
     return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
-
-
-def _cut(pressure: Array, load: Array, dx: Array, dy: Array) -> tuple[Array, Array]:
-    """Whether contacts (..., x, y) go on beyond the first and the last x: pressed there, and short of their load."""
-    carried = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
-    pressed = pressure > 0
-    # One that is cut along y carries less for that reason.
-    short = (carried < (1 - CUT) * load) & ~pressed[..., [0, -1]].any(axis=(-2, -1))
-    return short * pressed[..., 0, :].any(axis=-1), short * pressed[..., -1, :].any(axis=-1)
-
-
-def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
-    """Whether the contact goes on beyond the first and the last x, as in a part of a result: 1 if so, else 0.
-
-    Examples
-    --------
-    >>> cells = {"x": [0.5, 1.5, 2.5], "y": [-1.0, 0.0, 1.0]}
-    >>> pressure = xr.DataArray([[0, 2, 0], [0, 1, 0], [0, 1, 0]], dims=("x", "y"), coords=cells)
-    >>> contact = xr.Dataset({"pressure": pressure, "normal_load": 4.0})
-    >>> [[float(end) for end in cut_ends(each)] for each in (contact, contact.isel(x=[1, 2]))]
-    [[0.0, 0.0], [1.0, 1.0]]
-    """
-    pressure = dataset["pressure"]
-    for axis in "xy":
-        pressure = increasing(pressure, axis)
-    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    if "normal_load" not in dataset or pressure.sizes[y] < 2:
-        return xr.DataArray(0.0), xr.DataArray(0.0)
-    widths = [(_width_at_each(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))]
-    first, last = reduced(_cut, [(pressure, [x, y]), (dataset["normal_load"], []), *widths], 2)
-    return first, last
 
 
 def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
@@ -170,7 +137,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     >>> [float(result[name]) for name in ("contact_area", "contact_length_loss", "resultant", "moment")]
     [4.0, 2.0, 8.0, -2.0]
     """
-    require(dataset, "pressure")
+    dataset = required_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
     opposite = unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)

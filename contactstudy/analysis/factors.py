@@ -8,10 +8,9 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, cell_size, dimension_along, positions
 from contactstudy.analysis.axial import axial_pressure
-from contactstudy.analysis.contact import cut_ends
+from contactstudy.analysis.cut_ends import cut_ends
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
-from contactstudy.arrays.required import require
 from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import named, variable_of
 from contactstudy.errors import InvalidInputError
@@ -111,7 +110,7 @@ def edge_factors(
         "end_over_middle_last": last / middle,
     }
     if reference is not None:
-        require(reference, "pressure")
+        reference = required_in_si(reference, "pressure", argument="reference")
         others = _values(reference, variable, near)
         for name, own, other in zip(PLACES, (first, last, middle, largest), others, strict=True):
             values[f"over_reference_{name}"] = own / other

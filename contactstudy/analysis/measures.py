@@ -10,6 +10,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.invariants import hydrostatic, maximum_shear, orthogonal_shear_range, tresca, von_mises
 from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.errors import InvalidInputError
 
@@ -60,8 +61,7 @@ def measure(dataset: xr.Dataset, name: str) -> xr.DataArray:
         return dataset[name]
     checks.known_name("variable", name, {*map(str, dataset.data_vars), *MEASURES})
     components, function = MEASURES[name]
-    require(dataset, *components)
-    stress = dataset[list(components)]
+    stress = required_in_si(dataset, *components, normalized=True)[list(components)]
     padded = xr.apply_ufunc(np.isnan, stress[components[0]], dask="allowed").compute()
     if not padded.any():
         return function(stress)

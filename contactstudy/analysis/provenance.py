@@ -9,8 +9,10 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from operator import attrgetter
 from typing import Any
 
+import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.required import require
@@ -23,8 +25,15 @@ from contactstudy.versions import versions
 INPUTS_ATTRIBUTE, RUN_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run"
 """What was solved; and by what, when and how long. The files of a study have the second one, too."""
 
-SAME = 1e-9
-"""Part by which two numbers may differ and be the same: load and pressure follow from one another. Accuracy."""
+SAME, NOTHING = 1e-6, 1e-15
+"""Part, and size in SI, by which two numbers may differ and be the same: a load that was found carries its tolerance.
+Accuracy."""
+
+FOLLOWING = ("approach", "load_position", "load", "tilt")
+"""Values of a case of which some follow from the others and the solution."""
+
+WHOLE = ("roller.profile", "friction", "motion")
+"""Parts that a message names as a whole."""
 
 MOST_SHOWN = 3
 """Values that a message names."""
@@ -85,8 +94,8 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Raises
     ------
     InvalidInputError
-        If the Dataset does not say it: one that was computed from a result, or solved before results said it; or a
-        case of an opened study, whose own file says it.
+        If the Dataset does not say it: one that was computed from a result, or solved before results said it, or a
+        case selected from an opened study. For the latter the message names the file that says it.
 
     Examples
     --------
@@ -120,50 +129,74 @@ def check_solved_for(
     Parameters
     ----------
     result : Dataset
-        One that says nothing of its case is taken as it is.
+        One that says nothing of its case, or says it in the words of another version, is taken as it is.
     given : Case or Body
         What was given beside it.
     argument : str
         Name of the result among the arguments, for the message.
     only : tuple of str
-        Parts of the case that have to agree. Default: all.
+        Parts of the case that have to agree, such as "roller". Default: all.
 
     Raises
     ------
     InvalidInputError
-        With the values that differ.
+        With what differs.
     """
-    stored = attribute(result, INPUTS_ATTRIBUTE).get("case")
-    if stored is None:
+    try:
+        solved = case_from(attribute(result, INPUTS_ATTRIBUTE)["case"])
+    except (InvalidInputError, KeyError, TypeError):
         return
-    solved = case_from(stored)
-    pair = [_compared(each) for each in ((solved, given) if isinstance(given, Case) else (solved.body, given))]
+    if isinstance(given, Case):
+        known, wanted = _compared(solved) | _found(result), _compared(given)
+    else:
+        known, wanted = (dict(_leaves({"body": table_of(each)})) for each in (solved.body, given))
     names = [
         name
-        for name in {**pair[0], **pair[1]}
-        if (not only or name.split(".")[0] in only) and not _same(pair[0].get(name), pair[1].get(name))
+        for name in {**known, **wanted}
+        if (not only or any(name.startswith(part) for part in only))
+        and not _same(known.get(name), wanted.get(name))
+        # What the other one does not prescribe follows from the solution.
+        and not (name in FOLLOWING and None in (known.get(name), wanted.get(name)))
     ]
     if names:
-        found, wanted = (", ".join(_said(name, each.get(name)) for name in names[:MOST_SHOWN]) for each in pair)
         what = "case" if isinstance(given, Case) else "body"
-        raise InvalidInputError(argument, f"solved with {found}", f"a result of the {what} that is given, {wanted}")
+        shown = (", ".join(_in_words(*each, names)) for each in ((known, solved), (wanted, given)))
+        raise InvalidInputError(
+            argument,
+            f"solved with {next(shown)}",
+            f"a result of the {what} that is given, {next(shown)}",
+            f"if the Dataset was joined or changed, drop its attribute {INPUTS_ATTRIBUTE}",
+        )
 
 
-def _compared(part: Case | Body) -> dict[str, Any]:
-    """Values of a case or a body by name, the same for the same contact however it was prescribed."""
-    if not isinstance(part, Case):
-        return dict(_leaves({"body": table_of(part)}))
-    table = case_table(part) | {"end_distance": part.roller_start}
-    if part.approach is None:
-        table |= {"load": part.normal_load, "max_pressure": part.hertz_max_pressure}
-    return dict(_leaves(table))
+def _compared(case: Case) -> dict[str, Any]:
+    """Values of a case by name, the same for the same contact however it was prescribed."""
+    values = dict(_leaves(case_table(case))) | {"end_distance": case.roller_start}
+    for name in ("load", "max_pressure"):
+        values.pop(name, None)
+    if case.approach is None:
+        values |= {"load": case.normal_load}
+    if case.load_position is not None:
+        values.pop("tilt")
+    return values
+
+
+def _found(result: xr.Dataset) -> dict[str, float]:
+    """Values that a result has as numbers, which follow a selection from joined results: attributes do not."""
+    named = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
+    return {
+        name: float(result[variable])
+        for name, variable in named.items()
+        if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
+    }
 
 
 def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield what a table holds, with dotted names."""
+    """Yield what a table holds, with dotted names; not how a profile calls itself."""
     if isinstance(entry, Mapping):
         for key, value in entry.items():
-            yield from _leaves(value, f"{name}.{key}" if name else str(key))
+            if (entry.get("kind"), key) != ("Sampled", "says"):
+                yield from _leaves(value, f"{name}.{key}" if name else str(key))
     elif isinstance(entry, (list, tuple)):
         for number, value in enumerate(entry):
             yield from _leaves(value, f"{name}.{number}")
@@ -171,13 +204,18 @@ def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, entry
 
 
-def _said(name: str, value: Any) -> str:
-    """Return a value with its name."""
-    return f"{name} = {value:.6g}" if isinstance(value, float) else f"{name} = {value}"
+def _in_words(values: Mapping[str, Any], part: Case | Body, names: list[str]) -> list[str]:
+    """Say the values of these names, whole parts of a case as they call themselves."""
+    said: dict[str, str] = {}
+    for name in names:
+        whole = next((each for each in WHOLE if name.startswith(each)), name)
+        value = values.get(name) if name == whole else attrgetter(whole)(part)
+        said[whole] = f"{whole} = {value:.6g}" if isinstance(value, float) else f"{whole} = {value}"
+    return list(said.values())[:MOST_SHOWN]
 
 
 def _same(one: Any, other: Any) -> bool:
     """Whether two values are the same but for rounding."""
     if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=SAME)
+        return math.isclose(one, other, rel_tol=SAME, abs_tol=NOTHING)
     return bool(one == other)

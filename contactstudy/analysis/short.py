@@ -12,7 +12,7 @@ import pandas as pd
 import xarray as xr
 
 from contactstudy.analysis.axes import single_case
-from contactstudy.analysis.contact import cut_ends
+from contactstudy.analysis.cut_ends import cut_ends
 from contactstudy.analysis.edges import contact_length
 from contactstudy.analysis.largest import largest
 from contactstudy.arrays.engineering import quantity, with_error

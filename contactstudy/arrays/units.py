@@ -13,10 +13,13 @@ from contactstudy.arrays.vocabulary import VARIABLES
 from contactstudy.errors import InvalidInputError
 
 KNOWN: dict[str, dict[str, float]] = {
-    "m": {"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9, "km": 1e3},
+    "m": {
+        **dict.fromkeys(("m", "metre", "meter", "metres", "meters"), 1.0),
+        **{"mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9, "km": 1e3},
+    },
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},
-    "N m": {"N m": 1.0, "Nm": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
+    "N m": {"N m": 1.0, "Nm": 1.0, "N*m": 1.0, "N.m": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
     "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180},
     "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
     "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
@@ -50,8 +53,19 @@ def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
     return converted if own == 1 else (converted * own).assign_attrs(units=unit)
 
 
-def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset") -> xr.Dataset:
-    """Return a Dataset that must hold some variables, with these and their positions in SI.
+def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
+    """Return a Dataset that must hold some variables, with these and all positions in SI.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        What was given.
+    *names : str
+        Variables that it must hold.
+    argument : str
+        Name of the argument, for error messages.
+    normalized : bool
+        Whether variables may also be over a or p0; they stay so.
 
     Raises
     ------
@@ -68,18 +82,26 @@ def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset") 
     contactstudy.errors.InvalidInputError: dataset = 'pressure without unit': must be in SI, pressure in Pa; ...
     """
     require(dataset, *names, argument=argument)
-    changed = {}
+    changed: dict[str, xr.DataArray] = {}
     for name in names:
         units, array = VARIABLES[name].units, dataset[name]
-        if array.attrs.get("units", units) == "1" != units:
+        said = array.attrs.get("units", units)
+        if not units:  # that of another variable
+            continue
+        if said == "1" != units and not normalized:
             hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
             raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
-        if (converted := in_si(f"{argument}.{name}", array, units)) is not array:
-            changed[name] = converted
-    if not changed:
-        return dataset
-    moved = {str(axis): place for each in changed.values() for axis, place in each.coords.items() if axis in POSITIONS}
-    return dataset.assign_coords(moved).assign({name: each.variable for name, each in changed.items()})
+        factor = 1.0 if said in ("1", units) else factor_to(units, f"{argument}.{name}.attrs['units']", said)
+        if factor != 1:
+            changed[name] = (array * factor).assign_attrs({**array.attrs, "units": units})
+    for axis in POSITIONS:
+        if axis in dataset.coords and dataset[axis].attrs.get("units", "m") not in ("m", "1"):
+            place = dataset[axis]
+            factor = factor_to("m", f"{argument}.{axis}.attrs['units']", place.attrs["units"])
+            changed[axis] = (place * factor).assign_attrs({**place.attrs, "units": "m"})
+    positions = {name: each.variable for name, each in changed.items() if name in POSITIONS}
+    values = {name: each.variable for name, each in changed.items() if name not in POSITIONS}
+    return dataset.assign_coords(positions).assign(values) if changed else dataset
 
 
 def metres(name: str, positions: Any) -> Any:

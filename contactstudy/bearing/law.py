@@ -160,7 +160,7 @@ class ContactLaw:
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness as plain arrays, at pairs inside the table: for loops of one's own.
 
-        Outside it extrapolates without a word, so that Newton's method may pass there; check where it ends.
+        Outside it extrapolates without a warning, so that Newton's method may pass there; check where it ends.
         """
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 

@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.units import in_si
+from contactstudy.arrays.units import factor_to
 from contactstudy.arrays.variables import describe
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.checks import FloatArray
@@ -17,6 +17,9 @@ from contactstudy.errors import InvalidInputError
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray
 """A number, several, or labelled ones."""
 
+MOST_SHOWN = 5
+"""Labels that a message shows."""
+
 UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}
 """Of the arguments."""
 
@@ -24,19 +27,27 @@ UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}
 def broadcast(**values: Values) -> tuple[xr.DataArray, ...]:
     """Arguments as arrays of the same dimensions: a sequence has a dimension of its own name."""
     labelled = [_labelled(*item) for item in values.items()]
+    for dim in {str(dim) for each in labelled for dim in each.dims}:
+        having = [each.indexes[dim] for each in labelled if dim in each.indexes]
+        if any(set(labels) != set(having[0]) for labels in having):
+            shown = " and ".join(str(labels.tolist()[:MOST_SHOWN]) for labels in having)
+            raise InvalidInputError(
+                ", ".join(values), f"{dim} = {shown}", f"with the same labels along {dim}, or without"
+            )
     try:
-        aligned = xr.align(*labelled, join="exact")
-    except ValueError:
-        shown = {name: dict(each.sizes) for name, each in zip(values, labelled, strict=True)}
-        allowed = "with the same coordinates along common dimensions, or without"
-        raise InvalidInputError(", ".join(values), shown, allowed) from None
+        aligned = xr.align(*labelled, join="left")
+    except ValueError as error:
+        sizes = {name: dict(each.sizes) for name, each in zip(values, labelled, strict=True)}
+        allowed = "as many values along each common dimension"
+        raise InvalidInputError(", ".join(values), sizes, allowed, str(error)) from None
     return tuple(each.astype(np.float64) for each in xr.broadcast(*aligned))
 
 
 def _labelled(name: str, value: Values) -> xr.DataArray:
     """One argument as a DataArray of finite numbers."""
     if isinstance(value, xr.DataArray):
-        value = in_si(name, value, UNITS[name])
+        if (said := value.attrs.get("units")) is not None:
+            value = value * factor_to(UNITS[name], f"{name}.attrs['units']", said)
         checks.coordinates(name, value.values.ravel(), UNITS[name])
         return value.drop_vars(name, errors="ignore") if name not in value.dims else value
     if np.ndim(value) == 0:

@@ -18,6 +18,7 @@ import numpy as np
 
 from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.models import FiniteLengthSpace
+from contactstudy.checks import FloatArray
 from contactstudy.errors import MagnitudeWarning
 from contactstudy.profiles.base import Shape, checked_drop
 from contactstudy.profiles.logarithmic import Logarithmic
@@ -106,9 +107,11 @@ def question(case: Case) -> None:
         _warn(doubts(case), stacklevel=5)
 
 
-def question_values(*, stacklevel: int, **values: float) -> None:
-    """Warn of doubtful magnitudes of values by name; `stacklevel` as of `warnings.warn`, from the caller of this."""
-    _warn([_doubt(name, name, value) for name, value in values.items()], stacklevel=stacklevel + 2)
+def question_values(*, stacklevel: int, **values: float | FloatArray) -> None:
+    """Warn of doubtful magnitudes by name, of arrays by their smallest and largest; `stacklevel` from the caller on."""
+    if _QUESTIONED.get():
+        ends = ((name, end) for name, value in values.items() for end in np.unique([np.min(value), np.max(value)]))
+        _warn([_doubt(name, name, float(end)) for name, end in ends], stacklevel=stacklevel + 2)
 
 
 def _warn(questions: Iterable[str], stacklevel: int) -> None:

@@ -19,6 +19,20 @@ Clearance = Callable[[FloatArray, FloatArray], FloatArray]
 """Height of a roller (x, y) at distances from its mid-length and from its centre line; infinite beyond its ends."""
 
 
+def onto_ends(from_middle: FloatArray, half: float, width: float) -> FloatArray:
+    """Distances of cells' centres from mid-length, those right at the roller's ends exactly there.
+
+    Rounding does not decide whether such a cell is under the roller: it is, at both ends.
+
+    Examples
+    --------
+    >>> bool(onto_ends(np.array([0.1 + 0.2]), 0.3, 0.1) == 0.3)
+    True
+    """
+    at_end = np.abs(np.abs(from_middle) - half) <= ROUNDING * width
+    return np.where(at_end, np.copysign(half, from_middle), from_middle)
+
+
 def gap_on_cells(clearance: Clearance, grid: Grid, middle: float, half: float) -> FloatArray:
     """Return the gap on the cells of a grid, metres.
 
@@ -39,9 +53,7 @@ def gap_on_cells(clearance: Clearance, grid: Grid, middle: float, half: float) -
     """
     from_middle = grid.x - middle
     if grid.uniform:
-        # Rounding does not decide whether a cell's centre right at an end is under the roller: it is, at both.
-        at_end = np.abs(np.abs(from_middle) - half) <= ROUNDING * grid.dx
-        return clearance(np.where(at_end, np.copysign(half, from_middle), from_middle), grid.y)
+        return clearance(onto_ends(from_middle, half, grid.dx), grid.y)
     nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
     within = from_middle[:, None] + 0.5 * grid.widths[:, None] * nodes
     along = clearance(within.ravel(), np.zeros(1)).reshape(within.shape)

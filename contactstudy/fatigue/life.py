@@ -80,7 +80,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     -------
     DataArray
         ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk. Its coordinate
-        `relative_life_error` is what the errors of both risks make of it.
+        `relative_life_error` follows from the errors of both risks.
 
     Raises
     ------
@@ -102,7 +102,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
         raise InvalidInputError("reference", units[1], f"computed with the same exponents, {units[0]}")
     for name in ("theory", "fatigue_limit"):
         own_said, other_said = (dataset["risk"].attrs.get(name) for dataset in (risk, reference))
-        if own_said != other_said:
+        if own_said is not None is not other_said and own_said != other_said:
             raise InvalidInputError("reference", f"{name} = {other_said}", f"computed as risk was, {name} = {own_said}")
     own, other = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
@@ -110,6 +110,8 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     life = named("relative_life", ratio ** (1 / chosen.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life
-    parts = (dataset["risk_error"] / dataset["risk"].where(dataset["risk"] > 0) for dataset in (risk, reference))
-    error = life * sum(parts) / chosen.weibull
-    return life.assign_coords(relative_life_error=named("relative_life_error", error.reset_coords(drop=True)))
+    part, reference_part = (each["risk_error"] / each["risk"].where(each["risk"] > 0) for each in (risk, reference))
+    # The longest life that the errors allow: no bound if there may be no risk at all.
+    most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / chosen.weibull)
+    error = (life * (most - 1)).reset_coords(drop=True)
+    return life.assign_coords(relative_life_error=named("relative_life_error", error))

@@ -27,8 +27,8 @@ from contactstudy.fatigue.life import LifeExponents
 CUT_OFF = 0.01
 """Part of the risk from sections whose history or depths are cut off, above which there is no result. Accuracy."""
 
-FEWEST = {"x": 2, "y": 3, "z": 3}
-"""Positions along each axis from which a risk can be taken."""
+FEWEST = 3
+"""Positions along each axis from which half of them can tell an error; along x two make a risk."""
 
 Given = TypeVar("Given", xr.Dataset, xr.DataArray)
 """What a risk is taken from."""
@@ -79,20 +79,20 @@ def _along_axis(
 ) -> xr.Dataset:
     """Risk along x, and integrated over x; `cut` says of sections what of their stress is cut off."""
     x = dimension_along(density, "x")
-    if density.sizes[x] < FEWEST["x"]:
+    if density.sizes[x] < 2:
         raise InvalidInputError("stress", dict(density.sizes), "given at two or more positions along x")
     density = density.compute()
     if (positions(density, "x").diff(x) <= 0).any():
         raise InvalidInputError("x", positions(density, "x").values, "increasing positions")
     risk = _over_x(density)
     for what, where in cut.items():
-        part = density.where(where, 0.0).sum(x) / density.sum(x).where(risk > 0)
+        part = _over_x(density.where(where, 0.0)) / risk.where(risk > 0)
         if (part > CUT_OFF).any():
             raise InvalidInputError(
                 "stress",
                 f"{what} in sections with {float(part.max()):.2g} of the risk",
                 f"largest inside; at most {CUT_OFF:g} of the risk may be cut off",
-                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0.05 to 2",
+                "solve with y over the whole passage, for example from -3 to 3 half-widths, and z from 0 to 2",
             )
     return xr.Dataset(
         {
@@ -122,7 +122,7 @@ def _error(given: Given, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable
     error = np.zeros(risk.shape)
     for axis, dim in axis_dimensions(of).items():
         parts = _halves(of.sizes[dim], axis)
-        if any(part.size < FEWEST[axis] for part in parts):
+        if any(part.size < FEWEST for part in parts):
             return np.full(risk.shape, np.inf)
         changes = [np.abs(risk_of(given.isel({dim: part})).values - risk.values) for part in parts]
         error += np.maximum.reduce(changes)
@@ -178,6 +178,7 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     stress = required_in_si(stress, "tau_yz", argument="stress")
+    stress = stress.assign(tau_yz=stress["tau_yz"].compute())  # once, not for every part of the positions
     amplitude, crest, at = _shear(stress)
     if ((crest > 0) & (at <= 0)).any():
         raise InvalidInputError(
@@ -186,8 +187,9 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
             "largest below it",
             "Lundberg and Palmgren's theory is not for such friction; Ioannides and Harris' is",
         )
-    deepest = at >= positions(amplitude, "z").max(dimension_along(amplitude, "z"))
-    cut = {"orthogonal shear largest at the last depth": deepest, **_outside(stress, amplitude)}
+    depths, dim = positions(amplitude, "z"), dimension_along(amplitude, "z")
+    outside = (at <= depths.min(dim)) | (at >= depths.max(dim))
+    cut = {"orthogonal shear largest at the first or last depth": outside, **_outside(stress, amplitude)}
     result = _along_axis(_of_shear(crest, at, chosen), chosen, {"theory": "Lundberg and Palmgren"}, cut).assign(
         shear_amplitude=named("shear_amplitude", crest.compute()), shear_depth=named("shear_depth", at.compute())
     )
@@ -217,7 +219,9 @@ def _pressure(stress: xr.Dataset, exponents: LifeExponents) -> xr.DataArray | No
     """Relative error of a risk from that of the largest pressure, where a result states it."""
     if not {"peak_pressure", "peak_pressure_error"} <= set(stress.variables):
         return None
-    return exponents.stress * stress["peak_pressure_error"] / stress["peak_pressure"]
+    peak, error = stress["peak_pressure"], stress["peak_pressure_error"]
+    # At a singular end the stress has no limit.
+    return exponents.stress * (error / peak.where(np.isfinite(peak), 1.0)).where(np.isfinite(peak), np.inf)
 
 
 def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataArray]:
@@ -242,6 +246,24 @@ def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: Life
     return density, mean
 
 
+def _beyond(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
+    """Part of a section's risk above the first depth, as if uniform, and below the last one, as if it fell on so."""
+    excess = np.nan_to_num(np.clip(stress - limit, 0.0, None) ** exponents.stress)
+    depth = np.broadcast_to(depth, excess.shape)
+    last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
+
+    def at(values: Array, place: IntArray) -> Array:
+        return np.asarray(np.take_along_axis(values, place, axis=-1)[..., 0])
+
+    ends = [(at(excess, place), at(depth, place)) for place in (np.zeros_like(last), last - 1, last)]
+    (head, first), (before, above), (tail, below) = ends
+    with np.errstate(divide="ignore", invalid="ignore"):
+        below_last = np.where(tail > 0, tail * (below - above) / np.log(np.maximum(before / tail, 1.0)), 0.0)
+        # The mean depth moves as well, by a part as large.
+        part = (1 + exponents.depth) * (head * first + below_last) / _integral(excess, depth)
+    return np.where(np.isnan(part), 0.0, part), np.zeros(part.shape)
+
+
 def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
     """Risk of fatigue after Ioannides and Harris: what exceeds a fatigue limit, over the stressed volume.
 
@@ -263,14 +285,14 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     -------
     Dataset
         `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`) and
-        `risk_error`, which knows of the positions along x and z alone, and `mean_depth` (m) ``z'`` along x, NaN where
-        nothing exceeds the limit.
+        `risk_error`, and `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit. The error counts the
+        positions along x and z, and what lies above the first and below the last depth.
 
     Raises
     ------
     InvalidInputError
         If the measure is no DataArray along x and z, still extends along y, or there are too few positions; if it is
-        largest at the last depth, so that more than 1 % of the risk is cut off.
+        largest at the last depth, or at a first one below the top, so that more than 1 % of the risk is cut off.
 
     Examples
     --------
@@ -283,14 +305,18 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     chosen = LifeExponents() if exponents is None else exponents
     checks.instance("exponents", chosen, LifeExponents, "a LifeExponents")
     checks.instance("stress", stress, xr.DataArray, "a DataArray along x and z")
-    stress, threshold = in_si("stress", stress, "Pa"), checks.not_negative("limit", limit, "Pa")
+    if stress.attrs.get("units") != "1":  # a utilisation has none
+        stress = in_si("stress", stress, "Pa")
+    threshold = checks.not_negative("limit", limit, "Pa")
     if any(str(dim) == "y" or str(dim).startswith("y_") for dim in stress.dims):
         raise InvalidInputError(
             "stress.dims", stress.dims, "without the rolling direction", "take the largest or the amplitude along y"
         )
     theory: dict[str, str | float] = {"theory": "Ioannides and Harris", "fatigue_limit": threshold}
+    stress = stress.compute()
     dim, depths = _depths(stress)
-    deepest = stress.where(depths == depths.max(dim)).max(dim) >= stress.max(dim)
+    outer = (depths == depths.max(dim)) | ((depths == depths.min(dim)) & (depths > 0))
+    outside = stress.where(outer).max(dim) >= stress.max(dim)
 
     def sections(part: xr.DataArray) -> tuple[xr.DataArray, ...]:
         along, places = _depths(part)
@@ -298,6 +324,12 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
         return reduced(of, [(part, [along]), (places, [along])], 2)
 
     density, mean = sections(stress)
-    result = _along_axis(density, chosen, theory, {"a measure largest at the last depth": deepest})
-    error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0].compute()))
-    return _with_error(result.assign(mean_depth=named("mean_depth", mean.compute())), error)
+    result = _along_axis(density, chosen, theory, {"a measure largest at the first or last depth": outside})
+    if stress.attrs.get("units") == "1":
+        for name in ("risk", "risk_density"):
+            result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
+    error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0]))
+    of = partial(_beyond, limit=threshold, exponents=chosen)
+    beyond, _ = reduced(of, [(stress, [dim]), (depths, [dim])], 2)
+    error = error + _over_x(density * beyond).values
+    return _with_error(result.assign(mean_depth=named("mean_depth", mean)), error)

@@ -10,7 +10,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.required import require
+from contactstudy.arrays.units import required_in_si
 from contactstudy.case.case import Case
 from contactstudy.case.motion import Rolling, Shift, Sliding
 from contactstudy.checks import FloatArray
@@ -56,7 +56,7 @@ def frictional_heat(
     assert not isinstance(motion, Shift)
     area = grid.weights * grid.cell_area
     if isinstance(motion, Sliding):
-        require(one, "traction_y", argument="result")
+        one = required_in_si(one, "traction_y", argument="result")
         if rolling_speed is not None:
             raise InvalidInputError(
                 "rolling_speed", rolling_speed, "None in full sliding", "give both surfaces' speeds"
@@ -95,7 +95,7 @@ def _rolling_heat(case: Case, motion: Rolling, one: xr.Dataset, speed: float, ar
     Cells of which a part slips say roughly how much work each does; the work of the whole contact is known better.
     """
     names = ("traction_x", "slip_x", "traction_y", "slip_y")
-    require(one, *names, "friction_work", argument="result")
+    one = required_in_si(one, *names, "friction_work", argument="result")
     q_x, s_x, q_y, s_y = (labelled_cells(f"result.{name}", one[name], extent=case.body.extent)[0] for name in names)
     # The contact moves along +y over both surfaces, so these move backwards below it.
     creepage = float(one["longitudinal_creepage"]) if "longitudinal_creepage" in one else motion.longitudinal_creepage

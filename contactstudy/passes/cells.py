@@ -13,6 +13,10 @@ NEAR = 1.0
 """Distance of the outer position from an end, over the distance of positions, up to which its cell ends there."""
 
 
+ROUNDING = 1e-9
+"""Part of the positions' range that is rounding. Accuracy."""
+
+
 def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:
     """Edges of cells around increasing positions, half-way between them.
 
@@ -44,7 +48,8 @@ def cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
         if points.size < 2 or (np.diff(points) <= 0).any():
             raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
     low, high = body.extent
-    if x[0] < low or x[-1] > high:
+    slack = ROUNDING * (x[-1] - x[0])
+    if x[0] < low - slack or x[-1] > high + slack:
         raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", f"positions in the body, from {low:g} to {high:g} m")
     x_edges, z_edges = edges_around(x, low, high), edges_around(z, 0.0, np.inf)
     for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):

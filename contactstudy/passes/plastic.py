@@ -70,8 +70,7 @@ class ElasticPlastic:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):
             checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
-        highest = float(np.max(getattr(self.yield_stress, "values", self.yield_stress)))
-        question_values(yield_stress=highest, stacklevel=3)
+        question_values(yield_stress=np.asarray(self.yield_stress), stacklevel=3)
 
     @classmethod
     def from_hardness(cls, vickers: xr.DataArray, **hardening: float) -> ElasticPlastic:

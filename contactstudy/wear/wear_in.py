@@ -18,6 +18,7 @@ from contactstudy.arrays.units import metres
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
+from contactstudy.case.gap import onto_ends
 from contactstudy.case.gridding import choose_grid
 from contactstudy.case.motion import Shift, Sliding
 from contactstudy.checks import FloatArray
@@ -245,8 +246,10 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
     distances = np.array([state.distance for state in states])
     depths = np.array([state.depth for state in states])
     pressures = np.array([state.pressure for state in states])
-    from_middle = grid.x - case.roller_middle
-    under = np.abs(from_middle) <= 0.5 * case.roller.length
+    from_middle, half = grid.x - case.roller_middle, 0.5 * case.roller.length
+    if grid.uniform:
+        from_middle = onto_ends(from_middle, half, grid.dx)
+    under = np.abs(from_middle) <= half
     drop = np.full(grid.cells_x, np.nan)
     drop[under] = checked_drop(case.roller.profile, from_middle[under], case.roller.length)
     volumes = around * depths @ grid.widths

@@ -167,5 +167,11 @@ def test_labelled_arguments_have_units_and_common_coordinates(ball: ContactLaw) 
     loads = xr.DataArray([0.03, 0.06], {"roller": [1, 2]}, "roller", attrs={"units": "kN"})
     found = ball.under(loads, xr.zeros_like(loads).assign_attrs(units="N m"))
     np.testing.assert_allclose(found.approach, ball.under([30.0, 60.0]).approach)
-    with pytest.raises(InvalidInputError, match=r"normal_load, moment = .*same coordinates along common dimensions"):
+    turned = xr.DataArray([1e-4, -1e-4], {"roller": [2, 1]}, "roller")
+    np.testing.assert_allclose(
+        ball.at(xr.DataArray([1e-6, 2e-6], {"roller": [1, 2]}, "roller"), turned).tilt, turned[::-1]
+    )
+    with pytest.raises(InvalidInputError, match=r"roller = \[1, 2\] and \[2, 3\].*same labels along roller"):
         ball.under(loads, xr.DataArray([0.0, 0.0], {"roller": [2, 3]}, "roller"))
+    with pytest.raises(InvalidInputError, match="as many values along each common dimension"):
+        ball.under(loads, xr.DataArray([0.0, 0.0, 0.0], dims="roller"))

@@ -80,9 +80,30 @@ def test_the_error_of_the_pressure_counts_with_the_power_of_the_stress(strip_res
     found = fatigue.lundberg_palmgren(stated)
     added = float(found["risk_error"] - plain["risk_error"]) / float(plain["risk"])
     assert added == pytest.approx(0.01 * 31 / 3)
-    both = sum(float(each["risk_error"] / each["risk"]) for each in (found, plain))
+    own, other = (float(each["risk_error"] / each["risk"]) for each in (found, plain))
     life = fatigue.relative_life(found, plain)
-    assert float(life["relative_life_error"]) == pytest.approx(both * 8 / 9)
+    # The longest life that both errors allow.
+    assert float(life["relative_life_error"]) == pytest.approx(((1 + other) / (1 - own)) ** (8 / 9) - 1)
+    endless = strip_result().assign(peak_pressure=np.inf, peak_pressure_error=np.inf)
+    assert float(fatigue.lundberg_palmgren(endless)["risk_error"]) == np.inf
+
+
+@pytest.mark.parametrize(("first", "last"), [(0.1, 0.7), (0.1, 1.0), (0.3, 2.0), (0.4, 2.0), (0.2, 0.8)])
+def test_the_error_covers_what_lies_beyond_the_depths(strip_result, first: float, last: float) -> None:
+    amplitude = orthogonal(strip_result())
+    whole = fatigue.ioannides_harris(amplitude)
+    part = fatigue.ioannides_harris(amplitude.sel(z=slice(first - 1e-9, last + 1e-9)))
+    assert abs(float(part["risk"] - whole["risk"])) < float(part["risk_error"])
+
+
+def test_few_positions_along_x_tell_no_error(strip_result) -> None:
+    for few in ([0, -1], [0, 4, -1]):
+        assert float(fatigue.lundberg_palmgren(strip_result().isel(x_field=few))["risk_error"]) == np.inf
+
+
+def test_a_utilisation_has_a_risk_without_a_stress(strip_result) -> None:
+    share = (orthogonal(strip_result()) / 0.25).assign_attrs(units="1")
+    assert fatigue.ioannides_harris(share, 0.5)["risk"].attrs["units"] == "m**-0.333333"
 
 
 def test_too_few_positions_tell_no_error(strip_result) -> None:
@@ -106,12 +127,14 @@ def test_a_passage_that_is_cut_off_has_no_risk(strip_result) -> None:
     """The largest shear lies at y = 0.87 a and z = 0.5 a: nothing may end short of it."""
     result = strip_result()
     narrow = result.sel(y_field=slice(-0.7, 0.7))
-    shallow = result.sel(z=slice(0.0, 0.45))
+    shallow, deep = result.sel(z=slice(0.0, 0.45)), result.sel(z=slice(0.55, None))
     with pytest.raises(InvalidInputError, match="first or last y in sections with 1 of the risk"):
         fatigue.lundberg_palmgren(narrow)
     for call in (fatigue.lundberg_palmgren, lambda each: fatigue.ioannides_harris(orthogonal(each))):
-        with pytest.raises(InvalidInputError, match="last depth in sections with 1 of the risk"):
+        with pytest.raises(InvalidInputError, match="first or last depth in sections with 1 of the risk"):
             call(shallow)
+        with pytest.raises(InvalidInputError, match="first or last depth in sections with 1 of the risk"):
+            call(deep)
 
 
 def test_stresses_in_megapascals(strip_result) -> None:

@@ -239,3 +239,16 @@ def test_stresses_have_to_be_of_the_body(passing, steel_between_ends) -> None:
     shorter = replace(steel_between_ends, length=6.0)
     with pytest.raises(InvalidInputError, match=r"x = '.* m': must be positions in the body, from 0 to 6 m"):
         rolled_in(contact, shorter, perfectly_plastic(0.2))
+
+
+def test_positions_may_miss_the_end_by_rounding(passing, steel_between_ends) -> None:
+    contact = passing(0.0, length=8.0)
+    metric = contact.assign_coords(x=(1e3 * contact["x"]).assign_attrs(units="mm"))
+    moved = contact.assign_coords(x=contact["x"] * (1 + 1e-15))
+    least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
+    material = ElasticPlastic(yield_stress=0.98 * ROOT * least, kinematic_hardening=20.0)
+    plain = rolled_in(contact, steel_between_ends, material, passes=1)
+    assert float(plain["plastic_flow"][0]) > 0
+    for each in (metric, moved):
+        found = rolled_in(each, steel_between_ends, material, passes=1)
+        np.testing.assert_allclose(found["plastic_flow"], plain["plastic_flow"], rtol=1e-6)

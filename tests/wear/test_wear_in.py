@@ -313,3 +313,12 @@ def test_wear_goes_on_for_the_same_roller_alone_under_any_load(sharp, worn):
         wear_in(smaller, K, 2e5, after=worn)
     with pytest.raises(InvalidInputError, match=r"worn = 'solved with end_distance = 0.0001'"):
         worn_profile(replace(case, end_distance=0.0), worn)
+
+
+def test_the_drop_of_both_ends_is_known_whatever_rounding_says():
+    """75 cells on 0.6 mm have middles where the roller begins and ends."""
+    case = roller_on()
+    worn = wear_in(case, K, [0.0, 1e3], grid=Grid((0.0, 0.6e-3), (-0.13e-3, 0.13e-3), 75, 16))
+    pressed = (worn.pressure > 0).any(("distance", "y"))
+    assert np.isfinite(worn.profile_drop.isel(distance=-1)).where(pressed, True).all()
+    np.testing.assert_array_equal(np.isfinite(worn.profile_drop), np.isfinite(worn.profile_drop)[:, ::-1])

@@ -1,0 +1,55 @@
+"""Cuts are told from ends: a roller as long as its body, whose outermost columns are pressed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, Material, QuarterSpace, Roller, analysis, solve
+
+STEEL = Material(210e9, 0.3)
+ROLLER = Roller(radius=5e-3, length=0.3e-3)
+BODIES = {
+    "flush": FiniteLengthSpace(length=0.3e-3, material=STEEL),
+    "quarter": QuarterSpace(material=STEEL),
+}
+
+
+@pytest.fixture(scope="module", params=BODIES)
+def flush(request: pytest.FixtureRequest) -> xr.Dataset:
+    body = BODIES[request.param]
+    place = {} if request.param == "flush" else {"end_distance": 0.0}
+    return solve(Case(body=body, roller=ROLLER, max_pressure=1.5e9, **place), accuracy=0.1, stresses=False)
+
+
+def ends(part: xr.Dataset) -> list[float]:
+    return [float(value) for value in analysis.edge_pressure(part).values()]
+
+
+@pytest.mark.parametrize("said", [True, False])
+def test_the_real_ends_of_either_half_stay(flush: xr.Dataset, said: bool) -> None:
+    whole = flush if said else flush.drop_attrs(deep=False)
+    middle = flush.sizes["x"] // 2
+    first, last = ends(whole)
+    assert first > 0
+    assert last > 0
+    assert ends(whole.isel(x=slice(None, middle))) == pytest.approx([first, np.nan], nan_ok=True)
+    # Without the case it is not known where a body ends whose columns all are pressed.
+    reaches = bool((flush["pressure"].isel(x=-1) > 0).any())
+    expected = last if said or not reaches else np.nan
+    assert ends(whole.isel(x=slice(middle, None))) == pytest.approx([np.nan, expected], nan_ok=True)
+    assert np.isnan(ends(whole.isel(x=slice(middle - 5, middle + 5)))).all()
+
+
+def test_cells_that_are_left_out_are_no_cut(flush: xr.Dataset) -> None:
+    thinned = flush.isel(x=slice(None, None, 2))
+    assert np.isfinite(ends(thinned)).all()
+
+
+def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
+    metric = flush.assign(pressure=(1e-6 * flush["pressure"]).assign_attrs(units="MPa"))
+    assert ends(metric) == pytest.approx(ends(flush))
+    converted = analysis.contact_results(metric)
+    for name, value in analysis.contact_results(flush).items():
+        assert float(converted[name]) == pytest.approx(float(value)), name
