@@ -8,12 +8,14 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
-from contactstudy.analysis.cut_ends import cut_ends
+from contactstudy.analysis.cut_ends import CUT, cut_ends
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array
+
+OF_CELL = "mean of the outermost loaded cell, no error known; end_pressure of a settled result has one"
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:
@@ -36,8 +38,9 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        `edge_pressure_first` and `edge_pressure_last`, Pa; NaN if nothing is loaded, and at an end where the Dataset
-        is only a part of the contact, which goes on there.
+        `edge_pressure_first` and `edge_pressure_last`, Pa: means of a cell, which depend on the cells. Infinite where
+        `end_pressure_first` or `end_pressure_last` of a result is; NaN if nothing is loaded, and at an end where the
+        Dataset is only a part of the contact, which goes on there.
 
     Raises
     ------
@@ -51,16 +54,17 @@ def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
     >>> float(ends.edge_pressure_first), float(ends.edge_pressure_last)
     (3.0, 2.0)
     """
+    values: dict[str, xr.DataArray] = {}
     axial = increasing(axial_pressure(dataset), "x")
     first, last = reduced(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
     cut_first, cut_last = cut_ends(dataset)
     first, last = first.where(cut_first == 0), last.where(cut_last == 0)
-    return xr.Dataset(
-        {
-            "edge_pressure_first": named("edge_pressure_first", first),
-            "edge_pressure_last": named("edge_pressure_last", last),
-        }
-    )
+    for end, value in (("first", first), ("last", last)):
+        # A cell beside a singular end has a height of its own only.
+        endless = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+        values[f"edge_pressure_{end}"] = named(f"edge_pressure_{end}", value.where(~endless | value.isnull(), np.inf))
+        values[f"edge_pressure_{end}"].attrs["comment"] = OF_CELL
+    return xr.Dataset(values)
 
 
 def _range(place: Array, chosen: Array) -> tuple[Array, Array]:
@@ -119,7 +123,8 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     Returns
     -------
     Dataset
-        `peak_pressure` with ``_x`` and ``_y``; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2),
+        `peak_pressure` with ``_x`` and ``_y``, the settled one with its error where a whole result has it, and else
+        that of the highest cell; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2),
         `contact_length`, `contact_width` (m), in whole cells; `contact_length_loss` (m, what of the facing length
         carries nothing); `resultant` (N) of the pressure, `load_position` (m, the x where it acts) and `moment`
         (N m, positive if it acts beyond `about`). NaN for cases without pressure.
@@ -163,4 +168,20 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     scalars = {name: named(name, value) for name, value in values.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    return xr.Dataset({**peak(dataset, "pressure"), **edge_pressure(dataset), **scalars}).compute()
+    return _peak(dataset, resultant).assign(edge_pressure(dataset).data_vars).assign(scalars).compute()
+
+
+def _peak(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
+    """Largest pressure and its place: the settled one of a contact that is whole."""
+    found = peak(dataset, "pressure")
+    names = ("peak_pressure", "peak_pressure_error")
+    if not {*names, "normal_load"} <= set(dataset.variables):
+        return found
+    whole = resultant > (1 - CUT) * dataset["normal_load"]
+    settled = dataset[list(names)].reset_coords(drop=True)
+    highest = settled["peak_pressure"].where(whole, found["peak_pressure"])
+    comment = "settled where the contact is whole, else of the highest cell"
+    return found.assign(
+        peak_pressure=named("peak_pressure", highest).assign_attrs(comment=comment),
+        peak_pressure_error=settled["peak_pressure_error"].where(whole),
+    )

@@ -87,7 +87,8 @@ def edge_factors(
     Dataset
         `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
         `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
-        its largest, anywhere). NaN where a result has no points: a stress known near one end only has no middle.
+        its largest, anywhere). NaN where a result has no points: a stress known near one end only has no middle, and
+        neither has a part of a contact that is cut. Infinite at a singular end. No error is known.
 
     Raises
     ------
@@ -126,6 +127,11 @@ def _values(
     profile = _along_axis(dataset, variable).compute()
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
-    first, last = _ends(profile, borders, near)
+    endless = (np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0))) for end in ("first", "last"))
+    # Beside a singular end pressure and stress have no largest value.
+    first, last = (
+        value.where(~singular | value.isnull(), np.inf)
+        for value, singular in zip(_ends(profile, borders, near), endless, strict=True)
+    )
     middle = _at(profile, 0.5 * (borders[0] + borders[1]))
     return first, last, middle, profile.max(dimension_along(profile, "x"))

@@ -12,6 +12,8 @@ from contactstudy.arrays.variables import named, variable_of
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
+OF_POINTS = "largest of the given points, no error known; beside a singular end it has no limit"
+
 
 def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
     """Largest number over the last axes, one for each of `places`, and where it is; NaN where there is no number."""
@@ -33,7 +35,9 @@ def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     found = reduced(_largest, [(array, list(over.values())), *places], 1 + len(over))
     base = variable_of(name, array.attrs)
     names = (f"peak_{name}", *(f"peak_{name}_{axis}" for axis in over))
-    return xr.Dataset({each: named(each, value, base) for each, value in zip(names, found, strict=True)}).compute()
+    labelled = {each: named(each, value, base) for each, value in zip(names, found, strict=True)}
+    labelled[f"peak_{name}"].attrs["comment"] = OF_POINTS
+    return xr.Dataset(labelled).compute()
 
 
 def peak(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:

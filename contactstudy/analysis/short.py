@@ -15,6 +15,7 @@ from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.cut_ends import cut_ends
 from contactstudy.analysis.edges import contact_length
 from contactstudy.analysis.largest import largest
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity, with_error
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES, variable_of
@@ -39,6 +40,9 @@ PLAIN = {
     "friction_work": "frictional work",
 }
 """Scalars that are shown where they are there and not zero."""
+
+FOUND = ("approach", "load_position", "force_x", "force_y", "moment_z", "friction_work")
+"""Those of them that follow from the solution unless they are prescribed."""
 
 CERTIFICATES = ("load_position",)
 """Scalars of which the variable with ``_error`` says how well a prescribed value was met, in other units."""
@@ -159,7 +163,16 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
     for name, meaning in PLAIN.items():
         if name in one and float(one[name]) != 0 and np.isfinite(float(one[name])):
             with_estimate = f"{name}_error" in one and name not in CERTIFICATES
-            yield (_settled if with_estimate else _row)(one, name, meaning)
+            yield _settled(one, name, meaning) if with_estimate else _row(one, name, meaning, _unknown(one, name))
+
+
+def _unknown(one: xr.Dataset, name: str) -> str:
+    """Say that a number has no known error, unless it was prescribed."""
+    case = attribute(one, INPUTS_ATTRIBUTE).get("case", {})
+    prescribed = case.get(name, case.get("motion", {}).get(name)) is not None
+    if prescribed or f"{name}_error" in one or name not in FOUND:
+        return ""
+    return UNBOUNDED
 
 
 def _row(one: xr.Dataset, name: str, meaning: str = "", remark: str = "") -> MainNumber:

@@ -14,8 +14,8 @@ from contactstudy.errors import InvalidInputError
 
 KNOWN: dict[str, dict[str, float]] = {
     "m": {
-        **dict.fromkeys(("m", "metre", "meter", "metres", "meters"), 1.0),
-        **{"mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "nm": 1e-9, "km": 1e3},
+        **{"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "micron": 1e-6, "nm": 1e-9},
+        **{"km": 1e3, "metre": 1.0, "meter": 1.0, "metres": 1.0, "meters": 1.0},
     },
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},
@@ -104,18 +104,19 @@ def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", 
     return dataset.assign_coords(positions).assign(values) if changed else dataset
 
 
-def metres(name: str, positions: Any) -> Any:
-    """Return positions in metres: a DataArray that says its unit is converted, all else stays as it is.
+def numbers_in_si(name: str, values: Any, unit: str) -> Any:
+    """Return numbers in a unit of SI: a DataArray that says its unit is converted, all else stays as it is.
 
     Examples
     --------
-    >>> metres("z", [0.1]), metres("z", xr.DataArray([0.1], attrs={"units": "mm"})).values.tolist()
+    >>> depths = xr.DataArray([0.1], attrs={"units": "mm"})
+    >>> numbers_in_si("z", [0.1], "m"), numbers_in_si("z", depths, "m").values.tolist()
     ([0.1], [0.0001])
     """
-    if not isinstance(positions, xr.DataArray):
-        return positions
-    factor = _factor(name, positions, "m")
-    return positions if factor == 1 else positions * factor
+    if not isinstance(values, xr.DataArray):
+        return values
+    factor = _factor(name, values, unit)
+    return values if factor == 1 else values * factor
 
 
 def _factor(name: str, array: xr.DataArray, unit: str) -> float:

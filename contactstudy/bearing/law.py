@@ -11,6 +11,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.required import require
+from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.bearing.energy_spline import EnergySpline, FitErrors, Motion, Nodes, fit_errors
 from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair
@@ -284,7 +285,7 @@ def contact_law(
     """
     checks.instance("case", case, Case, "a Case")
     _check_case(case)
-    turned = _increasing("tilts", tilts, "radians")
+    turned = _increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
     if np.abs(turned).max() > LARGEST_TILT:
         raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
     presser = Presser(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
@@ -292,7 +293,7 @@ def contact_law(
         first, last = (presser.loaded(part * case.normal_load, 0.0).approach for part in LOADS)
         lowered = np.geomspace(first, last, DEFAULT_APPROACHES)
     else:
-        lowered = _increasing("approaches", approaches, "metres")
+        lowered = _increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
         checks.positive("approaches", float(lowered[0]), "metres")
     nodes = solved_nodes(presser, lowered, turned)
     length = case.contact_length

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.case.settings import check_accuracy
@@ -127,7 +128,10 @@ def _ranges(bounds: object) -> dict[str, Range]:
 
 def _several(name: str, values: object, unit: str) -> list[float] | None:
     """Numbers, if any are given."""
-    return None if values is None else [float(value) for value in checks.coordinates(name, values, unit)]
+    if values is None:
+        return None
+    numbers = numbers_in_si(name, values, "rad" if unit == "radians" else unit)
+    return [float(value) for value in checks.coordinates(name, numbers, unit)]
 
 
 def _cases(case: Case, loads: object, pressures: object, tilts: list[float] | None) -> list[Case]:

@@ -106,12 +106,13 @@ class StudyFigure:
         self.figure = _new()
         self._line = ColumnDataSource({"x": [], "v": []})
         self._endless = ColumnDataSource({"x": [], "v": []})
-        self._chosen = ColumnDataSource({"x": [], "v": [], "color": []})
+        self._chosen, self._chosen_endless = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
         self.figure.line("x", "v", source=self._line, color=NEUTRAL, line_width=1.5)
         self.figure.scatter("x", "v", source=self._line, color=NEUTRAL, size=6)
         mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
         self.figure.scatter("x", "v", source=self._endless, line_color=NEUTRAL, **mark)
         self.figure.scatter("x", "v", source=self._chosen, color="color", size=11)
+        self.figure.scatter("x", "v", source=self._chosen_endless, line_color="color", **(mark | {"line_width": 3}))
         self.figure.y_range = Range1d(0, 1)
         self._plain, self._words = self.figure.xaxis[0].ticker, dict[float, str]()
 
@@ -130,16 +131,18 @@ class StudyFigure:
         """
         finite = np.isfinite(values)
         known = [*values[finite], *(value for _, value, _ in chosen if np.isfinite(value))]
-        low, high = min([0.0, *known]), max([*known, 1e-12])
+        low, high = min([0.0, *known]), max([*known, 1e-12]) if known else 1.0
         high += 0.06 * (high - low)
         self._line.data = {"x": places, "v": np.where(finite, values, np.nan)}
         at_top = 0.96 * high
         self._endless.data = {"x": places[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), at_top)}
-        self._chosen.data = {
-            "x": [places[at] for at, _, _ in chosen],
-            "v": [value if np.isfinite(value) else at_top if value > 0 else np.nan for _, value, _ in chosen],
-            "color": [color for _, _, color in chosen],
-        }
+        for source, endless in ((self._chosen, False), (self._chosen_endless, True)):
+            own = [each for each in chosen if np.isposinf(each[1]) == endless]
+            source.data = {
+                "x": [places[at] for at, _, _ in own],
+                "v": [at_top if endless else value for _, value, _ in own],
+                "color": [color for _, _, color in own],
+            }
         self.figure.y_range.update(start=low, end=high)
         self._name_ticks(ticks or {})
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names

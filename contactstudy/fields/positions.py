@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import metres
+from contactstudy.arrays.units import numbers_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -77,9 +77,9 @@ def field_positions(
         If a position lies outside the body, or the grid does not fit it.
     """
     body.check_span(grid)
-    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", metres("x", x)), grid)
-    at_y = grid.y if y is None else checks.coordinates("y", metres("y", y))
-    at_z = checks.coordinates("z", metres("z", z))
+    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", numbers_in_si("x", x, "m")), grid)
+    at_y = grid.y if y is None else checks.coordinates("y", numbers_in_si("y", y, "m"))
+    at_z = checks.coordinates("z", numbers_in_si("z", z, "m"))
     if (at_z < 0).any():
         raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
     low, high = body.extent

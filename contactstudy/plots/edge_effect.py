@@ -11,6 +11,7 @@ import xarray as xr
 from contactstudy.analysis import dimension_along, in_plane, single_case
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.pressure import plot_axial_pressure
+from contactstudy.plots.singular import capped
 from contactstudy.plots.stress import plot_stress_plane
 from contactstudy.plots.style import as_written, line_styles, units
 
@@ -106,7 +107,8 @@ def plot_edge_effect(
 def _plane(case: xr.Dataset) -> tuple[Any, Any, Any]:
     """Positions x/a and z/a, and von Mises over p0 as an array (x, z), in the plane y = 0."""
     unit = units(case, si=False)
-    plane = in_plane(case, y=0.0, variables="von_mises")["von_mises"]
+    field, _ = capped(case, case["von_mises"])
+    plane = in_plane(case.assign(von_mises=field), y=0.0, variables="von_mises")["von_mises"]
     x, z = (dimension_along(plane, axis) for axis in "xz")
     return plane[x].values / unit.length, plane[z].values / unit.length, plane.transpose(x, z).values / unit.stress
 

@@ -62,6 +62,22 @@ def near_singular(one: xr.Dataset, ends: list[float], x: FloatArray | None = Non
     return near
 
 
+def capped(one: xr.Dataset, field: xr.DataArray) -> tuple[xr.DataArray, float]:
+    """Field no larger than it is away from singular ends, and that bound; infinite where there is none.
+
+    Beside a singular end a stress grows with the points towards it, and would take all colours.
+    """
+    ends = singular_ends(one) if "pressure" in one else []
+    if not ends:
+        return field, np.inf
+    x = dimension_along(field, "x")
+    away = ~near_singular(one, ends, positions(field, "x").values)
+    most = float(field.isel({x: np.flatnonzero(away)}).max()) if away.any() else np.nan
+    if not np.isfinite(most):
+        return field, np.inf
+    return field.clip(max=most).assign_attrs(field.attrs), most
+
+
 def mark_at_top(ax: Axes, x: list[float], color: Any) -> None:
     """Mark values without a limit at the top of the axes; those beyond the axes' ends are not seen."""
     if x:

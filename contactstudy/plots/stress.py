@@ -11,6 +11,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.singular import capped
 from contactstudy.plots.style import COLORS, Units, new_axes, units
 
 if TYPE_CHECKING:
@@ -95,6 +96,8 @@ def plot_stress_plane(
     one = single_case(dataset)
     unit = units(one, si=si)
     given = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
+    field, most = capped(one, measure(one, variable))
+    one = one.assign({variable: field})
     plane = in_plane(one, variables=variable, x=given.get("x"), y=given.get("y"), z=given.get("z"))[variable]
     ((at, value),) = given.items()
     across, down = (axis for axis in "xyz" if axis != at)
@@ -107,7 +110,12 @@ def plot_stress_plane(
     ax.set_ylabel(unit.axis(down))
     ax.set_title(f"plane {unit.place(at, value)}", fontsize="medium")
     if colorbar:
-        ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable))
+        beyond = (
+            " (more beside the singular end)"
+            if most < np.inf and np.asarray(drawn.levels).max() >= most / unit.stress
+            else ""
+        )
+        ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable) + beyond)
     return ax
 
 

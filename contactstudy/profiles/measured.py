@@ -16,6 +16,7 @@ from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.gaussian_filter import gaussian_filtered
 from contactstudy.arrays.instruments import Heights, of_instrument, read_heights, turned
 from contactstudy.arrays.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+from contactstudy.arrays.units import numbers_in_si
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
@@ -91,9 +92,9 @@ class Measured(Shape):
 
     def __post_init__(self) -> None:
         """Check the points, and keep them as tuples so that equal profiles are equal."""
-        x = checks.coordinates("positions", self.positions, "metres")
+        x = checks.coordinates("positions", numbers_in_si("positions", self.positions, "m"), "metres")
         try:
-            drops = np.asarray(self.drops, dtype=np.float64)
+            drops = np.asarray(numbers_in_si("drops", self.drops, "m"), dtype=np.float64)
         except (TypeError, ValueError, OverflowError):
             raise InvalidInputError("drops", self.drops, "numbers (metres)") from None
         if drops.shape != x.shape:

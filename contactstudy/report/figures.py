@@ -17,7 +17,7 @@ from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.plots import plot_axial_pressure, plot_pressure_map, plot_profile, plot_stress_plane
-from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
+from contactstudy.plots.singular import capped, mark_at_top, near_singular, singular_ends
 from contactstudy.profiles.base import checked_drop
 
 if TYPE_CHECKING:
@@ -142,11 +142,7 @@ def _plane(one: xr.Dataset, axis: str) -> Picture:
     """Von Mises stress in the plane of the axis, or across it where it is largest."""
     figure, (ax,) = _new()
     stress, said = measure(one, "von_mises"), ""
-    ends = singular_ends(one) if "pressure" in one else []
-    if ends:
-        away = ~near_singular(one, ends, positions(stress, "x").values)
-        most = float(stress.isel({stress.dims[0]: away}).max())
-        one = one.assign(von_mises=stress.clip(max=most).assign_attrs(stress.attrs))
+    if (most := capped(one, stress)[1]) < np.inf:
         said = f" Beside a singular end it is larger than the {quantity(most, 'Pa')} that are drawn."
     if axis == "y":
         plot_stress_plane(one, "von_mises", 0.0, ax, si=True)

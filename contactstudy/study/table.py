@@ -49,7 +49,8 @@ def _said(table: xr.Dataset, name: object) -> bool:
     """Whether a variable of a table is a parameter; a dimension may be numbered, all else is an error."""
     if name in PARAMETERS:
         return True
-    if name not in table.indexes:
+    used = any(name in array.dims for other, array in table.variables.items() if other in PARAMETERS)
+    if name not in table.indexes or not used:
         checks.known_name("variable of the table", str(name), PARAMETERS)
     return False
 

@@ -14,7 +14,7 @@ from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.required import require
-from contactstudy.arrays.units import metres
+from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
@@ -180,7 +180,7 @@ def _cells(case: Case, grid: Grid | None) -> Grid:
 def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
     """Distances to reach, and whether every step is wanted."""
     every = np.ndim(distance) == 0  # type: ignore[arg-type]
-    stops = checks.coordinates("distance", metres("distance", distance))
+    stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
     if (np.diff(stops) <= 0).any():
         raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
     if stops[0] < begun or stops[-1] <= begun:

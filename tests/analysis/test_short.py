@@ -100,3 +100,9 @@ def test_only_methods_that_were_used_are_cited(singular: xr.Dataset) -> None:
     used = {what for what, _ in citations(solve(case, stresses=False)).entries}
     assert "profile Lundberg" in used
     assert not {"free ends", "stresses"} & used
+
+
+def test_what_was_found_without_an_error_says_so_and_what_was_prescribed_does_not(solved: xr.Dataset) -> None:
+    assert solved.contact.short()["approach"].remark == "no error known"
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=0.3e-3), approach=2e-6)
+    assert solve(case, stresses=False, accuracy=0.1).contact.short()["approach"].remark == ""

@@ -9,11 +9,24 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Grid, HalfSpace, InvalidInputError, solve_contact, stress_field, surface_displacement
+from contactstudy import (
+    Case,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    solve_contact,
+    stress_field,
+    surface_displacement,
+)
 from contactstudy.arrays.units import in_si, required_in_si
+from contactstudy.bearing import contact_law
 from contactstudy.case.friction import AxialFriction, checked_friction
 from contactstudy.case.roughness import heights_on
+from contactstudy.design import best_profile
 from contactstudy.passes import ElasticPlastic
+from contactstudy.profiles import FullCrown, Measured
 
 OnCells = Callable[..., xr.DataArray]
 
@@ -108,3 +121,20 @@ def test_variables_of_a_dataset_and_its_positions() -> None:
             required_in_si(whole.assign(pressure=pressure.assign_attrs(units=bad)), "pressure", argument="result")
     with pytest.raises(InvalidInputError, match="traction_y is missing"):
         required_in_si(whole, "traction_y")
+
+
+def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
+    steel = Material(210e9, 0.3)
+    roller = Roller(radius=5e-3, length=0.3e-3, profile=FullCrown(crown_radius=0.1))
+    case = Case(body=HalfSpace(material=steel), roller=roller, load=30.0)
+    tilts = xr.DataArray(np.linspace(-0.2, 0.2, 5), dims="tilt", attrs={"units": "mrad"})
+    approaches = xr.DataArray(np.linspace(1.0, 1.8, 5), dims="approach", attrs={"units": "um"})
+    law = contact_law(case, tilts, approaches, accuracy=0.1)
+    np.testing.assert_allclose(law.table["tilt"], 1e-3 * tilts)
+    np.testing.assert_allclose(law.table["approach"], 1e-6 * approaches)
+    x = xr.DataArray(np.linspace(0.0, 0.3, 6), dims="x", attrs={"units": "mm"})
+    measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
+    assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
+    loads = xr.DataArray([0.03], dims="load", attrs={"units": "kN"})
+    found = best_profile(case, FullCrown, {"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8)
+    assert found["case_load"].values.tolist() == [30.0]

@@ -77,3 +77,18 @@ def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker():
     assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
     assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
     assert any("no error known" in text.get_text() for legend in figure.legends for text in legend.get_texts())
+
+
+def test_colours_stop_at_the_stress_away_from_a_singular_end():
+    """Positions that close in on the end have stresses without a limit: they would take all colours."""
+    body = HalfSpace(material=Material(210e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, end_distance=0.2e-3)
+    a = case.hertz_half_width
+    x = np.sort(np.concatenate([0.2e-3 + a * np.geomspace(1e-4, 1.0, 12), [0.1e-3, 0.7e-3]]))
+    one = solve(case, accuracy=0.05, x=x, y=[-1e-6, 0.0, 1e-6], z=a * np.array([0.0, 0.2, 0.8]))
+    ax = plots.plot_stress_plane(one)
+    (filled,) = [each for each in ax.collections if each.get_array() is not None and each.get_cmap().name != "white"][
+        :1
+    ]
+    assert filled.norm.vmax < 0.5 * float(one["von_mises"].max()) / 1.5e9
+    assert "more beside the singular end" in ax.figure.axes[-1].get_ylabel()

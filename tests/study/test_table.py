@@ -119,3 +119,9 @@ def test_a_selection_of_an_opened_study(tmp_path) -> None:
     assert set(ids(Study.from_dataset(some))) == set(some["case_id"].values)
     with pytest.raises(InvalidInputError, match="base = 'tilt': must be a parameter that is not swept"):
         Study.from_dataset(part, base={"tilt": 0.0})
+
+
+def test_a_coordinate_that_is_no_parameter_is_refused_even_where_nothing_else_has_it() -> None:
+    table = xr.Dataset(coords={"max_pressure": [1e9, 1.5e9], "tillt": [0.0, 1e-3]})
+    with pytest.raises(InvalidInputError, match=r"variable of the table = 'tillt'.*did you mean 'tilt'"):
+        Study.from_dataset(table)
