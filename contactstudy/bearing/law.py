@@ -14,7 +14,7 @@ from contactstudy.arrays.required import require
 from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.bearing.energy_spline import EnergySpline, FitErrors, Motion, Nodes, fit_errors
-from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair
+from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair, with_position_errors
 from contactstudy.bearing.nodes import Presser, discretisation_errors, solved_nodes
 from contactstudy.case.case import LARGEST_TILT, Case
 from contactstudy.checks import FloatArray
@@ -146,7 +146,7 @@ class ContactLaw:
         Returns
         -------
         Dataset
-            `approach` (m), `tilt` (rad), and what :meth:`at` gives for them.
+            `approach` (m), `tilt` (rad), their errors, and what :meth:`at` gives for them.
 
         Raises
         ------
@@ -156,7 +156,7 @@ class ContactLaw:
         load, turn = broadcast(normal_load=normal_load, moment=moment)
         delta, theta = each_pair(load, turn, self.position)
         pairs = delta.values, theta.values
-        return dataset(delta, theta, self.motion(*pairs), self.errors(*pairs))
+        return with_position_errors(dataset(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness as plain arrays, at pairs inside the table: for loops of one's own.

@@ -65,6 +65,19 @@ def each_pair(
     return first.copy(data=one.reshape(first.shape)), second.copy(data=other.reshape(second.shape))
 
 
+def with_position_errors(found: xr.Dataset) -> xr.Dataset:
+    """Return a motion under a load with the errors of approach and tilt, from those of load and moment."""
+    names = ("normal_stiffness", "coupling_stiffness", "tilting_stiffness")
+    normal, coupling, tilting = (np.abs(found[name]) for name in names)
+    size = np.abs(found["normal_stiffness"] * found["tilting_stiffness"] - found["coupling_stiffness"] ** 2)
+    load, moment = found["normal_load_error"], found["moment_error"]
+    errors = {
+        "approach_error": (tilting * load + coupling * moment) / size,
+        "tilt_error": (coupling * load + normal * moment) / size,
+    }
+    return describe(found.assign(errors))
+
+
 def dataset(
     approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[FloatArray, FloatArray]
 ) -> xr.Dataset:
@@ -82,4 +95,7 @@ def dataset(
     }
     coords = {str(name): coordinate for name, coordinate in approach.coords.items()}
     data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
-    return describe(xr.Dataset(data, coords=coords))
+    labelled = describe(xr.Dataset(data, coords=coords))
+    for name in ("normal_stiffness", "coupling_stiffness", "tilting_stiffness"):
+        labelled[name].attrs["comment"] = "no error known"
+    return labelled

@@ -11,7 +11,7 @@ from contactstudy import checks
 from contactstudy.arrays.variables import describe
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.bearing.law import EDGE, MET, ContactLaw
-from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair
+from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair, with_position_errors
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -90,7 +90,7 @@ class Raceways:
         Returns
         -------
         Dataset
-            As of :meth:`at`.
+            As of :meth:`at`, with the errors of approach and tilt.
 
         Raises
         ------
@@ -98,7 +98,8 @@ class Raceways:
             If either contact would leave its table.
         """
         load, turn = broadcast(normal_load=normal_load, moment=moment)
-        return self._dataset(each_pair(load, turn, self.inner.position), each_pair(load, turn, self.outer.position))
+        found = self._dataset(each_pair(load, turn, self.inner.position), each_pair(load, turn, self.outer.position))
+        return with_position_errors(found)
 
     def _dataset(
         self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]

@@ -52,7 +52,7 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     -------
     Dataset
         Along `x` (middle of each slice, metres from end I of the body): `load_per_length` (N/m), `pressure` (Pa),
-        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `load` (N) and `approach` (m).
+        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m).
 
     Raises
     ------

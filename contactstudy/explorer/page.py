@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.analysis import edge_factors, short
 from contactstudy.analysis.certainty import certainty_of
-from contactstudy.analysis.short import ShortView
+from contactstudy.analysis.short import NOT_PRESSED, ShortView
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import variable_of
 from contactstudy.errors import ContactStudyError
@@ -185,7 +185,8 @@ class Page:
             name = f"end_pressure_{end}"
             endless = name in numbers and np.isinf(numbers[name].value)
             value = float(factors[f"end_over_middle_{end}"])
-            found[f"edge factor, {place} over the middle"] = "singular" if endless else f"{value:.3f}"
+            text = "singular" if endless else f"{value:.3f} (no error known)"
+            found[f"edge factor, {place} over the middle (largest within a)"] = text
         return found
 
     def _show_axial(self, loaded: list[Looked | None]) -> None:
@@ -271,16 +272,16 @@ class Page:
             stylesheets=[STYLE],
             sizing_mode="stretch_width",
         )
+        widgets = (self.region, self.plane, self.where, self.number, self.over)
+        for widget in (*self.choices[0].values(), *self.choices[1].values(), *widgets):
+            # Their own width would reach beyond a narrow column.
+            widget.param.update(width=None, sizing_mode="stretch_width")
         controls = pn.Column(
             *self.choices[0].values(),
             self.compare,
             self._other_choices,
             self.units,
-            self.region,
-            self.plane,
-            self.where,
-            self.number,
-            self.over,
+            *widgets,
             styles={"flex": "1 1 15rem", "max-width": "24rem", "min-width": "14rem"},
             sizing_mode="stretch_width",
         )
@@ -308,4 +309,6 @@ def _marked(text: str, remark: str) -> str:
     """Return a number with the mark that it needs."""
     if remark.startswith("singular"):
         return "singular: no largest value"
+    if remark == NOT_PRESSED:
+        return f"{text}: {remark}"
     return f"{text} (no error known)" if "no error known" in remark else text

@@ -156,4 +156,4 @@ def _draw_planes(
         ax.set_ylabel(units(case, si=False).axis("z") if number % columns == 0 else "")
         ax.tick_params(labelbottom=number + columns >= len(stressed))
     filled = next(entry for entry in axes[0, 0].collections if entry.get_array() is not None)
-    figure.colorbar(filled, ax=axes, label=units(stressed[0][1], si=False).stress_label("von_mises") + " in $y=0$")
+    figure.colorbar(filled, ax=axes, label=units(stressed[0][1], si=False).stress_label("von_mises") + "\nin $y=0$")

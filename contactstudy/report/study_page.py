@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import json
+import re
 from collections import Counter
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
+from contactstudy.analysis.certainty import CARE, NO, UNKNOWN, YES, certainty
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.engineering import with_error
 from contactstudy.errors import ContactStudyError
 from contactstudy.plots import study_figures
@@ -29,10 +34,13 @@ SHOWN = {
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
-    "study": "Largest values of the cases over the swept parameters. Bars: stated errors. An open triangle at the top: "
-    "singular, there is no largest value.",
+    "study": "Largest values of the cases over the swept parameters. Bars: stated errors; without one no error is "
+    "known. An open triangle at the top: singular, there is no largest value.",
 }
 """What figures show, by name."""
+
+LONGEST = 30
+"""Letters of a column's heading."""
 
 MOST_FIELDS = 60
 """Cases up to which figures of fields are drawn: the file of every one is opened for them. Speed."""
@@ -46,6 +54,8 @@ class Row(NamedTuple):
     numbers: list[str]
     status: str
     note: str
+    real: str
+    reason: str
 
 
 def study_context(path: Path) -> dict[str, Any]:
@@ -74,11 +84,12 @@ def study_context(path: Path) -> dict[str, Any]:
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
         "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
-        "headings": [_meaning(name) for name in swept],
+        "headings": [_heading(name) for name in swept],
         "number_headings": [SHOWN[name] for name in numbers],
         "rows": rows,
         "reasons": _reasons(rows),
-        "doubtful": [row for row in rows if row.status == "ok" and row.note],
+        "answers": _answers(rows),
+        "doubtful": [row for row in rows if row.real == NO],
         "pictures": _pictures(path, len(plan.cases)),
         "provenance": _provenance(runs),
     }
@@ -92,6 +103,23 @@ def _explicit(study: Study) -> list[str]:
 def _meaning(name: str) -> str:
     """Meaning of a parameter, for a heading."""
     return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
+
+
+def _heading(name: str) -> str:
+    """Heading of a column: the meaning of its parameter, or its name where that is much shorter."""
+    meaning = _meaning(name)
+    return meaning if len(meaning) <= LONGEST else _short(name)
+
+
+def _short(name: str) -> str:
+    """Name of a parameter as it is written.
+
+    Examples
+    --------
+    >>> _short("e_over_a"), _short("max_pressure")
+    ('e/a', 'max pressure')
+    """
+    return name.replace("_over_a", "/a").replace("_", " ")
 
 
 def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
@@ -119,10 +147,28 @@ def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str],
             known = error is not None and np.isfinite(error)
             text = with_error(scalars[name], error if known else None, "Pa")
             found.append(text if known else f"{text} (error not known)")
-    note = entry.reason
-    if scalars.get("converged", 1.0) == 0.0:
-        note = "not converged, do not rely on it"
-    return Row(f"case-{number}", values, found, entry.status, note)
+    real, reason = _certainty(entry) if scalars else ("", "")
+    note = reason if real == NO else entry.reason
+    return Row(f"case-{number}", values, found, entry.status, note, real, reason)
+
+
+def _certainty(entry: Entry) -> tuple[str, str]:
+    """Whether the numbers of a case are real, and why not if so, from the scalars that the study keeps."""
+    known = {name: value for name, value in entry.scalars.items() if not np.isnan(value)}
+    found = certainty(xr.Dataset(known, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}))
+    return found.overall, found.summary
+
+
+def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Answers and reasons with their cases, the worst first."""
+    grouped: dict[tuple[str, str], list[Row]] = {}
+    for row in rows:
+        if row.real:
+            # The size of an error differs from case to case; the sentence before it is the reason.
+            grouped.setdefault((row.real, re.sub(r" to [0-9.]+%$", "", row.reason)), []).append(row)
+    order = (NO, CARE, UNKNOWN, YES)
+    keys = sorted(grouped, key=lambda key: order.index(key[0]))
+    return [(answer, reason, grouped[answer, reason]) for answer, reason in keys]
 
 
 def _values(name: str, rows: list[Row], at: int) -> str:
@@ -134,7 +180,7 @@ def _values(name: str, rows: list[Row], at: int) -> str:
 def _shape(plan: Plan) -> str:
     """Dimensions of the study in words."""
     pairs = zip(plan.cube.dims, plan.cube.shape, strict=True)
-    said = " x ".join(f"{dim.replace('_', ' ')} {size}" for dim, size in pairs)
+    said = " x ".join(f"{size} of {_short(dim)}" for dim, size in pairs)
     return f"{len(plan.cases)} cases ({said})"
 
 

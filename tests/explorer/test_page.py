@@ -17,6 +17,7 @@ from contactstudy.analysis import in_plane
 from contactstudy.explorer import server, show
 from contactstudy.explorer.cases import Cases, of_dataset, of_folder
 from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, scale_of, top
+from contactstudy.explorer.figures import StudyFigure
 from contactstudy.explorer.looked import Looked
 from contactstudy.explorer.page import Page
 from contactstudy.explorer.pixels import between, pixels
@@ -66,7 +67,7 @@ def test_two_cases_side_by_side_share_their_colours(page: Page) -> None:
     assert page.panes[2].visible
     assert page.axial._legend.visible
     assert page.tops[0]._mapper.high == page.tops[1]._mapper.high > 1500
-    assert page.table.object.count("edge factor, end I over the middle") == 1
+    assert page.table.object.count("edge factor, end I over the middle (largest within a)") == 1
     assert ">1 GPa<" in page.table.object
     assert ">1.5 GPa<" in page.table.object
 
@@ -195,3 +196,13 @@ def test_a_port_that_is_taken_is_named() -> None:
         with pytest.raises(InvalidInputError, match=f"port = {port}"):
             server._checked_port(port)
         assert server._free_port() != port
+
+
+def test_a_value_without_a_limit_is_a_triangle_whoever_looks_at_it() -> None:
+    figure = StudyFigure()
+    values, places = np.array([2.0, np.inf]), np.array([0.0, 1.0])
+    figure.show(values, places, None, [(0, 2.0, "blue"), (1, np.inf, "red")], ("x", "v"))
+    assert (figure._chosen.data["x"], figure._chosen.data["color"]) == ([0.0], ["blue"])
+    assert (figure._chosen_endless.data["x"], figure._chosen_endless.data["color"]) == ([1.0], ["red"])
+    figure.show(np.array([np.inf, np.inf]), places, None, [(1, np.inf, "red")], ("x", "v"))
+    assert figure.figure.y_range.end > 1.0

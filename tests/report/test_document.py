@@ -111,8 +111,17 @@ def test_a_study_has_its_cases_its_figures_and_its_failures(folder: Path) -> Non
     page = read(report.write(folder))
     for words in (
         *("Study small", "Made up.", "4 ok", "4 failed", "4 skipped", "WindowError: this friction fails in tests"),
-        *("<b>rounded</b>", "5 mm", "error not known", "4 cases"),
+        *(
+            "<b>rounded</b>",
+            "5 mm",
+            "error not known",
+            "4 cases",
+            "Are these numbers real?",
+            "3 of e/a x 2 of friction x 2 of profile",
+        ),
     ):
+        assert words in page.text, words
+    for words in ("Are these numbers real?", "3 of e/a x 2 of friction x 2 of profile"):
         assert words in page.text, words
     assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
     assert len(page.fetched) == 2
