@@ -9,9 +9,9 @@ the roller really runs on. Both designs are then judged on that body. `contactst
 and tells how flat the optimum is.
 
 Over 1 to 2 GPa and tilts up to 0.2 mrad the half-space asks for twice the crown that Lundberg's formula gives, to keep
-its singular ends from touching; free ends yield, and three quarters of that crown are best. On the real body the half-
-space's design carries 8 % more pressure and lives 0.77 ± 0.15 times as long: the crown that guards against an edge peak
-which is not there costs length.
+its singular ends from touching; free ends yield, and three quarters of that crown are best. On the real body the
+half-space's design carries 8 % more pressure and lives 0.77 ± 0.15 times as long: the crown that guards against an edge
+peak which is not there costs length.
 """
 
 from __future__ import annotations
