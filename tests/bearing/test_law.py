@@ -175,3 +175,14 @@ def test_labelled_arguments_have_units_and_common_coordinates(ball: ContactLaw) 
         ball.under(loads, xr.DataArray([0.0, 0.0], {"roller": [2, 3]}, "roller"))
     with pytest.raises(InvalidInputError, match="as many values along each common dimension"):
         ball.under(loads, xr.DataArray([0.0, 0.0, 0.0], dims="roller"))
+
+
+def test_errors_of_approach_and_tilt_are_what_errors_of_load_and_moment_make_of_them(ball: ContactLaw) -> None:
+    found = ball.under(60.0, 1e-4)
+    load, moment = float(found.normal_load_error), float(found.moment_error)
+    moved = [ball.under(60.0 + 1e-3 * a * load, 1e-4 + 1e-3 * b * moment) for a in (-1, 1) for b in (-1, 1)]
+    for name in ("approach", "tilt"):
+        farthest = max(abs(float(each[name] - found[name])) for each in moved)
+        assert 1e-3 * float(found[f"{name}_error"]) == pytest.approx(farthest, rel=0.02)
+        assert found[f"{name}_error"].attrs["units"] == ("m" if name == "approach" else "rad")
+    assert found.normal_stiffness.attrs["comment"] == "no error known"
