@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.units import factor_to
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, named
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -75,7 +75,7 @@ def with_position_errors(found: xr.Dataset) -> xr.Dataset:
         "approach_error": (tilting * load + coupling * moment) / size,
         "tilt_error": (coupling * load + normal * moment) / size,
     }
-    return describe(found.assign(errors))
+    return found.assign({name: named(name, error) for name, error in errors.items()})
 
 
 def dataset(

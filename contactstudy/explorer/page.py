@@ -225,10 +225,13 @@ class Page:
             planes.append(plane(one, scale, shown, self.plane.value, self.where.value))
         for images, figures, what in ((tops, self.tops, "pressure"), (planes, self.planes, "von Mises stress")):
             most = max((image.most for image in images if image is not None), default=1.0)
-            for side, (image, each) in enumerate(zip(images, figures, strict=False)):
+            for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
-                text = what if image is not None else f"{what}: not known, or at too few points"
-                each.show(image, most, f"{name}{text}{units if image is not None else ''}")
+                text = f"{what}: not known, or at too few points"
+                if one is not None and image is not None:
+                    beyond = ", more beside the singular end" if one.ends else ""
+                    text = f"{what}{units}{beyond}"
+                each.show(image, most, f"{name}{text}")
         for pane in (self.panes[2], self.panes[4]):
             pane.visible = bool(self.compare.value)
 
@@ -309,6 +312,6 @@ def _marked(text: str, remark: str) -> str:
     """Return a number with the mark that it needs."""
     if remark.startswith("singular"):
         return "singular: no largest value"
-    if remark == NOT_PRESSED:
+    if remark == NOT_PRESSED or remark.startswith("p = K"):
         return f"{text}: {remark}"
     return f"{text} (no error known)" if "no error known" in remark else text
