@@ -75,7 +75,7 @@ def with_position_errors(found: xr.Dataset) -> xr.Dataset:
         "approach_error": (tilting * load + coupling * moment) / size,
         "tilt_error": (coupling * load + normal * moment) / size,
     }
-    return found.assign({name: named(name, error) for name, error in errors.items()})
+    return found.assign({name: named(name, error.drop_attrs()) for name, error in errors.items()})
 
 
 def dataset(

@@ -186,3 +186,4 @@ def test_errors_of_approach_and_tilt_are_what_errors_of_load_and_moment_make_of_
         assert 1e-3 * float(found[f"{name}_error"]) == pytest.approx(farthest, rel=0.02)
         assert found[f"{name}_error"].attrs["units"] == ("m" if name == "approach" else "rad")
     assert found.normal_stiffness.attrs["comment"] == "no error known"
+    assert "comment" not in found.approach_error.attrs
