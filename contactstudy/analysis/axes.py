@@ -109,7 +109,7 @@ def in_order(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def increasing(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Return a field with its positions along an axis increasing; one that is padded has them so already.
+    """Return a field with its positions along an axis increasing; padded fields are in order already.
 
     Examples
     --------
