@@ -24,7 +24,7 @@ from contactstudy.analysis.largest import largest
 from contactstudy.analysis.measures import MEASURES, measure
 from contactstudy.analysis.peaks import peak, section_peak
 from contactstudy.analysis.provenance import solved_case
-from contactstudy.analysis.scaling import normalized
+from contactstudy.analysis.scaling import normalized, positions_over_a
 from contactstudy.analysis.short import short
 from contactstudy.analysis.slices import slices
 
@@ -50,6 +50,7 @@ __all__ = [
     "normalized",
     "peak",
     "positions",
+    "positions_over_a",
     "section_peak",
     "short",
     "single_case",

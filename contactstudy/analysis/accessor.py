@@ -162,6 +162,10 @@ class ContactAccessor:
         """See :func:`contactstudy.analysis.normalized`."""
         return analysis.normalized(self._dataset)
 
+    def positions_over_a(self) -> xr.Dataset:
+        """See :func:`contactstudy.analysis.positions_over_a`."""
+        return analysis.positions_over_a(self._dataset)
+
     def slices(self, count: int = 30) -> xr.Dataset:
         """See :func:`contactstudy.analysis.slices`."""
         return analysis.slices(self._dataset, count)

@@ -83,14 +83,20 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     [0.0, 0.5]
     """
     dim = dimension_along(array, axis)
-    name = _axis_of(dim)
+    name = position_name(dim)
     if name not in array.coords:
         raise InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
     return array[name].reset_coords(drop=True)
 
 
-def _axis_of(dim: str) -> str:
-    """Name of the coordinate with the positions along a dimension, metres."""
+def position_name(dim: str) -> str:
+    """Name of the coordinate with the positions along a dimension, metres.
+
+    Examples
+    --------
+    >>> position_name("x_field_index"), position_name("y_over_a"), position_name("z")
+    ('x_field', 'y', 'z')
+    """
     return dim.removesuffix("_index").removesuffix("_over_a")
 
 
@@ -164,8 +170,8 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
             "dataset", dict(cases), "a single case", "select one, for example with .isel(...) or .sel(...)"
         )
     one = dataset.isel(dict.fromkeys(cases, 0))
-    for dim in [str(dim) for dim in one.dims if str(dim) != _axis_of(str(dim))]:
-        name = _axis_of(dim)
+    for dim in [str(dim) for dim in one.dims if str(dim) != position_name(str(dim))]:
+        name = position_name(dim)
         if name not in one.coords or one[name].dims != (dim,):
             raise InvalidInputError("dataset", dict(one.sizes), "a single case", f"with the positions {name}")
         kept = np.flatnonzero(np.isfinite(one[name].values))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -17,6 +16,7 @@ from contactstudy.analysis.edges import contact_length
 from contactstudy.analysis.largest import largest
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity, with_error
+from contactstudy.arrays.html_table import LEFT, NUMBER, html_table
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES, variable_of
 
@@ -92,13 +92,8 @@ class ShortView:
         return "\n".join(f"{row.meaning:{meaning}}  {row.text:{text}}  {row.remark}".rstrip() for row in self.numbers)
 
     def _repr_html_(self) -> str:
-        rows = (
-            f"<tr><td style='text-align:left'>{html.escape(row.meaning)}</td>"
-            f"<td style='text-align:right;white-space:nowrap'>{html.escape(row.text)}</td>"
-            f"<td style='text-align:left'>{html.escape(row.remark)}</td></tr>"
-            for row in self.numbers
-        )
-        return f"<table>{''.join(rows)}</table>"
+        rows = ((row.meaning, row.text, row.remark) for row in self.numbers)
+        return html_table([("", rows)], styles=(LEFT, NUMBER, LEFT))
 
     def to_dataframe(self) -> pd.DataFrame:
         """Table of the numbers in SI, by name."""

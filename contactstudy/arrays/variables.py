@@ -143,8 +143,8 @@ def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
     for name, variable in described.variables.items():
         variable.attrs = labels(str(name), coordinate=name in described.coords) | variable.attrs
     if title is not None:
-        own = {"Conventions": "CF-1.11", "title": title, "source": f"contactstudy {package_version()}"}
-        described.attrs = own | described.attrs
+        own = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}
+        described.attrs = own | described.attrs | {"title": title}
     for name in described.coords:
         # By CF a coordinate has no missing values, and so no mark for them.
         described[name].encoding["_FillValue"] = None

@@ -2,6 +2,7 @@
 
 =================  ================================================================
 law.py             load and moment over approach and tilt, stiffness, the inverse
+tabulation.py      that law from solved contacts
 raceways.py        two contact laws in series: a roller between its raceways
 nodes.py           contacts at pairs of approach and tilt
 energy_spline.py   the interpolation: one function whose derivatives they are
@@ -12,8 +13,9 @@ reference_life.py  life by slices, by the half-space and by free ends
 """
 
 from contactstudy.bearing.laminae import lamina_factors
-from contactstudy.bearing.law import ContactLaw, contact_law
+from contactstudy.bearing.law import ContactLaw
 from contactstudy.bearing.raceways import Raceways
 from contactstudy.bearing.reference_life import reference_life, roller_ratings
+from contactstudy.bearing.tabulation import contact_law
 
 __all__ = ["ContactLaw", "Raceways", "contact_law", "lamina_factors", "reference_life", "roller_ratings"]

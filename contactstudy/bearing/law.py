@@ -1,8 +1,8 @@
-"""Contact law of a roller on a raceway: load and moment over approach and tilt, and the stiffness matrix."""
+"""Contact law of a roller on a raceway: load, moment and stiffness over approach and tilt, and the inverse."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,21 +10,15 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.html_table import html_table
 from contactstudy.arrays.required import require
-from contactstudy.arrays.units import numbers_in_si
-from contactstudy.arrays.variables import describe
-from contactstudy.bearing.energy_spline import EnergySpline, FitErrors, Motion, Nodes, fit_errors
+from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
 from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair, with_position_errors
-from contactstudy.bearing.nodes import Presser, discretisation_errors, solved_nodes
-from contactstudy.case.case import LARGEST_TILT, Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
 FEWEST = 5
 """Approaches and tilts below which an interpolation would not deserve the name."""
-
-LOADS, DEFAULT_APPROACHES = (0.03, 1.5), 8
-"""Loads over the case's whose approaches are the ends of the default table, and how many lines it has."""
 
 EDGE = 1e-9
 """Part of the table by which rounding may leave it."""
@@ -43,7 +37,8 @@ class ContactLaw:
     Parameters
     ----------
     table : Dataset
-        What :func:`contact_law` tabulates, or the same from a file: ``ContactLaw(xarray.open_dataset(path))``.
+        What :func:`contactstudy.bearing.contact_law` tabulates, or the same from a file:
+        ``ContactLaw(xarray.open_dataset(path))``.
 
     Raises
     ------
@@ -90,16 +85,25 @@ class ContactLaw:
                 raise InvalidInputError("table", dict(self.table.sizes), f"one with {FEWEST} or more along {name}")
 
     def __repr__(self) -> str:
+        return f"ContactLaw({', '.join(f'{name} {text}' for name, text in self._said())})"
+
+    def _repr_html_(self) -> str:
+        return html_table([("Contact law", self._said())])
+
+    def _said(self) -> Iterator[tuple[str, str]]:
+        """Ranges of the table, and its errors."""
         low, high = (1e6 * end for end in self._range("approach"))
         least, most = (1e3 * end for end in self._range("tilt"))
         loads = self.table["normal_load"]
         errors = 100 * self.table["relative_load_error"].broadcast_like(loads)
         worst = errors[errors.argmax(...)]
-        return (
-            f"ContactLaw(approach {low:.3g} to {high:.3g} um, tilt {least:.3g} to {most:.3g} mrad, "
-            f"load {float(loads.min()):.3g} to {float(loads.max()):.3g} N, "
-            f"error of the load {float(errors.median()):.1g} % by the median, up to {float(errors.max()):.1g} % at "
-            f"{1e6 * float(worst.approach):.3g} um and {1e3 * float(worst.tilt):.3g} mrad)"
+        yield "approach", f"{low:.3g} to {high:.3g} um"
+        yield "tilt", f"{least:.3g} to {most:.3g} mrad"
+        yield "load", f"{float(loads.min()):.3g} to {float(loads.max()):.3g} N"
+        yield (
+            "error of the load",
+            f"{float(errors.median()):.1g} % by the median, up to {float(errors.max()):.1g} % at "
+            f"{1e6 * float(worst.approach):.3g} um and {1e3 * float(worst.tilt):.3g} mrad",
         )
 
     def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
@@ -226,124 +230,3 @@ class ContactLaw:
             known = self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
             found.append(np.max([known[i, j] for i in sides[0] for j in sides[1]], axis=0))
         return found[0], float(self.table["contact_length"]) * found[1]
-
-
-def contact_law(
-    case: Case,
-    tilts: Sequence[float] | FloatArray,
-    approaches: Sequence[float] | FloatArray | None = None,
-    *,
-    accuracy: float = 0.01,
-    tolerance: float = 1e-6,
-) -> ContactLaw:
-    """Tabulate load and moment of a roller on a raceway over approach and tilt.
-
-    Parameters
-    ----------
-    case : Case
-        Roller and body; its load sets the default approaches. Its own tilt is 0.
-    tilts : sequence of float
-        Five or more, increasing, radians. If they are symmetric and roller and body are, half of them are solved.
-    approaches : sequence of float, optional
-        Five or more, increasing, positive, metres: how far the roller is pressed down at its mid-length. Default: eight
-        from that of 0.03 of the case's load to that of 1.5 times the load, in equal ratios.
-    accuracy : float
-        To which the peak pressure of each contact is settled, see :func:`contactstudy.solve`.
-    tolerance : float
-        Of each contact, see :func:`contactstudy.solve_contact`.
-
-    Returns
-    -------
-    ContactLaw
-        Its `table` is a Dataset along `approach` and `tilt`: `normal_load`, `moment`, `strain_energy`,
-        `normal_stiffness`, `coupling_stiffness`, `tilting_stiffness`; and `relative_load_error` (over the load) and
-        `relative_moment_error` (over load times length), the sum of the errors of interpolation, there and up to the
-        next nodes, and of discretisation.
-
-    Raises
-    ------
-    InvalidInputError
-        If the case is tilted, prescribes where its load acts or couples friction; if approaches or tilts are too few,
-        do not increase, or are too far apart for a contact to be found.
-
-    Notes
-    -----
-    Each contact has columns of its own. The error of the interpolation follows from what it misses at the nodes, from
-    splines of another degree, and from those without one of the approaches. Friction that is not coupled changes
-    nothing, as its shear does not move the surfaces normally.
-
-    Examples
-    --------
-    >>> from contactstudy import HalfSpace, Material, Roller, profiles
-    >>> body = HalfSpace(material=Material(210e9, 0.3))
-    >>> roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1))
-    >>> case = Case(body=body, roller=roller, load=30.0)
-    >>> law = contact_law(case, np.linspace(-2e-4, 2e-4, 5), 1e-6 * np.linspace(1.0, 1.8, 5), accuracy=0.1)
-    >>> pressed = law.at(1.3e-6, 1e-4)
-    >>> bool(pressed.normal_stiffness > pressed.normal_load / 1.3e-6)  # the load grows faster than the approach
-    True
-    """
-    checks.instance("case", case, Case, "a Case")
-    _check_case(case)
-    turned = _increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
-    if np.abs(turned).max() > LARGEST_TILT:
-        raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
-    presser = Presser(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
-    if approaches is None:
-        first, last = (presser.loaded(part * case.normal_load, 0.0).approach for part in LOADS)
-        lowered = np.geomspace(first, last, DEFAULT_APPROACHES)
-    else:
-        lowered = _increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
-        checks.positive("approaches", float(lowered[0]), "metres")
-    nodes = solved_nodes(presser, lowered, turned)
-    length = case.contact_length
-    fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
-    return ContactLaw(law_table(presser, nodes, fit.plus(cells)))
-
-
-def _check_case(case: Case) -> None:
-    """Raise unless the case leaves load and tilt to the law."""
-    if case.tilt:
-        raise InvalidInputError("case.tilt", case.tilt, "0: the law has tilts of its own")
-    if case.load_position is not None:
-        raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
-    if case.coupled:
-        raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
-
-
-def _increasing(name: str, values: object, unit: str) -> FloatArray:
-    """Return enough increasing numbers, or raise."""
-    numbers = checks.coordinates(name, values, unit)
-    if numbers.size < FEWEST or (np.diff(numbers) <= 0).any():
-        raise InvalidInputError(name, numbers.tolist(), f"{FEWEST} or more increasing numbers ({unit})")
-    return numbers
-
-
-def law_table(presser: Presser, nodes: Nodes, errors: FitErrors) -> xr.Dataset:
-    """Label the nodes, with the stiffness of their interpolation."""
-    delta, theta = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
-    motion = EnergySpline.fitted(nodes)(delta, theta)
-    both = ("approach", "tilt")
-    arrays = {
-        "normal_load": nodes.load,
-        "moment": nodes.moment,
-        "strain_energy": nodes.energy,
-        "normal_stiffness": motion.normal,
-        "coupling_stiffness": motion.coupling,
-        "tilting_stiffness": motion.tilting,
-        "relative_load_error": errors.load + np.zeros_like(nodes.load),
-        "relative_moment_error": errors.moment + np.zeros_like(nodes.load),
-    }
-    scalars = {
-        "contact_length": presser.case.contact_length,
-        "accuracy": presser.accuracy,
-    }
-    table = xr.Dataset(
-        {name: (both, values) for name, values in arrays.items()} | scalars,
-        coords={"approach": nodes.approaches, "tilt": nodes.tilts},
-    )
-    reference = presser.reference
-    table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
-    table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
-    table["moment"].attrs["comment"] = "about the roller's mid-length"
-    return describe(table, "contact law of a roller on a raceway")

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.html_table import html_table
+from contactstudy.bodies.words import material_rows
 from contactstudy.errors import InvalidInputError
 
 
@@ -49,6 +51,9 @@ class Material:
 
     def __repr__(self) -> str:
         return f"Material(E = {quantity(self.young, 'Pa')}, nu = {self.poisson:g})"
+
+    def _repr_html_(self) -> str:
+        return html_table([("Material", material_rows(self))])
 
     @property
     def shear_modulus(self) -> float:

@@ -14,7 +14,9 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.html_table import html_table
 from contactstudy.bodies.material import Material
+from contactstudy.bodies.words import body_words, material_rows
 from contactstudy.errors import InvalidInputError
 
 Extent = tuple[float, float]
@@ -86,6 +88,9 @@ class Body:
         said.append(f"E = {quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
         model = getattr(self, "model", "exact")
         return f"{type(self).__name__}({', '.join(said if model == 'exact' else [*said, f'model={model!r}'])})"
+
+    def _repr_html_(self) -> str:
+        return html_table([("Body", [("kind", body_words(self))]), ("Material", material_rows(self.material))])
 
     @property
     def extent(self) -> Extent:

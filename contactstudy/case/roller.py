@@ -10,6 +10,7 @@ from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
+from contactstudy.case.words import roller_as_html
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
@@ -72,6 +73,9 @@ class Roller:
             made += ", as a half-space"
         sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
         return f"Roller({sizes}, {in_words(self.profile)}, end drop {quantity(drop, 'm')}, {made})"
+
+    def _repr_html_(self) -> str:
+        return roller_as_html(self)
 
     @staticmethod
     def combined_radius(first: float, second: float) -> float:

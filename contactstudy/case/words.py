@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import fields
-from html import escape
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from contactstudy.arrays.engineering import quantity
-from contactstudy.bodies.material import Material
-from contactstudy.bodies.models import EndedBody, FiniteLengthSpace, HalfSpace
+from contactstudy.arrays.html_table import html_table
+from contactstudy.bodies.models import FiniteLengthSpace
+from contactstudy.bodies.words import body_words, material_words
 from contactstudy.case.friction import AxialFriction
 from contactstudy.case.motion import Sliding
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import in_words
+from contactstudy.profiles.sketch import sketch
 
 if TYPE_CHECKING:
     from contactstudy.case.case import Case
+    from contactstudy.case.roller import Roller
 
 
 class Input(NamedTuple):
@@ -42,46 +44,32 @@ def inputs(case: Case) -> dict[str, list[Input]]:
     >>> inputs(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9))["Roller"][0].text
     '5 mm'
     """
-    roller = case.roller
-    edge = roller.length / 2
-    found = {
-        "Roller": [
-            Input("radius R", quantity(roller.radius, "m")),
-            Input("length L", quantity(roller.length, "m")),
-            Input("profile", _profile(roller.profile)),
-            Input("material", _material(roller.material) if roller.material else "rigid"),
-        ],
-        "Body": [Input("kind", _body_words(case)), Input("material", _material(case.body.material))],
+    return {
+        "Roller": roller_rows(case.roller),
+        "Body": [Input("kind", body_words(case.body)), Input("material", material_words(case.body.material))],
         "Place": [
             Input("from end I of the body to the roller, e", quantity(case.roller_start, "m")),
             *_second_distance(case),
         ],
         "Load": _load(case),
     }
+
+
+def roller_rows(roller: Roller) -> list[Input]:
+    """Rows on a roller: geometry, material, and how far its profile drops."""
+    rows = [
+        Input("radius R", quantity(roller.radius, "m")),
+        Input("length L", quantity(roller.length, "m")),
+        Input("profile", _profile(roller.profile)),
+        Input("material", material_words(roller.material) if roller.material else "rigid"),
+    ]
     if roller.material is not None:
         ends = "its own free ends" if roller.ends == "free" else "a half-space, without ends"
-        found["Roller"].append(Input("elastic as", ends))
+        rows.append(Input("elastic as", ends))
     drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    found["Roller"].append(Input(f"drop at {quantity(0.9 * edge, 'm')} from mid-length", quantity(drops[0], "m")))
-    found["Roller"].append(Input("drop at the very end", quantity(drops[1], "m")))
-    return found
-
-
-def _material(material: Material) -> str:
-    """Material in words."""
-    return f"E = {quantity(material.young, 'Pa')}, Poisson's ratio {material.poisson:g}"
-
-
-def _body_words(case: Case) -> str:
-    """Body in words."""
-    body = case.body
-    if isinstance(body, HalfSpace):
-        return "half-space, no free end"
-    model = f", ends by the comparison model {body.model!r}" if isinstance(body, EndedBody) else ""
-    model = "" if getattr(body, "model", "exact") == "exact" else model
-    if isinstance(body, FiniteLengthSpace):
-        return f"two free ends, {quantity(body.length, 'm')} apart{model}"
-    return f"one free end, at x = 0{model}"
+    rows.append(Input(f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
+    rows.append(Input("drop at the very end", quantity(drops[1], "m")))
+    return rows
 
 
 def _second_distance(case: Case) -> list[Input]:
@@ -165,12 +153,10 @@ def in_lines(case: Case) -> str:
 
 def as_html(case: Case) -> str:
     """Table of a case for a notebook."""
-    parts = []
-    for subject, rows in inputs(case).items():
-        lines = "".join(
-            f"<tr><td style='text-align:left'>{escape(row.meaning)}</td>"
-            f"<td style='text-align:left'>{escape(row.text)}</td></tr>"
-            for row in rows
-        )
-        parts.append(f"<tr><th colspan='2' style='text-align:left'>{subject}</th></tr>{lines}")
-    return f"<table>{''.join(parts)}</table>"
+    return html_table(inputs(case).items())
+
+
+def roller_as_html(roller: Roller) -> str:
+    """Table of a roller for a notebook, with its profile drawn."""
+    title = f"Roller: {_profile(roller.profile)}"
+    return html_table([("Roller", roller_rows(roller))]) + sketch(roller.profile, roller.length, title)

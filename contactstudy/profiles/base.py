@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import Field, dataclass, fields, is_dataclass
 from typing import Protocol, runtime_checkable
 
@@ -9,6 +10,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.html_table import html_table
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -47,15 +49,20 @@ class Shape:
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
     def __repr__(self) -> str:
-        said = []
+        return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._said())})"
+
+    def _repr_html_(self) -> str:
+        rows = [(name.replace("_", " "), text) for name, text in self._said()]
+        return html_table([(type(self).__name__, rows)])
+
+    def _said(self) -> Iterator[tuple[str, str]]:
+        """Values that are not the default ones, in the units of engineers."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
         for entry in entries:
             value = getattr(self, entry.name)
             if value != entry.default:
                 number = isinstance(value, (int, float)) and not isinstance(value, bool)
-                text = quantity(value, UNITS.get(entry.name, "m")) if number else in_words(value)
-                said.append(f"{entry.name}={text}")
-        return f"{type(self).__name__}({', '.join(said)})"
+                yield entry.name, quantity(value, UNITS.get(entry.name, "m")) if number else in_words(value)
 
     def __add__(self, other: object) -> Sum:
         """Both profiles on one roller."""
@@ -167,6 +174,10 @@ class Sum(Shape):
 
     def __repr__(self) -> str:
         return " + ".join(map(in_words, self.terms))
+
+    def _said(self) -> Iterator[tuple[str, str]]:
+        """Summands."""
+        yield from (("and" if number else "sum of", in_words(term)) for number, term in enumerate(self.terms))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Sum of the drops (m) at distances `x` (m) from mid-length."""

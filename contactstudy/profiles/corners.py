@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,6 +71,11 @@ class EffectiveLength(Shape):
     def __repr__(self) -> str:
         length, drop = (quantity(value, "m") for value in (self.effective_length, self.end_drop))
         return f"EffectiveLength({in_words(self.profile)}, effective_length={length}, drop {drop} at its end)"
+
+    def _said(self) -> Iterator[tuple[str, str]]:
+        """Profile, effective length, and the drop at its end."""
+        yield from super()._said()
+        yield "drop_at_its_end", quantity(self.end_drop, "m")
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""

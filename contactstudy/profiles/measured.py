@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -117,10 +117,17 @@ class Measured(Shape):
         object.__setattr__(self, "drops", tuple(drops.tolist()))
 
     def __repr__(self) -> str:
-        length = quantity(self.positions[-1] - self.positions[0], "m")
-        filtered = "" if self.cutoff is None else f", Gaussian filter with cut-off {quantity(self.cutoff, 'm')}"
-        largest = quantity(float(self._smooth.max()), "m")
-        return f"Measured({len(self.positions)} points over {length}, drop up to {largest}{filtered})"
+        said = dict(self._said())
+        filtered = f", Gaussian filter with cut-off {said['cut-off']}" if "cut-off" in said else ""
+        return f"Measured({said['points']} points over {said['over']}, drop up to {said['drop up to']}{filtered})"
+
+    def _said(self) -> Iterator[tuple[str, str]]:
+        """Size of what was measured; the points would fill pages."""
+        yield "points", str(len(self.positions))
+        yield "over", quantity(self.positions[-1] - self.positions[0], "m")
+        yield "drop up to", quantity(float(self._smooth.max()), "m")
+        if self.cutoff is not None:
+            yield "cut-off", quantity(self.cutoff, "m")
 
     @classmethod
     def from_file(

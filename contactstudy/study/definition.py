@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.html_table import html_table
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
@@ -122,13 +123,8 @@ class Study:
         return "\n".join(lines)
 
     def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td style='text-align:left'>{escape(meaning)}</td>"
-            f"<td style='text-align:left'>{escape(text)}</td></tr>"
-            for meaning, text in self._rows()
-        )
         head = escape(f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}")
-        return f"<b>{head}</b><br>{escape(self.description)}<table>{rows}</table>"
+        return f"<b>{head}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""

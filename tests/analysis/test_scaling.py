@@ -44,3 +44,60 @@ def test_a_study_scales_each_case_by_its_own(opened: xr.Dataset) -> None:
 def test_scales_must_be_there() -> None:
     with pytest.raises(InvalidInputError, match="hertz_half_width"):
         analysis.normalized(xr.Dataset({"pressure": 1.0}))
+
+
+def test_positions_over_a_select_by_them(solved: xr.Dataset) -> None:
+    over = analysis.positions_over_a(solved)
+    half_width = float(solved["hertz_half_width"])
+    expected = solved["pressure"].sel(x=2 * half_width, y=0.5 * half_width, method="nearest")
+    assert float(over["pressure"].sel(x_over_a=2, y_over_a=0.5, method="nearest")) == float(expected)
+    assert over["von_mises"].dims == ("x_field_over_a", "y_field_over_a", "z_over_a")
+    assert over["von_mises"].sel(z_over_a=slice(0.2, 0.8)).sizes["z_over_a"] == 3
+    known = {name: over[name].item() for name in ("e_over_a", "friction", "gamma", "profile")}
+    assert known.pop("profile").startswith("Cylinder(fillet_radius=")
+    assert known == pytest.approx({"e_over_a": 1.0, "friction": 0.1, "gamma": 0.104}, rel=2e-3)
+
+
+def test_single_case_goes_back_from_positions_over_a(solved: xr.Dataset) -> None:
+    back = analysis.single_case(analysis.positions_over_a(solved))
+    for name in ("pressure", "von_mises"):
+        assert back[name].dims == solved[name].dims
+        assert np.array_equal(back[name], solved[name])
+    assert np.array_equal(back["x"], solved["x"])
+
+
+def test_results_over_a_join_to_a_study(strip_result) -> None:
+    both = [analysis.positions_over_a(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9))]
+    named = [one.assign_coords(e_over_a=i) for i, one in enumerate(both)]
+    joined = xr.concat(named, "e_over_a", join="override", coords="different", compat="equals")
+    pressure = joined["pressure"].sel(x_over_a=2, y_over_a=0, method="nearest") / joined["hertz_max_pressure"]
+    assert np.allclose(pressure, pressure[0])
+    assert joined["x"].sel(e_over_a=1, x_over_a=2, method="nearest") == pytest.approx(2.1e-4 * 3, rel=0.02)
+
+
+def test_positions_over_a_of_a_study(opened: xr.Dataset) -> None:
+    # All cases share y in metres, and have one half-width.
+    over = analysis.positions_over_a(opened)
+    assert over["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
+    assert np.array_equal(over["pressure"], opened["pressure"], equal_nan=True)
+    assert np.array_equal(over["von_mises"].x_field_over_a, opened["x_field_over_a"])
+
+
+def test_positions_that_differ_over_a_are_refused(strip_result) -> None:
+    one = strip_result(1e-4, 1e9)
+    cases = one.assign(hertz_half_width=("load", [1e-4, 2e-4]))
+    with pytest.raises(InvalidInputError, match="the same x_over_a in all cases; select one case"):
+        analysis.positions_over_a(cases)
+    assert analysis.positions_over_a(cases.isel(load=1))["x_over_a"].max() == pytest.approx(2.9375)
+
+
+def test_positions_over_a_are_of_millimetres_too(strip_result) -> None:
+    result = strip_result(1e-4, 1e9)
+    in_mm = result.assign_coords(x=(1e3 * result["x"]).assign_attrs(units="mm"))
+    assert np.allclose(analysis.positions_over_a(in_mm)["x_over_a"], analysis.positions_over_a(result)["x_over_a"])
+
+
+def test_positions_that_are_over_a_already_are_refused(strip_result) -> None:
+    scaled = analysis.normalized(strip_result(1e-4, 1e9))
+    with pytest.raises(InvalidInputError, match="already"):
+        analysis.positions_over_a(scaled)

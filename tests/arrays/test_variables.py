@@ -23,8 +23,8 @@ from contactstudy.arrays.variables import (
     variable_of,
 )
 from contactstudy.bearing.energy_spline import FitErrors
-from contactstudy.bearing.law import law_table
 from contactstudy.bearing.nodes import Presser
+from contactstudy.bearing.tabulation import law_table
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
 from contactstudy.verification.check import compare

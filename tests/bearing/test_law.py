@@ -112,7 +112,7 @@ def test_default_approaches_are_those_of_the_cases_load(short_case: Case, monkey
         seen["approaches"] = approaches
         raise InvalidInputError("stop", 0, "here")
 
-    monkeypatch.setattr("contactstudy.bearing.law.solved_nodes", solved)
+    monkeypatch.setattr("contactstudy.bearing.tabulation.solved_nodes", solved)
     with pytest.raises(InvalidInputError, match="stop"):
         contact_law(short_case, np.linspace(-1e-3, 1e-3, 5), accuracy=0.1)
     at_load = float(solve(short_case, stresses=False, accuracy=0.1).approach)
