@@ -13,14 +13,20 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Profile, Shape, checked_drop, in_words, local_radius
 
+STEP = 1e-6
+"""Distance over which the slope at an end of the effective length is taken, over this length. Accuracy."""
+
+STEEPEST = 1.0
+"""Slope of the profile above which the corner begins with this one: logarithmic profiles can end upright."""
+
 
 @dataclass(frozen=True, repr=False)
 class EffectiveLength(Shape):
     """A profile that a drawing states over the effective length, without the roller's corners.
 
-    Within the effective length the drop is that of `profile` on a roller of this length. The corners are quarter
-    circles in what is left of the roller at either end, so a drop that is stated at the end of the effective length
-    lies there.
+    Within the effective length the drop is that of `profile` on a roller of this length, so a drop that is stated at
+    its end lies there. The corners are circles in what is left of the roller at either end: they go on from the
+    profile with its slope, and are perpendicular to the axis at the very end.
 
     Parameters
     ----------
@@ -43,7 +49,7 @@ class EffectiveLength(Shape):
     >>> EffectiveLength(crown, 9e-3)
     EffectiveLength(FullCrown(crown_radius=1266 mm), effective_length=9 mm, drop 8 µm at its end)
     >>> (1e6 * EffectiveLength(crown, 9e-3).drop(np.array([0.0, 4.5e-3, 4.6e-3]), length=10e-3)).round(1).tolist()
-    [0.0, 8.0, 18.1]
+    [0.0, 8.0, 18.4]
     """
 
     profile: Profile
@@ -86,9 +92,25 @@ class EffectiveLength(Shape):
                 "effective_length", self.effective_length, f"at most the roller's length, {length:g} m"
             )
         x = np.asarray(x)
-        inside = checked_drop(self.profile, np.clip(x, -half, half), self.effective_length)
-        beyond = np.clip(np.abs(x) - half, 0.0, corner)
-        return np.asarray(inside + corner - np.sqrt(np.maximum(corner**2 - beyond**2, 0.0)))
+        found = checked_drop(self.profile, np.clip(x, -half, half), self.effective_length)
+        if corner == 0:
+            return found
+        for side, (sine, cosine) in zip((-1.0, 1.0), self._directions(), strict=True):
+            beyond = np.clip(side * x - half, 0.0, corner)
+            radius = corner / (1 - sine)
+            along = np.minimum(sine * radius + beyond, radius)
+            # R cos - sqrt(R**2 - along**2), without the rounding of a difference: exactly 0 where the corner begins.
+            rest = radius * cosine + np.sqrt((radius - along) * (radius + along))
+            found = found + beyond * (2 * sine * radius + beyond) / rest
+        return found
+
+    def _directions(self) -> list[tuple[float, float]]:
+        """Sine and cosine of the angle at which the profile leaves the effective length, at its first and last end."""
+        half, step = 0.5 * self.effective_length, STEP * self.effective_length
+        places = np.array([-half, -(half - step), half - step, half])
+        drops = checked_drop(self.profile, places, self.effective_length)
+        slopes = np.clip([(drops[0] - drops[1]) / step, (drops[3] - drops[2]) / step], 0.0, STEEPEST)
+        return [(slope / np.hypot(1.0, slope), 1.0 / np.hypot(1.0, slope)) for slope in slopes.tolist()]
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m): that of the profile, in the corners that at its end."""

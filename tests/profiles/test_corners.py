@@ -8,7 +8,18 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError, Roller
-from contactstudy.profiles import Cylinder, EffectiveLength, FullCrown, Lundberg, Tapered, local_radius
+from contactstudy.profiles import (
+    Cylinder,
+    EffectiveLength,
+    FujiwaraKawase,
+    FullCrown,
+    JohnsGohar,
+    Lundberg,
+    Profile,
+    Tapered,
+    local_radius,
+)
+from contactstudy.profiles.base import Shape
 from tests.profiles.conftest import LENGTH, RADIUS
 
 CROWN = FullCrown(0.8)
@@ -24,6 +35,37 @@ def test_within_the_effective_length_it_is_the_profile_on_that_length(places: np
 def test_corners_are_those_of_a_rounded_cylinder(places: np.ndarray) -> None:
     found = EffectiveLength(Cylinder(), 0.8 * LENGTH).drop(places, LENGTH)
     assert found == pytest.approx(Cylinder(fillet_radius=0.1 * LENGTH).drop(places, LENGTH), abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    "profile", [CROWN, FujiwaraKawase(2e-7, 1e-6), FujiwaraKawase(5e-7, 8e-6), JohnsGohar(1e-6, 4e-5)]
+)
+def test_corners_go_on_from_the_profile(profile: Profile) -> None:
+    """A corner that began parallel to the axis would be a ledge, pressed beside the profile that falls towards it."""
+    effective = 0.9 * LENGTH
+    x = np.linspace(0.4 * LENGTH, 0.5 * LENGTH, 20001)
+    drop = EffectiveLength(profile, effective).drop(x, LENGTH)
+    assert np.array_equal(drop, EffectiveLength(profile, effective).drop(-x, LENGTH))
+    slope = np.diff(drop) / np.diff(x)
+    # No slope above 1 within the effective length is gone on with: that is steeper than any contact.
+    assert (np.diff(np.minimum(slope, 0.99)) > -1e-9).all()
+    assert slope[-1] > 50
+    radius = 0.05 * LENGTH
+    assert drop[-1] > EffectiveLength(profile, effective).end_drop + radius
+
+
+def test_a_corner_is_a_circle_from_the_slope_of_a_cone_to_a_right_angle() -> None:
+    """Of a straight flank of slope 3/4, the corner turns by what is left of a right angle: radius c / (1 - 0.6)."""
+
+    class Cone(Shape):
+        def drop(self, x, length):
+            return 0.75 * np.abs(x)
+
+    half, corner = 0.4 * LENGTH, 0.1 * LENGTH
+    angle = np.linspace(np.arcsin(0.6), 0.5 * np.pi, 7)
+    radius = corner / 0.4
+    x, drop = half + radius * (np.sin(angle) - 0.6), 0.75 * half + radius * (0.8 - np.cos(angle))
+    assert EffectiveLength(Cone(), 2 * half).drop(x, LENGTH) == pytest.approx(drop, rel=1e-6)
 
 
 def test_radius_across_is_that_of_the_profile(places: np.ndarray) -> None:
