@@ -68,7 +68,8 @@ def _filled(row: Variable, base: Variable) -> Variable:
     words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol}
     dims = base.dims if row.dims == ("{name}",) else row.dims
     symbol = row.symbol.format(**words) if "{symbol}" in row.symbol else row.symbol
-    return Variable(dims, row.units.format(**words), symbol, row.long_name.format(**words))
+    long_name, comment = (text.format(**words) for text in (row.long_name, row.comment))
+    return Variable(dims, row.units.format(**words), symbol, long_name, comment)
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:

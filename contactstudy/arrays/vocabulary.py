@@ -22,7 +22,10 @@ class Variable(NamedTuple):
     symbol : str
         LaTeX, without dollar signs.
     long_name : str
-        Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from.
+        Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from. Those of
+        coordinates are short: they stand on axes, where xarray breaks them after 30 characters, which is cut off.
+    comment : str
+        What a short meaning leaves out.
 
     Examples
     --------
@@ -34,11 +37,13 @@ class Variable(NamedTuple):
     units: str
     symbol: str
     long_name: str
+    comment: str = ""
 
     @property
     def attrs(self) -> dict[str, str]:
         """Attributes of the variable in a Dataset."""
-        return {"units": self.units, "long_name": self.long_name} if self.units else {"long_name": self.long_name}
+        said = {"units": self.units, "long_name": self.long_name, "comment": self.comment}
+        return {name: text for name, text in said.items() if text}
 
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
@@ -53,36 +58,40 @@ STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
 """The six components, in the order of every array of stresses."""
 
 COORDINATES = {
-    "x": Variable(X, "m", "x", "position along the roller's axis, from end I"),
-    "y": Variable(("y",), "m", "y", "position along rolling and sliding, from under the roller's centre"),
-    "z": Variable(("z",), "m", "z", "depth below the loaded surface"),
-    "x_field": Variable(("x_field",), "m", "x", "position of the stresses along the roller's axis, from end I"),
-    "y_field": Variable(("y_field",), "m", "y", "position of the stresses along rolling and sliding"),
-    "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells along the roller's axis"),
-    "x_width": Variable(X, "m", "w", "width of the cells along the roller's axis"),
-    "e_over_a": Variable(SCALAR, "1", "e/a", "distance e of roller end and free end over Hertz half-width a"),
+    "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
+    "y": Variable(
+        ("y",), "m", "y", "position along rolling", "from under the roller's centre, along rolling and sliding"
+    ),
+    "z": Variable(("z",), "m", "z", "depth", "below the loaded surface"),
+    "x_field": Variable(("x_field",), "m", "x", "position along the axis", "of the stresses, from end I of the body"),
+    "y_field": Variable(("y_field",), "m", "y", "position along rolling", "of the stresses"),
+    "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells", "along the axis"),
+    "x_width": Variable(X, "m", "w", "width of the cells", "along the axis"),
+    "e_over_a": Variable(
+        SCALAR, "1", "e/a", "end distance over a", "distance e of roller end and free end over Hertz half-width a"
+    ),
     "friction": Variable(SCALAR, "1", "f", "coefficient of friction"),
-    "gamma": Variable(SCALAR, "1", r"\gamma", "body length over roller radius"),
+    "gamma": Variable(SCALAR, "1", r"\gamma", "length over radius", "of the body over that of the roller"),
     "profile": Variable(SCALAR, "", "", "roller profile"),
-    "distance": Variable(("distance",), "m", "s", "distance along the line, or slid or rolled"),
-    "slice": Variable(SLICE, "1", "k", "number of the slice, from end I"),
-    "principal": Variable(("principal",), "1", "", "rank of the principal stress, 1 the largest"),
+    "distance": Variable(("distance",), "m", "s", "distance", "along the line, or slid or rolled"),
+    "slice": Variable(SLICE, "1", "k", "slice from end I", "its number"),
+    "principal": Variable(("principal",), "1", "", "principal stress", "its rank, 1 the largest"),
     "axis": Variable(("axis",), "", "", "component along this axis"),
     "case": Variable(("case",), "1", "", "number of the case"),
     "model": Variable(("model",), "", "", "model of the contacts"),
-    "evaluation": Variable(EVALUATION, "1", "", "number of the design that was looked at"),
+    "evaluation": Variable(EVALUATION, "1", "", "number of the design"),
     "case_load": Variable(("case",), "N", "W", "normal load of the case"),
     "case_tilt": Variable(("case",), "rad", r"\vartheta", "tilt of the case"),
     "parameter": Variable(PARAMETER, "", "", "parameter of the profile"),
     "raceway": Variable(("raceway",), "", "", "raceway"),
     "roller": Variable(("roller",), "1", "j", "number of the roller"),
-    "approach": Variable(("approach",), "m", r"\delta", "approach of roller and body, relative to its reference"),
+    "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to its reference"),
     "tilt": Variable(
-        ("tilt",), "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
+        ("tilt",), "rad", r"\vartheta", "tilt", "relative to its reference, positive if larger x is pressed deeper"
     ),
     "normal_load": Variable(("normal_load",), "N", "W", "normal load"),
-    "moment": Variable(("moment",), "N m", "M", "moment of the pressure, positive for a load at larger x"),
-    "pass_number": Variable(("pass_number",), "1", "N", "number of the pass of the contact"),
+    "moment": Variable(("moment",), "N m", "M", "moment", "of the pressure, positive for a load at larger x"),
+    "pass_number": Variable(("pass_number",), "1", "N", "number of the pass"),
 }
 """Coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`."""
 
@@ -405,6 +414,6 @@ RULES = {
     "peak_{name}_y": Variable(SCALAR, "m", "", "y of the largest {variable}"),
     "peak_{name}_z": Variable(SCALAR, "m", "", "z of the largest {variable}"),
     "{name}_error": Variable(SCALAR, "{units}", "", "estimated discretisation error of the {variable}"),
-    "{name}_over_a": Variable(("{name}",), "1", "{symbol}/a", "{variable}, over a"),
+    "{name}_over_a": Variable(("{name}",), "1", "{symbol}/a", "{symbol} over a", "{variable}"),
 }
 """Names made from those of other variables or coordinates, whose unit, symbol and meaning go into the braces."""

@@ -102,10 +102,7 @@ def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, 
     else:
         array = np.asarray([np.nan if value is None else value for value in values])
     parameter = PARAMETERS.get(name)
-    attributes = {"long_name": parameter.meaning} if parameter else labels("case", coordinate=True)
-    if parameter and parameter.units:
-        attributes["units"] = parameter.units
-    return dim, array, attributes
+    return dim, array, parameter.attrs if parameter else labels("case", coordinate=True)
 
 
 def _summaries(plan: Plan, entries: list[Entry], place: Folder) -> xr.Dataset:
@@ -144,9 +141,7 @@ def _described(plan: Plan, entries: list[Entry]) -> dict[str, Any]:
         for position, value in known.items():
             table[position] = value
         dims, table = _reduced(cube.dims, table, known)
-        parameter = PARAMETERS[name]
-        units = {"units": parameter.units} if parameter.units else {}
-        attributes = {"long_name": parameter.meaning, "comment": DERIVED} | units
+        attributes = PARAMETERS[name].attrs | {"comment": DERIVED}
         found[name] = (dims, table.astype(np.str_) if words else table, attributes)
     return found
 

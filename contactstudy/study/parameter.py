@@ -85,7 +85,7 @@ class Parameter:
     units : str
         Unit; empty for a word.
     meaning : str
-        For the reader: long name of the coordinate, and the documentation.
+        For the reader: comment of the coordinate, and the documentation.
     taker : callable, optional
         Has a keyword argument of this name: its default is the parameter's, and the value is handed on to it.
     fallback : object
@@ -94,6 +94,8 @@ class Parameter:
         For the documentation: what it is to leave out a parameter without a default.
     note : str
         For the documentation: what to know beside the meaning.
+    label : str
+        Long name of the coordinate, short enough for an axis; default: the name.
     """
 
     name: str
@@ -104,6 +106,13 @@ class Parameter:
     fallback: Any = None
     absent: str = ""
     note: str = ""
+    label: str = ""
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """Attributes of the coordinate in a Dataset."""
+        said = {"units": self.units, "long_name": self.label or self.name.replace("_", " "), "comment": self.meaning}
+        return {name: text for name, text in said.items() if text}
 
     @cached_property
     def default(self) -> Any:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from contactstudy import checks
+from contactstudy.arrays.vocabulary import COORDINATES
 from contactstudy.bodies.models import MODELS
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import choose_grid
@@ -46,8 +47,8 @@ _WITH_CASE = (
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",
     ),
-    Parameter("young", number, "Pa", "Young's modulus of the body", absent="required"),
-    Parameter("poisson", number, "1", "Poisson's ratio of the body", absent="required"),
+    Parameter("young", number, "Pa", "Young's modulus of the body", absent="required", label="Young's modulus"),
+    Parameter("poisson", number, "1", "Poisson's ratio of the body", absent="required", label="Poisson's ratio"),
     Parameter("radius", number, "m", "roller radius", absent="required"),
     Parameter("roller_length", number, "m", "roller length; the body is longer by 2 e", absent="or `gamma`"),
     Parameter(
@@ -56,18 +57,28 @@ _WITH_CASE = (
         "1",
         "body length over roller radius; the roller is shorter by 2 e",
         absent="or `roller_length`",
+        label=COORDINATES["gamma"].long_name,
     ),
     Parameter(
         "e_over_a",
         number,
         "1",
-        "distance e of roller end and free end over Hertz half-width a",
+        COORDINATES["e_over_a"].comment,
         absent="or `end_distance`",
+        label=COORDINATES["e_over_a"].long_name,
         note="negative: the roller overhangs",
     ),
     Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
-    Parameter("max_pressure", number, "Pa", "peak pressure p0 of the Hertz line contact", Case, absent="or `load`"),
-    Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`"),
+    Parameter(
+        "max_pressure",
+        number,
+        "Pa",
+        "peak pressure p0 of the Hertz line contact",
+        Case,
+        absent="or `load`",
+        label="Hertz pressure p0",
+    ),
+    Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`", label="normal load"),
     Parameter(
         "approach",
         number,
@@ -78,8 +89,10 @@ _WITH_CASE = (
         note="the load results, and with it a: give `end_distance`, and leave out uniform cells and stress points, "
         "which are over a",
     ),
-    Parameter("friction", number, "1", "coefficient of friction", Case),
-    Parameter("profile", profile, "", "roller profile", fallback={"kind": "cylinder"}),
+    Parameter("friction", number, "1", "coefficient of friction", Case, label=COORDINATES["friction"].long_name),
+    Parameter(
+        "profile", profile, "", "roller profile", fallback={"kind": "cylinder"}, label=COORDINATES["profile"].long_name
+    ),
     Parameter(
         "roller_body",
         one_of(ROLLER_BODIES),
@@ -88,8 +101,22 @@ _WITH_CASE = (
         fallback="rigid",
         note="`rigid`; `finite-length`, with free ends; or `half-space`",
     ),
-    Parameter("roller_young", number, "Pa", "Young's modulus of an elastic roller", absent="the body's"),
-    Parameter("roller_poisson", number, "1", "Poisson's ratio of an elastic roller", absent="the body's"),
+    Parameter(
+        "roller_young",
+        number,
+        "Pa",
+        "Young's modulus of an elastic roller",
+        absent="the body's",
+        label="roller's Young's modulus",
+    ),
+    Parameter(
+        "roller_poisson",
+        number,
+        "1",
+        "Poisson's ratio of an elastic roller",
+        absent="the body's",
+        label="roller's Poisson's ratio",
+    ),
     Parameter("tilt", number, "rad", "misalignment of the roller; positive if larger x is pressed deeper", Case),
     Parameter(
         "load_offset",

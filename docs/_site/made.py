@@ -121,11 +121,13 @@ def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
     """Every field that a specification has: dims as code, the rest as it stands."""
     kind = vocabulary.Variable
     names = [entry.name for entry in fields(kind)] if is_dataclass(kind) else list(kind._fields)
-    columns = [name for name in names if name != "dims"]
+    columns = [name for name in names if name not in ("dims", "comment")]
     headings = {"long_name": "meaning", "units": "unit"}
 
-    def shown(name: str, value: object) -> str:
-        text = str(value or "")
+    def shown(name: str, entry: vocabulary.Variable) -> str:
+        text = str(getattr(entry, name) or "")
+        if name == "long_name" and entry.comment:
+            return f"{text}: {entry.comment}"
         return f"${text.strip('$')}$" if name == "symbol" and text else text
 
     return table(
@@ -134,7 +136,7 @@ def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
             (
                 code(name),
                 ", ".join(entry.dims) or "scalar",
-                *(shown(column, getattr(entry, column)) for column in columns),
+                *(shown(column, entry) for column in columns),
             )
             for name, entry in entries.items()
         ],

@@ -285,3 +285,10 @@ def test_names_made_by_rule(name: str, symbol: str, units: str) -> None:
     known = specification(name)
     assert known is not None
     assert (known.symbol, known.units) == (symbol, units)
+
+
+def test_names_on_axes_fit_into_one_line() -> None:
+    """Labels of xarray's own figures are broken after 30 characters, and the second line is cut off."""
+    for name, entry in (*COORDINATES.items(), *PARAMETERS.items()):
+        known = entry.attrs
+        assert len(f"{known['long_name']} [{known.get('units', '')}]") <= 30, name
