@@ -19,5 +19,5 @@ os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 # Times depend on the machine, so no example has a deadline. What lands must not hang on chance: the examples of the
 # short profile are always the same in CI, the search of `thorough` (`--hypothesis-profile=thorough`) is never.
 settings.register_profile("short", max_examples=20, deadline=None, derandomize=bool(os.environ.get("CI")))
-settings.register_profile("thorough", max_examples=200, deadline=None)
+settings.register_profile("thorough", max_examples=100, deadline=None)
 settings.load_profile("short")
