@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import variable_of
+from contactstudy.arrays.variables import UNBOUNDED, variable_of
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -21,16 +21,24 @@ Line = tuple[Sequence[float], Sequence[float]]
 
 
 def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
-    """Headings of columns: the names, with their units where they have some.
+    """Headings of columns: the names, with their units where they have some, and the mark of those without an error.
 
     Examples
     --------
+    >>> headings(xr.Dataset({"approach": ((), 1e-6, {"comment": "no error known"})}), ["approach"])
+    {'approach': 'approach [m] (no error known)'}
     >>> headings(xr.Dataset({"peak_pressure": 1e9, "friction": 0.1}), ["peak_pressure", "friction", "other"])
     {'peak_pressure': 'peak_pressure [Pa]', 'friction': 'friction'}
     """
     known = [name for name in names if name in dataset.variables]
     units = {name: variable_of(name, dataset[name].attrs, coordinate=name in dataset.coords).units for name in known}
-    return {name: f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()}
+    marks = {name: f" ({UNBOUNDED})" if _unknown(dataset, name) else "" for name in known}
+    return {name: (f"{name} [{unit}]" if unit and unit != "1" else name) + marks[name] for name, unit in units.items()}
+
+
+def _unknown(dataset: xr.Dataset, name: str) -> bool:
+    """Whether a variable says that it has no error; a column of errors says it by its empty cells."""
+    return UNBOUNDED in str(dataset[name].attrs.get("comment", "")) and not name.endswith("_error")
 
 
 def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
@@ -70,7 +78,8 @@ def to_table(
     Returns
     -------
     pandas.DataFrame
-        Positions first; headings with units, such as ``von_mises [Pa]``.
+        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(no error known)`` where the
+        `comment` of a variable says so.
 
     Raises
     ------
