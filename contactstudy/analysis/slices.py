@@ -133,8 +133,9 @@ def _with_errors(
 
 
 def _stated(one: xr.Dataset) -> tuple[float, float]:
-    """Relative errors of the pressure on either half; NaN of a part of a contact, whose halves are others."""
-    if "normal_load" not in one:
+    """Relative errors of the pressure on either half; NaN of a part of a contact, and of cells that cases share."""
+    shared = "averaged" in str(one["pressure"].attrs.get("comment", ""))
+    if "normal_load" not in one or shared:
         return np.nan, np.nan
     cells = (cell_size(one["pressure"], axis) for axis in "xy")
     resultant = float((one["pressure"] * next(cells) * next(cells)).sum())

@@ -20,6 +20,7 @@ from contactstudy import (
     solve,
 )
 from contactstudy.arrays.variables import UNBOUNDED
+from contactstudy.study import Study, open_study, run_study
 
 
 @given(count=st.integers(1, 16))
@@ -120,6 +121,20 @@ def test_the_table_holds_a_peak_in_narrow_columns_and_no_number_at_a_singular_en
     for name in ("axial_pressure", "axial_pressure_error"):
         assert np.isinf(sharp[name]).values.tolist() == [False] * 9 + [True]
     assert np.isfinite(sharp["normal_load_error"]).all()
+
+
+def test_a_case_of_a_study_has_errors_on_its_own_cells(tmp_path) -> None:
+    base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.5e-3, "e_over_a": 1.0, "stresses": False}
+    edge = {"name": "rounded", "kind": "cylinder", "fillet_radius": 0.05e-3}
+    study = Study(name="small", base=base | {"profile": edge}, sweep={"max_pressure": [1.2e9, 1.5e9]})
+    run_study(study, tmp_path, workers=0, progress=False)
+    own, shared = (open_study(tmp_path, cells=cells).sel(max_pressure=1.5e9) for cells in ("own", "common"))
+    table = analysis.slices(own, 6)
+    assert float(table["axial_pressure"][0]) == pytest.approx(
+        float(own["peak_pressure_first"]), abs=float(own["peak_pressure_first_error"])
+    )
+    assert np.isfinite(table["axial_pressure_error"]).all()
+    assert np.isnan(analysis.slices(shared, 6)["axial_pressure_error"]).all()
 
 
 def test_numbers_without_an_error_say_so(solved: xr.Dataset) -> None:
