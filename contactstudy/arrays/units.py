@@ -15,11 +15,6 @@ from contactstudy.errors import InvalidInputError
 KNOWN: dict[str, dict[str, float]] = {
     "m": {
         "m": 1.0,
-        "metre": 1.0,
-        "metres": 1.0,
-        "meter": 1.0,
-        "meters": 1.0,
-        "km": 1e3,
         "mm": 1e-3,
         "um": 1e-6,
         "µm": 1e-6,
@@ -27,6 +22,11 @@ KNOWN: dict[str, dict[str, float]] = {
         "micrometer": 1e-6,
         "micron": 1e-6,
         "nm": 1e-9,
+        "km": 1e3,
+        "metre": 1.0,
+        "meter": 1.0,
+        "metres": 1.0,
+        "meters": 1.0,
     },
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},

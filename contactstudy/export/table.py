@@ -21,24 +21,37 @@ Line = tuple[Sequence[float], Sequence[float]]
 
 
 def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
-    """Headings of columns: the names, with their units where they have some, and the mark of those without an error.
+    """Headings of columns: the names, with their units where they have some.
 
     Examples
     --------
-    >>> headings(xr.Dataset({"approach": ((), 1e-6, {"comment": "no error known"})}), ["approach"])
-    {'approach': 'approach [m] (no error known)'}
     >>> headings(xr.Dataset({"peak_pressure": 1e9, "friction": 0.1}), ["peak_pressure", "friction", "other"])
     {'peak_pressure': 'peak_pressure [Pa]', 'friction': 'friction'}
     """
     known = [name for name in names if name in dataset.variables]
     units = {name: variable_of(name, dataset[name].attrs, coordinate=name in dataset.coords).units for name in known}
-    marks = {name: f" ({UNBOUNDED})" if _unknown(dataset, name) else "" for name in known}
-    return {name: (f"{name} [{unit}]" if unit and unit != "1" else name) + marks[name] for name, unit in units.items()}
+    return {name: f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()}
 
 
-def _unknown(dataset: xr.Dataset, name: str) -> bool:
-    """Whether a variable says that it has no error; a column of errors says it by its empty cells."""
-    return UNBOUNDED in str(dataset[name].attrs.get("comment", "")) and not name.endswith("_error")
+def marked_headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
+    """Headings of columns, with the mark of variables that say of themselves that they have no error.
+
+    A column of errors says it by its empty cells.
+
+    Examples
+    --------
+    >>> marked_headings(xr.Dataset({"half_width": ((), 1e-4, {"comment": "no error known"})}), ["half_width"])
+    {'half_width': 'half_width [m] (no error known)'}
+    """
+    unknown = {
+        name
+        for name in names
+        if name in dataset.variables
+        and not name.endswith("_error")
+        and UNBOUNDED in str(dataset[name].attrs.get("comment", ""))
+    }
+    plain = headings(dataset, names)
+    return {name: f"{heading} ({UNBOUNDED})" if name in unknown else heading for name, heading in plain.items()}
 
 
 def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
@@ -105,7 +118,7 @@ def to_table(
     along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
     frame = chosen.to_dataframe().reset_index()
     names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
-    return frame[names].rename(columns=headings(chosen, [str(name) for name in names]))
+    return frame[names].rename(columns=marked_headings(chosen, [str(name) for name in names]))
 
 
 # A spreadsheet takes a cell that begins so for a formula, and would run it.
