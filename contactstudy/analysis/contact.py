@@ -12,10 +12,10 @@ from contactstudy.analysis.cut_ends import CUT, cut_ends
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import named
+from contactstudy.arrays.variables import UNBOUNDED, named
 from contactstudy.checks import Array
 
-OF_CELL = "mean of the outermost loaded cell, no error known; end_pressure of a settled result has one"
+OF_CELL = f"mean of the outermost loaded cell, {UNBOUNDED}; end_pressure of a settled result has one"
 
 
 def _first_and_last(values: Array) -> tuple[Array, Array]:

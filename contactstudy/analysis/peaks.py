@@ -8,11 +8,12 @@ import xarray as xr
 from contactstudy.analysis.axes import axis_dimensions, positions
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.variables import named, variable_of
+from contactstudy.arrays.variables import UNBOUNDED, named, variable_of
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
-OF_POINTS = "largest of the given points, no error known; beside a singular end it has no limit"
+AT_POINT = f"one of the given points, {UNBOUNDED}"
+OF_POINTS = f"largest of the given points, {UNBOUNDED}; beside a singular end it has no limit"
 
 
 def _largest(values: Array, *places: Array) -> tuple[Array, ...]:
@@ -36,7 +37,8 @@ def _peak(array: xr.DataArray, name: str, over: dict[str, str]) -> xr.Dataset:
     base = variable_of(name, array.attrs)
     names = (f"peak_{name}", *(f"peak_{name}_{axis}" for axis in over))
     labelled = {each: named(each, value, base) for each, value in zip(names, found, strict=True)}
-    labelled[f"peak_{name}"].attrs["comment"] = OF_POINTS
+    for each, value in labelled.items():
+        value.attrs["comment"] = OF_POINTS if each == f"peak_{name}" else AT_POINT
     return xr.Dataset(labelled).compute()
 
 

@@ -18,11 +18,10 @@ from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity, with_error
 from contactstudy.arrays.html_table import LEFT, NUMBER, html_table
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import STRESSES, variable_of
+from contactstudy.arrays.variables import STRESSES, UNBOUNDED, variable_of
 
 SINGULAR = "singular: it grows without a limit towards a sharp end"
-OF_CELLS = "mean of the highest cell, no error known"
-UNBOUNDED = "no error known"
+OF_CELLS = f"mean of the highest cell, {UNBOUNDED}"
 NOT_PRESSED = "the end is not pressed"
 
 ENDS = {"first": "end I", "last": "end II"}

@@ -14,8 +14,19 @@ from contactstudy.errors import InvalidInputError
 
 KNOWN: dict[str, dict[str, float]] = {
     "m": {
-        **{"m": 1.0, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "μm": 1e-6, "micrometer": 1e-6, "micron": 1e-6, "nm": 1e-9},
-        **{"km": 1e3, "metre": 1.0, "meter": 1.0, "metres": 1.0, "meters": 1.0},
+        "m": 1.0,
+        "mm": 1e-3,
+        "um": 1e-6,
+        "µm": 1e-6,
+        "μm": 1e-6,
+        "micrometer": 1e-6,
+        "micron": 1e-6,
+        "nm": 1e-9,
+        "km": 1e3,
+        "metre": 1.0,
+        "meter": 1.0,
+        "metres": 1.0,
+        "meters": 1.0,
     },
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
     "N": {"N": 1.0, "kN": 1e3},

@@ -16,6 +16,7 @@ __all__ = [
     "DERIVED",
     "RULES",
     "STRESSES",
+    "UNBOUNDED",
     "VARIABLES",
     "Variable",
     "describe",
@@ -28,6 +29,9 @@ __all__ = [
 
 DERIVED = "follows from the other parameters"
 """Comment of a coordinate that a study does not sweep."""
+
+UNBOUNDED = "no error known"
+"""Comment, or a part of it, of a number that is shown without an error."""
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """What each rule puts before and after a name, the longest first: `peak_gap_x` is where a peak is, not a peak."""

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
-from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.analysis.between_columns import Columns, beside, open_steps
+from contactstudy.analysis.provenance import solved_case
+from contactstudy.analysis.stated import SIDES, pressure_errors
 from contactstudy.arrays.across import largest_across
 from contactstudy.arrays.required import require
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import UNBOUNDED, describe
 from contactstudy.bodies import hertz
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
@@ -23,6 +26,8 @@ from contactstudy.profiles.base import local_radius
 LIFE_POWER = 9 / 2
 """Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
 of Weibull's distribution."""
+
+OF_COLUMNS = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
@@ -42,7 +47,8 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
         lamina model under the same load and tilt; `hertz_load_per_length` (N/m), the one whose line contact has the
         solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` from the inner raceway, ``f_e[k]`` from
         the outer one; with `hertz_load_per_length_error` and `stress_riser_error`, which follow from the stated errors
-        of the peak pressures; and `edge_factor`, the standard's approximation.
+        of the peak pressures and from the distance of the columns; and `edge_factor`, the standard's approximation.
+        No error is known of what the lamina model alone says.
 
     Raises
     ------
@@ -78,7 +84,7 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     sliced = slice_model(replace(case, load_position=None, tilt=float(one["tilt"])), slices=count)
     start, stop = case.contact_range
     borders = np.linspace(start, stop, count + 1)
-    load, error = hertz_loads(one, case, borders)
+    load, error, _ = hertz_loads(one, case, borders)
     carried = sliced["load_per_length"].values
     with np.errstate(divide="ignore", invalid="ignore"):
         riser = np.where(carried > 0, load / carried, np.nan)
@@ -96,11 +102,35 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     found = xr.Dataset(
         {name: ("slice", array) for name, array in values.items()}, coords={"slice": np.arange(1, count + 1)}
     )
+    for name in ("load_per_length", "edge_factor"):
+        found[name].attrs["comment"] = sliced[name].attrs["comment"]
+    known = not np.isnan(error).any()
+    for name in ("hertz_load_per_length", "stress_riser"):
+        found[f"{name}_error"].attrs["comment"] = OF_COLUMNS if known else UNBOUNDED
     return describe(found, "stress riser of every lamina from solved pressures")
 
 
-def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Load per length of every lamina whose line contact has the solved pressure, and its error, N/m."""
+class HertzLoads(NamedTuple):
+    """Load per length of every lamina whose line contact has the solved pressure, N/m.
+
+    Attributes
+    ----------
+    load : array
+        Infinite at a singular end.
+    error : array
+        From the stated errors of the pressure, and from the distance of its columns.
+    common : array
+        The part of it from the stated errors. What the columns put into one lamina they leave out of the next, so this
+        part alone tells how well a life of all laminae is known.
+    """
+
+    load: FloatArray
+    error: FloatArray
+    common: FloatArray
+
+
+def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoads:
+    """Return loads per length of laminae between borders from the solved pressure, and their errors."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
     place, top = result[x].values, largest_across(pressure.values)
@@ -110,25 +140,31 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> tuple[Fl
     radius = np.full(place.size, case.roller.radius)
     radius[under] = local_radius(case.roller.profile, place[under] - middle, case.roller.length, case.roller.radius)
     line = hertz.line_load(1.0, 1.0, case.modulus) * top**2 * radius
-    share = np.minimum(borders[1:, None], place + half) - np.maximum(borders[:-1, None], place - half)
-    weights = np.clip(share, 0.0, None)
+    columns = Columns(np.stack([place - half, place + half], axis=-1), place, line)
+    weights = columns.shares(borders)
     scale = float(line.max())
     mean = weights @ (line / scale) ** LIFE_POWER / np.diff(borders)
     load = scale * mean ** (1 / LIFE_POWER)
-    first, last = _pressure_errors(result)
-    centres = 0.5 * (borders[1:] + borders[:-1])
-    error = 2 * np.where(centres < 0.5 * (borders[0] + borders[-1]), first, last) * load
+    common = _of_pressure(result, load, line, weights)
+    pressed = weights.any(axis=0)
+    error = common + weights[:, pressed] @ beside(open_steps(line[pressed])) / np.diff(borders)
     for end, side in ((0, "first"), (-1, "last")):
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
-            load[end] = error[end] = np.inf
-    return load, error
+            load[end] = error[end] = common[end] = np.inf
+    return HertzLoads(load, error, common)
 
 
-def _pressure_errors(result: xr.Dataset) -> tuple[float, float]:
-    """Errors of the pressure over itself on either half, by the stated ones; NaN on cells of one's own."""
-    settled = float(attribute(result, INPUTS_ATTRIBUTE).get("settings", {}).get("accuracy", np.nan))
+def _of_pressure(result: xr.Dataset, load: FloatArray, line: FloatArray, weights: FloatArray) -> FloatArray:
+    """Errors of loads per length from those of the pressure, which are stated of the largest on either half."""
+    half = load.size // 2
     errors = []
-    for side in ("first", "last"):
-        peak, error = (float(result.get(f"peak_pressure_{side}{kind}", np.nan)) for kind in ("", "_error"))
-        errors.append(error / peak if np.isfinite(error) and np.isfinite(peak) and peak > 0 else settled)
-    return errors[0], errors[1]
+    for parts, side, relative in zip(
+        (slice(load.size - half), slice(half, None)), SIDES, pressure_errors(result), strict=True
+    ):
+        endless = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
+        largest = load[parts] if endless else line[weights[parts].any(axis=0)].max()
+        error = np.zeros(load.size)
+        # The load goes with the square of the pressure, whose error is that of its largest.
+        error[parts] = 2 * relative * np.sqrt(load[parts] * largest)
+        errors.append(error)
+    return np.maximum(*errors)

@@ -9,7 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.units import factor_to
-from contactstudy.arrays.variables import describe, named
+from contactstudy.arrays.variables import UNBOUNDED, describe, named
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -97,5 +97,5 @@ def dataset(
     data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
     labelled = describe(xr.Dataset(data, coords=coords))
     for name in ("normal_stiffness", "coupling_stiffness", "tilting_stiffness"):
-        labelled[name].attrs["comment"] = "no error known"
+        labelled[name].attrs["comment"] = UNBOUNDED
     return labelled

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import describe
-from contactstudy.bearing.laminae import LIFE_POWER, lamina_factors
+from contactstudy.arrays.variables import UNBOUNDED, describe
+from contactstudy.bearing.laminae import LIFE_POWER, hertz_loads, lamina_factors
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
 from contactstudy.case.doubts import question_values
@@ -32,6 +33,9 @@ REDUCTION = 0.83
 which a lamina model has in it."""
 
 MILLION = 1e6
+
+OF_MODELS = f"from the stated errors of the pressures; of the models of slices NaN, {UNBOUNDED}"
+"""A model that knows no ends is off by what the ends do, which it does not tell."""
 
 
 def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: int = 1) -> tuple[float, float]:
@@ -119,12 +123,12 @@ def reference_life(
     Returns
     -------
     Dataset
-        Along `model`: `reference_life` (revolutions that 9 of 10 bearings survive) with its error from the stated
-        errors of the pressures, and along `raceway` too `raceway_life`. The models are "slices" (no edge factor),
-        "slices with riser" (the standard's approximation), "half-space" (of every Case's body, the roller without ends
-        of its own), and "free ends" (the Case as it is). Along `raceway`, `roller` and `slice` the factors
-        ``f_i[j, k]`` and ``f_e[j, k]``, `stress_riser`, and the dynamic equivalent load per lamina,
-        `lamina_equivalent_load` (N).
+        Along `model`: `reference_life` (revolutions that 9 of 10 bearings survive), and along `raceway` too
+        `raceway_life`. The models are "slices" (no edge factor), "slices with riser" (the standard's approximation),
+        "half-space" (of every Case's body, the roller without ends of its own), and "free ends" (the Case as it is).
+        Along `raceway`, `roller` and `slice` the factors ``f_i[j, k]`` and ``f_e[j, k]``, `stress_riser`, and the
+        dynamic equivalent load per lamina, `lamina_equivalent_load` (N). Each has its ``_error`` from the stated errors
+        of the pressures; it is NaN of both models of slices, whose error is not known.
 
     Raises
     ------
@@ -162,8 +166,9 @@ def reference_life(
     found = {
         name: [_loads_of_roller(case, laminae, accuracy) for case in each] for name, each in cases.items()
     }  # raceway, roller: arrays (model, lamina)
-    loads, errors, risers = (
-        np.array([[each[part] for each in found[name]] for name in RACEWAYS]).transpose(2, 0, 1, 3) for part in range(3)
+    loads, errors, common, risers, riser_errors = (
+        np.array([[getattr(each, part) for each in found[name]] for name in RACEWAYS]).transpose(2, 0, 1, 3)
+        for part in _OfRoller._fields
     )
     count = loads.shape[-1]
     powers = np.array([TURNING if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
@@ -174,16 +179,25 @@ def reference_life(
         power = powers[:, None]
         return np.asarray(((each**power).sum(axis=2) / number) ** (1 / powers))
 
-    mean = equivalent(loads)
-    risks = [((equivalent(each) / rating) ** LIFE_POWER).sum(axis=-1) for each in (loads, loads + errors)]
-    lives, lower = (MILLION * risk.sum(axis=-1) ** (-8 / 9) for risk in risks)
+    mean, most = equivalent(loads), equivalent(loads + errors)
+    risks = [((equivalent(each) / rating) ** LIFE_POWER).sum(axis=-1) for each in (loads, loads + common)]
+    (of_raceways, shortest), (lives, lower) = (
+        [MILLION * risk ** (-8 / 9) for risk in each] for each in (risks, [risk.sum(axis=-1) for risk in risks])
+    )
+    endless = np.isinf(mean)
     result = xr.Dataset(
         {
             "reference_life": ("model", lives),
             "reference_life_error": ("model", lives - lower),
-            "raceway_life": (("model", "raceway"), MILLION * risks[0] ** (-8 / 9)),
+            "raceway_life": (("model", "raceway"), of_raceways),
+            "raceway_life_error": (("model", "raceway"), of_raceways - shortest),
             "lamina_equivalent_load": (("model", "raceway", "slice"), mean),
+            "lamina_equivalent_load_error": (
+                ("model", "raceway", "slice"),
+                np.where(endless, np.inf, most - np.where(endless, 0.0, mean)),
+            ),
             "stress_riser": (("model", "raceway", "roller", "slice"), risers),
+            "stress_riser_error": (("model", "raceway", "roller", "slice"), riser_errors),
         },
         coords={
             "model": list(MODELS),
@@ -193,6 +207,8 @@ def reference_life(
         },
     )
     result.attrs = {"turning": turning, "laminae": count}
+    for name in ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser"):
+        result[f"{name}_error"].attrs["comment"] = OF_MODELS
     return describe(result, "basic reference rating life from laminae")
 
 
@@ -212,8 +228,18 @@ def _ratings(ratings: object) -> FloatArray:
     return numbers
 
 
-def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the loads of every lamina with its model's factor, their errors, and the factors: (model, lamina)."""
+class _OfRoller(NamedTuple):
+    """Arrays (model, lamina): loads with the models' factors, N, their errors, and the factors with theirs."""
+
+    loads: FloatArray
+    errors: FloatArray
+    common: FloatArray
+    risers: FloatArray
+    riser_errors: FloatArray
+
+
+def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> _OfRoller:
+    """Solve for the loads of every lamina by the four models, and their factors."""
     # Friction changes no pressure unless it is coupled; stick and slip would only cost time.
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
     endless = replace(
@@ -222,12 +248,15 @@ def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> tuple[FloatAr
         roller=replace(case.roller, ends="none"),
         end_distance=case.roller_start,
     )
-    solved = [
-        lamina_factors(solve(each, stresses=False, accuracy=accuracy), laminae=laminae) for each in (endless, case)
-    ]
+    results = [(each, solve(each, stresses=False, accuracy=accuracy)) for each in (endless, case)]
+    solved = [lamina_factors(result, laminae=laminae) for _, result in results]
     width, plain = solved[1]["width"].values, solved[1]["load_per_length"].values
-    factor = solved[1]["edge_factor"].values
-    loads = [plain, plain * factor, *(each["hertz_load_per_length"].values for each in solved)]
-    errors = [np.zeros_like(plain)] * 2 + [each["hertz_load_per_length_error"].values for each in solved]
-    risers = [np.ones_like(plain), factor, *(each["stress_riser"].values for each in solved)]
-    return width * np.array(loads), width * np.array(errors), np.array(risers)
+    factor, unknown = solved[1]["edge_factor"].values, [np.full_like(plain, np.nan)] * 2
+    hertz = [hertz_loads(result, each, np.linspace(*each.contact_range, plain.size + 1)) for each, result in results]
+    return _OfRoller(
+        width * np.array([plain, plain * factor, *(each.load for each in hertz)]),
+        width * np.array([*unknown, *(each.error for each in hertz)]),
+        width * np.array([*unknown, *(each.common for each in hertz)]),
+        np.array([np.ones_like(plain), factor, *(each["stress_riser"].values for each in solved)]),
+        np.array([*unknown, *(each["stress_riser_error"].values for each in solved)]),
+    )

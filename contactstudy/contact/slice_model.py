@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import UNBOUNDED, describe
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -23,6 +23,9 @@ STEEL = 0.5 * 207e9 / (1 - 0.3**2)
 """Contact modulus (Pa) that the standard's constant stands for: steel on steel, 207 GPa and 0.3."""
 
 EXPONENT = 10 / 9
+
+OF_MODEL = f"of slices that do not know of each other, {UNBOUNDED}"
+"""What every number of the model says of itself."""
 
 
 def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge_riser: bool = False) -> xr.Dataset:
@@ -52,7 +55,8 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
     -------
     Dataset
         Along `x` (middle of each slice, metres from end I of the body): `load_per_length` (N/m), `pressure` (Pa),
-        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m).
+        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m). A
+        `comment` says of what the model makes that no error is known.
 
     Raises
     ------
@@ -114,7 +118,10 @@ def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge
         coords={"x": x},
         attrs={"slices": slices, "tilt": tilt},
     )
-    result["pressure"].attrs["comment"] = "peak of each slice" + (", with stress riser" if edge_riser else "")
+    for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
+        result[name].attrs["comment"] = OF_MODEL
+    risen = ", with stress riser" if edge_riser else ""
+    result["pressure"].attrs["comment"] = f"peak of each slice{risen}; {OF_MODEL}"
     result["approach"].attrs["reference"] = "undeformed bodies, at mid-length"
     return describe(result, "slice model of ISO/TS 16281")
 

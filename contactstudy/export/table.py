@@ -11,7 +11,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import variable_of
+from contactstudy.arrays.variables import UNBOUNDED, variable_of
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -31,6 +31,27 @@ def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
     known = [name for name in names if name in dataset.variables]
     units = {name: variable_of(name, dataset[name].attrs, coordinate=name in dataset.coords).units for name in known}
     return {name: f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()}
+
+
+def marked_headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
+    """Headings of columns, with the mark of variables that say of themselves that they have no error.
+
+    A column of errors says it by its empty cells.
+
+    Examples
+    --------
+    >>> marked_headings(xr.Dataset({"half_width": ((), 1e-4, {"comment": "no error known"})}), ["half_width"])
+    {'half_width': 'half_width [m] (no error known)'}
+    """
+    unknown = {
+        name
+        for name in names
+        if name in dataset.variables
+        and not name.endswith("_error")
+        and UNBOUNDED in str(dataset[name].attrs.get("comment", ""))
+    }
+    plain = headings(dataset, names)
+    return {name: f"{heading} ({UNBOUNDED})" if name in unknown else heading for name, heading in plain.items()}
 
 
 def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
@@ -70,7 +91,8 @@ def to_table(
     Returns
     -------
     pandas.DataFrame
-        Positions first; headings with units, such as ``von_mises [Pa]``.
+        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(no error known)`` where the
+        `comment` of a variable says so.
 
     Raises
     ------
@@ -96,7 +118,7 @@ def to_table(
     along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
     frame = chosen.to_dataframe().reset_index()
     names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
-    return frame[names].rename(columns=headings(chosen, [str(name) for name in names]))
+    return frame[names].rename(columns=marked_headings(chosen, [str(name) for name in names]))
 
 
 # A spreadsheet takes a cell that begins so for a formula, and would run it.

@@ -14,9 +14,9 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import AXES, VARIABLES, describe, named
+from contactstudy.arrays.variables import AXES, VARIABLES, describe
 from contactstudy.checks import Array
-from contactstudy.fatigue.history import over_history
+from contactstudy.fatigue.history import of_points, over_history
 from contactstudy.fatigue.limits import FatigueLimits
 
 NORMALS, DIRECTIONS = 200, 8
@@ -146,7 +146,8 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Dataset
         Without the rolling direction: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
         `findley_shear` and `findley_normal` (Pa), ``tau_a`` and ``sigma_n,max`` there; `findley_plane` (..., axis),
-        its unit normal with the components `axis` = x, y, z, turned towards larger depth.
+        its unit normal with the components `axis` = x, y, z, turned towards larger depth. A `comment` says that they
+        have no error.
 
     Raises
     ------
@@ -174,5 +175,5 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         "findley_normal": normal,
         "findley_plane": plane,
     }
-    result = xr.Dataset({name: named(name, value, VARIABLES["findley"]) for name, value in values.items()})
+    result = xr.Dataset({name: of_points(name, value, VARIABLES["findley"]) for name, value in values.items()})
     return describe(result.assign_coords(axis=list(AXES)))

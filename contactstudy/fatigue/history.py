@@ -14,9 +14,12 @@ import xarray as xr
 
 from contactstudy.analysis import dimension_along
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import STRESSES, named
+from contactstudy.arrays.variables import STRESSES, UNBOUNDED, Variable, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
+
+OF_POINTS = f"of the stresses at the given points, {UNBOUNDED}"
+"""Comment of what is made of a history."""
 
 FEWEST_POSITIONS = 3
 """Along y, for a history."""
@@ -98,6 +101,26 @@ def over_history(
         output_dtypes=[np.float64] * len(sizes),
     )
     return tuple(found) if len(sizes) > 1 else (found,)
+
+
+def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
+    """Return what is made of the histories at points with its name, its unit and the mark that it has no error.
+
+    Parameters
+    ----------
+    name : str
+        In the table of variables.
+    array : DataArray
+        Values.
+    base : Variable, optional
+        As for :func:`contactstudy.arrays.variables.named`.
+
+    Examples
+    --------
+    >>> of_points("dang_van", xr.DataArray(1.0)).attrs["comment"]
+    'of the stresses at the given points, no error known'
+    """
+    return named(name, array, base).assign_attrs(comment=OF_POINTS)
 
 
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:

@@ -28,7 +28,7 @@ from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.eigenstrain.splines import Splines
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.enclosing_ball import enclosing_balls
-from contactstudy.fatigue.history import histories
+from contactstudy.fatigue.history import histories, of_points
 from contactstudy.fatigue.shakedown import in_ball_axes
 
 DEGREE, CONTINUITY = 5, 3
@@ -121,8 +121,10 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
         "residual_tau_xz": xz,
     }
     like = tensor.isel({rolling: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
-    found = xr.Dataset({name: named(name, like.copy(data=flat.reshape(like.shape))) for name, flat in results.items()})
-    found["peak_shakedown_stress"] = named("peak_shakedown_stress", found["shakedown_stress"].max())
+    found = xr.Dataset(
+        {name: of_points(name, like.copy(data=flat.reshape(like.shape))) for name, flat in results.items()}
+    )
+    found["peak_shakedown_stress"] = of_points("peak_shakedown_stress", found["shakedown_stress"].max())
     found["program_gap"] = named("program_gap", xr.DataArray(max(attained - bound, 0.0) / max(attained, 1e-300)))
     return found
 

@@ -14,10 +14,10 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import positions
-from contactstudy.arrays.variables import VARIABLES, named
+from contactstudy.arrays.variables import VARIABLES
 from contactstudy.checks import Array
 from contactstudy.fatigue.enclosing_ball import enclosing_balls
-from contactstudy.fatigue.history import histories, over_history
+from contactstudy.fatigue.history import histories, of_points, over_history
 from contactstudy.fatigue.limits import FatigueLimits
 
 
@@ -45,7 +45,7 @@ def _largest_shear(deviator: Array) -> Array:
 
 def _labelled(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
     """Results of a criterion with their names and units; the utilisation is that of its sum."""
-    return xr.Dataset({name: named(name, array, VARIABLES[criterion]) for name, array in values.items()})
+    return xr.Dataset({name: of_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
 
 
 def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -68,7 +68,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Dataset
         Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation` (1), that over
         ``tau_w``; `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m),
-        where that is (NaN for the unloaded state).
+        where that is (NaN for the unloaded state). A `comment` says that they have no error.
 
     Raises
     ------
@@ -135,7 +135,8 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     -------
     Dataset
         Without the rolling direction: `crossland` (Pa), the sum; `utilisation` (1), that over ``tau_w``;
-        `crossland_shear` and `crossland_hydrostatic` (Pa), the two terms without the factor.
+        `crossland_shear` and `crossland_hydrostatic` (Pa), the two terms without the factor. A `comment` says that they
+        have no error.
 
     Raises
     ------

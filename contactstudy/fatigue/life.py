@@ -13,7 +13,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import named
+from contactstudy.arrays.variables import UNBOUNDED, named
 from contactstudy.errors import InvalidInputError
 
 
@@ -80,7 +80,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     -------
     DataArray
         ``(reference risk / risk)**(1/e)``; infinite without any risk, NaN if neither has a risk. Its coordinate
-        `relative_life_error` follows from the errors of both risks.
+        `relative_life_error` follows from the errors of both risks; a `comment` says where these are not given.
 
     Raises
     ------
@@ -109,7 +109,7 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
     ratio = (other / own.where(own > 0)).where((own != 0) | (other == 0), np.inf)
     life = named("relative_life", ratio ** (1 / chosen.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
-        return life
+        return life.assign_attrs(comment=UNBOUNDED)
     part, reference_part = (each["risk_error"] / each["risk"].where(each["risk"] > 0) for each in (risk, reference))
     # The longest life that the errors allow: no bound if there may be no risk at all.
     most = ((1 + reference_part) / (1 - part).clip(0.0)) ** (1 / chosen.weibull)

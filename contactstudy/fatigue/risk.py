@@ -22,6 +22,7 @@ from contactstudy.arrays.units import in_si, required_in_si
 from contactstudy.arrays.variables import named
 from contactstudy.checks import Array, IntArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.fatigue.history import of_points
 from contactstudy.fatigue.life import LifeExponents
 
 CUT_OFF = 0.01
@@ -96,7 +97,7 @@ def _along_axis(
             )
     return xr.Dataset(
         {
-            "risk_density": named("risk_density", density).assign_attrs(units=exponents.units(1)),
+            "risk_density": of_points("risk_density", density).assign_attrs(units=exponents.units(1)),
             "risk": named("risk", risk).assign_attrs(units=exponents.units(2), **theory),
         }
     )
@@ -191,7 +192,8 @@ def lundberg_palmgren(stress: xr.Dataset, exponents: LifeExponents | None = None
     outside = (at <= depths.min(dim)) | (at >= depths.max(dim))
     cut = {"orthogonal shear largest at the first or last depth": outside, **_outside(stress, amplitude)}
     result = _along_axis(_of_shear(crest, at, chosen), chosen, {"theory": "Lundberg and Palmgren"}, cut).assign(
-        shear_amplitude=named("shear_amplitude", crest.compute()), shear_depth=named("shear_depth", at.compute())
+        shear_amplitude=of_points("shear_amplitude", crest.compute()),
+        shear_depth=of_points("shear_depth", at.compute()),
     )
 
     def risk_of(part: xr.Dataset) -> xr.DataArray:
@@ -332,4 +334,4 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     of = partial(_beyond, limit=threshold, exponents=chosen)
     beyond, _ = reduced(of, [(stress, [dim]), (depths, [dim])], 2)
     error = error + _over_x(density * beyond).values
-    return _with_error(result.assign(mean_depth=named("mean_depth", mean)), error)
+    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error)

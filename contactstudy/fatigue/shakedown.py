@@ -28,7 +28,7 @@ from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.fatigue.enclosing_ball import enclosing_balls
-from contactstudy.fatigue.history import FEWEST_POSITIONS, histories, over_history
+from contactstudy.fatigue.history import FEWEST_POSITIONS, histories, of_points, over_history
 
 FEWEST_FOR_ERROR = 2 * FEWEST_POSITIONS
 """Positions along y of which every second still is a history."""
@@ -88,7 +88,8 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         yields in the first passage; `shakedown_stress` (Pa), the k below which it yields in every passage whatever
         residual stress yy (and xx) it has; `residual_sigma_yy` and, if `axial`, `residual_sigma_xx` (Pa), the
         residual stress with which that k suffices. The largest `shakedown_stress` over x and z is a rigorous bound:
-        a perfectly plastic body (von Mises) with a larger k shakes down.
+        a perfectly plastic body (von Mises) with a larger k shakes down. Values at points have no error, as a `comment`
+        says; :func:`shakedown_limit` has one.
 
     Raises
     ------
@@ -109,7 +110,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         _check_line_contact(stress)
     results = over_history(partial(_of_history, axial=bool(axial)), stress, (None,) * 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
-    found = {name: named(name, array) for name, array in zip(names, results, strict=True)}
+    found = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
     if not axial:
         del found["residual_sigma_xx"]
     return xr.Dataset(found)

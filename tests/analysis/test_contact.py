@@ -213,9 +213,8 @@ def test_a_cut_is_not_the_end_of_a_contact(part: slice, first: float, last: floa
         [first, last], nan_ok=True
     )
     factors = analysis.edge_factors(selected)
-    for end, value in (("first", first), ("last", last)):
+    for end in ("first", "last"):
         assert np.isnan(float(factors[f"end_over_middle_{end}"])) == (np.isnan(first) or np.isnan(last))
-        assert np.isnan(value) <= np.isnan(float(factors[f"end_over_middle_{end}"]))
     half = analysis.edge_pressure(whole.sel(y=slice(0, None)))
     assert [float(each) for each in half.values()] == [1.0, 4.0]
 

@@ -8,7 +8,19 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy import InvalidInputError, analysis
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    analysis,
+    profiles,
+    solve,
+)
+from contactstudy.arrays.variables import UNBOUNDED
+from contactstudy.study import Study, open_study, run_study
 
 
 @given(count=st.integers(1, 16))
@@ -63,3 +75,79 @@ def test_order_does_not_matter_and_stresses_at_one_depth_are_left_out(solved: xr
     turned = analysis.slices(solved.isel(x=slice(None, None, -1)), 4)
     assert turned["normal_load"].values == pytest.approx(there["normal_load"].values)
     assert "peak_maximum_shear" not in analysis.slices(solved.isel(z=1), 4)
+
+
+STEEL = Material(210e9, 0.3)
+DESIGN = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
+
+
+def pressed(profile: profiles.Profile, length: float, body: float | None, **given: float) -> Case:
+    """A roller of 5 mm radius on a body of a length, or on a half-space."""
+    on = HalfSpace(material=STEEL) if body is None else FiniteLengthSpace(length=body, material=STEEL)
+    return Case(body=on, roller=Roller(radius=5e-3, length=length, profile=profile), max_pressure=1.5e9, **given)
+
+
+KINDS = {
+    "crowned": pressed(profiles.FullCrown(crown_radius=0.06), 1.6e-3, 2e-3),
+    "straight, flush with free ends": pressed(profiles.Cylinder(), 1e-3, 1e-3),
+    "straight, flush and tilted": pressed(profiles.Cylinder(), 1e-3, 1e-3, tilt=1e-3),
+    "logarithmic, on a half-space": pressed(DESIGN, 1e-3, None),
+    "logarithmic, lifted at one end by its tilt": pressed(DESIGN, 1e-3, 1.2e-3, tilt=6e-3),
+    "rounded edges": pressed(profiles.Cylinder(fillet_radius=0.05e-3), 1.2e-3, 1.6e-3),
+    "sharp end inside the face": pressed(profiles.Cylinder(), 1e-3, 1.2e-3, end_distance=0.0),
+}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_stated_errors_cover_what_finer_columns_say(kind: str) -> None:
+    coarse, fine = (solve(KINDS[kind], stresses=False, accuracy=accuracy) for accuracy in (0.01, 0.002))
+    for count in (3, 12, 30):
+        table, finer = analysis.slices(coarse, count), analysis.slices(fine, count)
+        for name in ("axial_pressure", "normal_load"):
+            limited = np.isfinite(finer[name])
+            missed = abs(table[name] - finer[name]).where(limited, 0.0)
+            assert (missed <= table[f"{name}_error"]).all(), (count, name)
+            typical = float((table[f"{name}_error"] / finer[name].where(limited).max()).where(limited).median())
+            assert typical < 0.1, (count, name)
+
+
+def test_the_table_holds_a_peak_in_narrow_columns_and_no_number_at_a_singular_end() -> None:
+    rounded = solve(KINDS["rounded edges"], stresses=False)
+    largest = analysis.slices(rounded, 10)["axial_pressure"]
+    for side, part in (("first", 0), ("last", -1)):
+        peak, error = (float(rounded[f"peak_pressure_{side}{kind}"]) for kind in ("", "_error"))
+        assert float(largest[part]) == pytest.approx(peak, abs=error)
+    sharp = analysis.slices(solve(KINDS["sharp end inside the face"], stresses=False), 10)
+    for name in ("axial_pressure", "axial_pressure_error"):
+        assert np.isinf(sharp[name]).values.tolist() == [False] * 9 + [True]
+    assert np.isfinite(sharp["normal_load_error"]).all()
+
+
+def test_a_case_of_a_study_has_errors_on_its_own_cells(tmp_path) -> None:
+    base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.5e-3, "e_over_a": 1.0, "stresses": False}
+    edge = {"name": "rounded", "kind": "cylinder", "fillet_radius": 0.05e-3}
+    study = Study(name="small", base=base | {"profile": edge}, sweep={"max_pressure": [1.2e9, 1.5e9]})
+    run_study(study, tmp_path, workers=0, progress=False)
+    own, shared = (open_study(tmp_path, cells=cells).sel(max_pressure=1.5e9) for cells in ("own", "common"))
+    table = analysis.slices(own, 6)
+    assert float(table["axial_pressure"][0]) == pytest.approx(
+        float(own["peak_pressure_first"]), abs=float(own["peak_pressure_first_error"])
+    )
+    assert np.isfinite(table["axial_pressure_error"]).all()
+    assert np.isnan(analysis.slices(shared, 6)["axial_pressure_error"]).all()
+
+
+def test_numbers_without_an_error_say_so(solved: xr.Dataset) -> None:
+    settled = solve(KINDS["straight, flush with free ends"], stresses=False, accuracy=0.05)
+    parts = {"given cells": solved, "cut": settled.sel(x=slice(0.5e-3, None)), "half": settled.sel(y=slice(0, None))}
+    for what, result in parts.items():
+        table = analysis.slices(result, 4)
+        for name in ("axial_pressure", "normal_load"):
+            assert np.isnan(table[f"{name}_error"]).all(), what
+            assert UNBOUNDED in table[name].attrs["comment"], what
+            assert UNBOUNDED in table[f"{name}_error"].attrs["comment"], what
+    for name, array in analysis.slices(solved, 4).data_vars.items():
+        if name not in ("position", "width"):
+            assert UNBOUNDED in array.attrs["comment"], name
+    whole = analysis.slices(settled, 4)
+    assert not any(UNBOUNDED in whole[name].attrs["comment"] for name in ("axial_pressure", "normal_load"))

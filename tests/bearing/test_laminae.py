@@ -17,6 +17,7 @@ from contactstudy import (
     profiles,
     solve,
 )
+from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.bearing import lamina_factors
 
 STEEL = Material(210e9, 0.3)
@@ -85,6 +86,29 @@ def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
     given = lamina_factors(solve(case, choose_grid(case), stresses=False))
     assert np.isfinite(given.stress_riser).all()
     assert np.isnan(given.stress_riser_error).all()
+    assert given.stress_riser_error.attrs["comment"] == UNBOUNDED
+    assert UNBOUNDED in given.edge_factor.attrs["comment"]
+
+
+@pytest.mark.parametrize(
+    ("profile", "tilt"),
+    [
+        (profiles.FullCrown(crown_radius=0.06), 0.0),
+        (profiles.Cylinder(fillet_radius=0.05e-3), 4e-4),
+        (DESIGN, 6e-3),
+        (profiles.Cylinder(), 5e-4),
+    ],
+)
+def test_stated_errors_cover_what_finer_columns_say(profile: profiles.Profile, tilt: float) -> None:
+    roller = Roller(radius=5e-3, length=1.6e-3, profile=profile)
+    case = Case(body=FiniteLengthSpace(length=2e-3, material=STEEL), roller=roller, max_pressure=1.5e9, tilt=tilt)
+    coarse, fine = (solve(case, stresses=False, accuracy=accuracy) for accuracy in (0.01, 0.002))
+    for laminae in (9, 30, 60):
+        found, finer = (lamina_factors(each, laminae=laminae).hertz_load_per_length for each in (coarse, fine))
+        error = lamina_factors(coarse, laminae=laminae).hertz_load_per_length_error
+        known = np.isfinite(found)
+        assert (abs(found - finer) <= error)[known].all()
+        assert float(error[known].median()) < 0.05 * float(finer[known].max())
 
 
 def test_laminae_that_the_slice_model_does_not_load_have_no_factor() -> None:

@@ -10,6 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, solve
+from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.contact.slice_model import slice_model
 from contactstudy.profiles import Cylinder, FullCrown, IsoCylindrical, Lundberg, Tapered
 
@@ -86,6 +87,11 @@ def test_riser_is_that_of_the_standard() -> None:
     np.testing.assert_allclose(risen["pressure"], plain["pressure"] * np.sqrt(factor))
     np.testing.assert_array_equal(risen["load_per_length"], plain["load_per_length"])
     assert slice_model(CASE, slices=31)["edge_factor"][15] == 1.0
+
+
+def test_no_number_of_the_model_goes_without_the_mark_that_it_has_no_error() -> None:
+    result = slice_model(CASE, edge_riser=True)
+    assert all(UNBOUNDED in array.attrs["comment"] for name, array in result.items() if name != "normal_load")
 
 
 def test_only_what_lies_over_the_body_is_cut() -> None:

@@ -28,7 +28,12 @@ def test_all_points_of_a_variable(solved: xr.Dataset) -> None:
 
 
 def test_what_the_analysis_returns(solved: xr.Dataset) -> None:
-    assert len(export.to_table(analysis.slices(solved, 7))) == 7
+    table = export.to_table(analysis.slices(solved, 7))
+    assert len(table) == 7
+    assert "half_width [m] (no error known)" in table
+    assert "axial_pressure [Pa] (no error known)" in table
+    assert table["axial_pressure_error [Pa]"].isnull().all()
+    assert "width [m]" in table
     assert "half_width [m]" in export.to_table(analysis.axial_profiles(solved))
     assert "von_mises" in export.to_table(analysis.normalized(solved), "von_mises")
 

@@ -10,12 +10,18 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from contactstudy import InvalidInputError, fatigue
-from contactstudy.arrays.variables import STRESSES
+from contactstudy.arrays.variables import STRESSES, UNBOUNDED
 from contactstudy.fatigue import FatigueLimits
 from contactstudy.fatigue.critical_plane import _damage, _turned, _worst_planes
 
 LIMITS = FatigueLimits(bending=1.0, torsion=0.65)
 CRITERIA = [fatigue.dang_van, fatigue.crossland, fatigue.findley]
+
+
+@pytest.mark.parametrize("criterion", CRITERIA)
+def test_values_at_points_say_that_they_have_no_error(cycle, wave, criterion) -> None:
+    found = criterion(cycle(tau_yz=wave), LIMITS)
+    assert all(UNBOUNDED in array.attrs["comment"] for array in found.values())
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)

@@ -9,6 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis, fatigue
+from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.fatigue import LifeExponents
 
 
@@ -210,3 +211,12 @@ def test_friction_on_the_surface_is_not_for_lundberg_and_palmgren() -> None:
     with pytest.raises(InvalidInputError, match="Ioannides and Harris"):
         fatigue.lundberg_palmgren(xr.Dataset({"tau_yz": shear}))
     assert float(fatigue.ioannides_harris(orthogonal(xr.Dataset({"tau_yz": shear})))["risk"]) > 0
+
+
+def test_numbers_beside_the_risk_say_that_they_have_no_error(strip_result) -> None:
+    result = strip_result()
+    found = fatigue.lundberg_palmgren(result).merge(fatigue.ioannides_harris(orthogonal(result))["mean_depth"])
+    for name in ("risk_density", "shear_amplitude", "shear_depth", "mean_depth"):
+        assert UNBOUNDED in found[name].attrs["comment"], name
+    without = fatigue.lundberg_palmgren(result).drop_vars("risk_error")
+    assert fatigue.relative_life(without, without).attrs["comment"] == UNBOUNDED

@@ -11,7 +11,7 @@ from hypothesis.extra.numpy import arrays
 from scipy import optimize
 
 from contactstudy import InvalidInputError, fatigue, stress_field
-from contactstudy.arrays.variables import STRESSES
+from contactstudy.arrays.variables import STRESSES, UNBOUNDED
 from contactstudy.fatigue.shakedown import in_ball_axes, shakedown_summary
 from contactstudy.verification.closed_forms import hertz_strip
 
@@ -173,6 +173,12 @@ def test_error_is_infinite_where_the_window_ends_too_early(line_contact) -> None
     found = fatigue.shakedown_limit(line_contact(0.0).sel(y=slice(-0.3, 0.3)))
     assert np.isinf(float(found["shakedown_limit_error"]))
     assert "along y" in found["peak_shakedown_stress_error"].attrs["comment"]
+
+
+def test_values_at_points_say_that_they_have_no_error_and_the_limit_has_one(line_contact) -> None:
+    result = line_contact(0.1)
+    assert all(UNBOUNDED in array.attrs["comment"] for array in fatigue.shakedown(result, axial=True).values())
+    assert UNBOUNDED not in fatigue.shakedown_limit(result)["peak_shakedown_stress"].attrs["comment"]
 
 
 def test_summary_is_the_limit_where_a_passage_is_known(line_contact) -> None:
