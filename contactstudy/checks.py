@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from numbers import Integral, Real
@@ -12,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from contactstudy.errors import InvalidInputError
+from contactstudy.near_names import nearest
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
@@ -92,8 +92,8 @@ def known_name(name: str, value: str, known: Iterable[str]) -> str:
     names = sorted(known)
     if value in names:
         return value
-    nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
-    hint = f"did you mean {nearest[0]!r}?" if nearest else ""
+    near = nearest(value, names, likeness=0.5)
+    hint = f"did you mean {near!r}?" if near else ""
     raise InvalidInputError(name, value, f"one of {', '.join(names)}", hint)
 
 
