@@ -174,7 +174,7 @@ class Study:
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
         checks.known_name(where, str(name), PARAMETERS)
-        column = [PARAMETERS[name].check(name, value) for value in _listed(f"{where}.{name}", values)]
+        column = [PARAMETERS[name].checked(value) for value in _listed(f"{where}.{name}", values)]
         if where == "sweep":
             seen = set()
             for value in column:
@@ -195,7 +195,7 @@ class Study:
             wanted[name] = [
                 value
                 if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
-                else label(name, PARAMETERS[name].check(name, value))
+                else label(name, PARAMETERS[name].checked(value))
                 for value in several
             ]
         return wanted

@@ -105,6 +105,10 @@ class Parameter:
     absent: str = ""
     note: str = ""
 
+    def checked(self, value: object) -> Any:
+        """Return a value in the form that counts for the identity; a scalar that says its unit is converted first."""
+        return self.check(self.name, checks.scalar(self.name, value, self.units))
+
     @cached_property
     def default(self) -> Any:
         """Value of a case that does not give the parameter; None if there is none, or it may be left out."""

@@ -230,9 +230,7 @@ def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, An
     for name in values:
         checks.known_name(where, str(name), PARAMETERS)
     return {
-        name: parameter.check(name, values[name])
-        for name, parameter in PARAMETERS.items()
-        if values.get(name) is not None
+        name: parameter.checked(values[name]) for name, parameter in PARAMETERS.items() if values.get(name) is not None
     }
 
 
