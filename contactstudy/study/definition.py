@@ -19,7 +19,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameter import points
-from contactstudy.study.parameters import PARAMETERS, checked
+from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked
 from contactstudy.study.plan import LEVELS, Combination, Plan, combinations, in_engineers_words, label, make_plan
 from contactstudy.study.profile_kinds import with_files_in
 
@@ -90,8 +90,9 @@ class Study:
     Raises
     ------
     InvalidInputError
-        If a key is unknown (with the nearest known one), or a value is of a wrong type. Combinations that are
-        impossible are no error: :meth:`plan` lists them as skipped, with the reason.
+        If a key is unknown (with the nearest known one), a value is of a wrong type, or what every case needs, such as
+        a load, is given nowhere. Combinations that are impossible are no error: :meth:`plan` lists them as skipped,
+        with the reason.
 
     Examples
     --------
@@ -170,6 +171,10 @@ class Study:
         for name in names:
             if names.count(name) > 1:
                 raise InvalidInputError("zip", name, "a parameter that is not swept or zipped already")
+        given = {*self.base, *names, *(name for case in self.cases for name in case)}
+        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not given & {*group}]:
+            allowed = f"such that cases have {'; '.join(missing)}"
+            raise InvalidInputError("parameters", sorted(given), allowed, "give it in base, sweep, zip or cases")
 
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
