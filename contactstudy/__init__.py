@@ -12,6 +12,8 @@ from importlib import import_module
 
 import lazy_loader
 
+from contactstudy.near_names import missing
+
 # By default the package logs nothing; logging.basicConfig(level="INFO") shows its stages.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
@@ -26,13 +28,10 @@ def __getattr__(name: str) -> object:
         return version_of(__name__)
     try:
         value: object = _public_name(name)
-    except AttributeError as error:
-        from difflib import get_close_matches
-
-        near = get_close_matches(name, __all__, n=1)
-        if name.startswith("_") or not near:
+    except AttributeError:
+        if name in __all__:
             raise
-        raise AttributeError(f"{error}; did you mean {near[0]}?", name=name) from None
+        raise missing(name, f"module {__name__!r}", __all__) from None
     if "xarray" in sys.modules:
         import_module("contactstudy.analysis.accessor")
     return value

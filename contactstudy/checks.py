@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from numbers import Integral, Real
@@ -12,6 +11,8 @@ import numpy as np
 import numpy.typing as npt
 
 from contactstudy.errors import InvalidInputError
+from contactstudy.near_names import nearest
+from contactstudy.unit_sizes import factor_to
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
@@ -42,19 +43,54 @@ def _float(value: Real) -> float:
         return np.inf
 
 
+SI_WORDS = {"": "1", "metres": "m", "radians": "rad"}
+"""What messages call units, where that is not the unit itself."""
+
+
+def scalar(name: str, value: Any, unit: str = "") -> Any:
+    """Return the number in an array without dimensions, in SI if an attribute ``units`` says what it is in.
+
+    Parameters
+    ----------
+    name : str
+        Name of the argument.
+    value : object
+        A 0-d array of numpy, or a DataArray such as a scalar of a result. All else is returned as it is.
+    unit : str
+        Unit in SI, as messages call it.
+
+    Raises
+    ------
+    InvalidInputError
+        If the array says a unit that is not known for this quantity.
+
+    Examples
+    --------
+    >>> scalar("young", np.array(210e9), "Pa")
+    210000000000.0
+    """
+    if isinstance(value, np.generic) or getattr(value, "ndim", None) != 0 or not hasattr(value, "item"):
+        return value
+    number, said = value.item(), getattr(value, "attrs", {}).get("units")
+    known = SI_WORDS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
+    if said is None or said == known or isinstance(number, bool) or not isinstance(number, Real):
+        return number
+    return factor_to(known, f"{name}.attrs['units']", said) * _float(number)
+
+
 def finite(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite real number."""
-    return _within(name, value, -LARGEST, f"a finite number{_suffix(unit)}")
+    return _within(name, value, unit, -LARGEST, f"a finite number{_suffix(unit)}")
 
 
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a positive finite number."""
-    return _within(name, value, 1 / LARGEST, f"a positive finite number{_suffix(unit)}")
+    return _within(name, value, unit, 1 / LARGEST, f"a positive finite number{_suffix(unit)}")
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite number >= 0."""
-    return _within(name, value, 0.0, f"a finite number not below zero{_suffix(unit)}")
+    return _within(name, value, unit, 0.0, f"a finite number not below zero{_suffix(unit)}")
 
 
 def _suffix(unit: str) -> str:
@@ -62,10 +98,11 @@ def _suffix(unit: str) -> str:
     return f" ({unit})" if unit else ""
 
 
-def _within(name: str, value: object, least: float, allowed: str) -> float:
+def _within(name: str, value: object, unit: str, least: float, allowed: str) -> float:
     """Return a real number from `least` to `LARGEST`, or raise."""
-    if not isinstance(value, bool) and isinstance(value, Real):
-        found = _float(value)
+    number = scalar(name, value, unit)
+    if not isinstance(number, bool) and isinstance(number, Real):
+        found = _float(number)
         if least <= found <= LARGEST:
             return found
         if np.isfinite(found) and (found > 0 or least < 0):
@@ -76,6 +113,7 @@ def _within(name: str, value: object, least: float, allowed: str) -> float:
 
 def count(name: str, value: object, least: int = 1) -> int:
     """Return `value` as an int, or raise if it is not a whole number >= `least`."""
+    value = scalar(name, value)
     if isinstance(value, bool) or not isinstance(value, Integral) or int(value) < least:
         raise InvalidInputError(name, value, f"a whole number not below {least}")
     return int(value)
@@ -92,8 +130,8 @@ def known_name(name: str, value: str, known: Iterable[str]) -> str:
     names = sorted(known)
     if value in names:
         return value
-    nearest = difflib.get_close_matches(value, names, n=1, cutoff=0.5)
-    hint = f"did you mean {nearest[0]!r}?" if nearest else ""
+    near = nearest(value, names, likeness=0.5)
+    hint = f"did you mean {near!r}?" if near else ""
     raise InvalidInputError(name, value, f"one of {', '.join(names)}", hint)
 
 

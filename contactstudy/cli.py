@@ -143,7 +143,8 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     except KeyboardInterrupt as interrupt:
         if arguments is None and threading.current_thread() is threading.main_thread():
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
-        print("contactstudy: interrupted; finished cases are kept, the same command goes on", file=sys.stderr)
+        words = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
+        print(f"contactstudy: {words}", file=sys.stderr)
         return 128 + (signal.SIGTERM if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
         # Python flushes the output once more at its end, and would complain.

@@ -6,6 +6,8 @@ programming mistake with one ``except`` clause.
 
 from __future__ import annotations
 
+from typing import Any
+
 
 class ContactStudyError(Exception):
     """Base class of all errors raised by contactstudy."""
@@ -37,18 +39,30 @@ class InvalidInputError(ContactStudyError, ValueError):
         self.value = value
         self.allowed = allowed
         self.hint = hint
-        try:
-            shown = repr(value)
-        except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables
-            shown = f"a {type(value).__name__} that is too large to show"
-        if len(shown) > 120:
-            shown = shown[:117] + "..."
-        message = f"{parameter} = {shown}: must be {allowed}"
+        message = f"{parameter} = {_shown(value)}: must be {allowed}"
         super().__init__(f"{message}; {hint}" if hint else message)
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str, str]]:
         """Pickle through the constructor: errors cross process borders in a study."""
         return type(self), (self.parameter, self.value, self.allowed, self.hint)
+
+
+def _shown(value: Any) -> str:
+    """Return a value on one short line: of an array its kind and shape, of one without dimensions the number."""
+    try:
+        shape, dtype = getattr(value, "shape", None), getattr(value, "dtype", None)
+        if hasattr(value, "data_vars"):
+            shown = f"{type(value).__name__} of {len(value.data_vars)} variables"
+        elif dtype is None or not isinstance(shape, tuple):
+            shown = " ".join(line.strip() for line in repr(value).splitlines())
+        elif shape:
+            shown = f"{type(value).__name__} of shape {shape} and type {dtype}"
+        else:
+            unit = getattr(value, "attrs", {}).get("units")
+            shown = repr(value.item()) + (f" {unit}" if isinstance(unit, str) else "")
+    except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables
+        shown = f"a {type(value).__name__} that is too large to show"
+    return shown if len(shown) <= 120 else shown[:117] + "..."
 
 
 class WindowError(ContactStudyError):

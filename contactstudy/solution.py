@@ -178,7 +178,8 @@ def solve(
         if roughness is not None:
             raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
         coarse = _labelled(case, _contact(asked, grid.coarsened(), None, tolerance))
-        result = result.assign(discretisation_error(result, coarse).data_vars)
+        errors = discretisation_error(result.assign(hertz_half_width=case.hertz_half_width), coarse)
+        result = result.assign(errors.data_vars)
     contact_seconds = time.perf_counter() - began
     LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
     half_width = case.hertz_half_width

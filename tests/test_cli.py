@@ -133,7 +133,7 @@ def test_export(study_file, tmp_path, capsys):
 
 @pytest.mark.parametrize(
     ("content", "expected"),
-    [("[sweep]\nfrictoin = [0]\n", "did you mean 'friction'"), ("name = ", "small.toml"), ("", "given")],
+    [("[sweep]\nfrictoin = [0]\n", "did you mean 'friction'"), ("name = ", "small.toml"), ("", "give it in base")],
 )
 def test_wrong_files_give_code_2(study_file, capsys, content, expected):
     study_file.write_text(content)

@@ -4,6 +4,8 @@ They work on results of :func:`contactstudy.solve`, on surfaces without stresses
 where that has a meaning, on a whole study opened by :func:`contactstudy.open_study`.
 """
 
+from typing import TYPE_CHECKING
+
 from contactstudy.analysis.axes import dimension_along, positions, single_case
 from contactstudy.analysis.axial import (
     axial_pressure,
@@ -27,6 +29,7 @@ from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.scaling import normalized, positions_over_a
 from contactstudy.analysis.short import short
 from contactstudy.analysis.slices import slices
+from contactstudy.near_names import suggesting
 
 __all__ = [
     "MEASURES",
@@ -58,3 +61,6 @@ __all__ = [
     "solved_case",
     "unloaded_gap",
 ]
+
+if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
+    __getattr__ = suggesting(__name__, __all__)

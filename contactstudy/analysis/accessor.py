@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib import import_module
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -19,6 +19,7 @@ from contactstudy.analysis.certainty import Certainty
 from contactstudy.analysis.citations import Citations
 from contactstudy.analysis.short import ShortView
 from contactstudy.case.case import Case
+from contactstudy.near_names import missing
 
 
 @xr.register_dataset_accessor("contact")
@@ -43,6 +44,13 @@ class ContactAccessor:
     def __repr__(self) -> str:
         text = self._summary()
         return text if isinstance(text, str) else repr(text)
+
+    if not TYPE_CHECKING:  # to a type checker, a class with __getattr__ has every name
+
+        def __getattr__(self, name: str) -> object:
+            raise missing(
+                name, "the accessor Dataset.contact", [each for each in dir(self) if not each.startswith("_")]
+            )
 
     def _repr_html_(self) -> str:
         text = self._summary()

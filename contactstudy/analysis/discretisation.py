@@ -23,6 +23,13 @@ FITTED = 3
 """Columns of cells that are extrapolated to the end of the shape. Accuracy."""
 
 
+SHARP = (
+    "no limit: the shape ends sharply inside the body's top, and the pressure there grows with every finer grid; "
+    "leave the grid out, for columns that are refined beside the end, and for its law"
+)
+"""What is said of an error that is infinite for every grid."""
+
+
 def extrapolated(coarse: float, fine: float, order: float, ratio: float = 2.0) -> float:
     """Limit of a value that converges with a known order, from two grids (Richardson's extrapolation).
 
@@ -74,10 +81,12 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        `peak_pressure` (Pa), between the cells by parabolas; `end_pressure_first` and `end_pressure_last` (Pa), the
-        largest pressure across y extrapolated to the first and last end of the shape or the body, 0 if the contact
-        ends before; `half_width_middle` (metres), in the middle between these ends (NaN if open there). All are values
-        of the finer grid. Beside each, ``<name>_error`` in the same unit.
+        `peak_pressure` (Pa), between the cells by parabolas, or at an end where that is more; `end_pressure_first` and
+        `end_pressure_last` (Pa), the largest pressure across y extrapolated to the first and last end of the shape or
+        the body, 0 if the contact ends before; `half_width_middle` (metres), in the middle between these ends (NaN if
+        open there). All are values of the finer grid. Beside each, ``<name>_error`` in the same unit, that of the peak
+        so large that it covers what an end may have; where it is infinite, its attribute `comment` says why and what
+        to try.
 
     Raises
     ------
@@ -105,13 +114,21 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
         )
     step = float(fine["y"][1] - fine["y"][0])
     displaced = EDGE_UNCERTAINTY * step / measured[0]["half_width_middle"]
-    unbounded = _sharp_ends(fine)
+    unbounded = _sharp_ends(fine, measured[0])
+    errors = {
+        name: np.inf if name in unbounded else _estimated_error(measured[1][name], value, ratio, displaced)
+        for name, value in measured[0].items()
+    }
+    errors["peak_pressure"] = max(errors["peak_pressure"], _left_by_ends(measured[0], errors))
     result = xr.Dataset()
     for name, value in measured[0].items():
-        error = np.inf if name in unbounded else _estimated_error(measured[1][name], value, ratio, displaced)
-        result[name], result[f"{name}_error"] = value, error
-        if np.isinf(error):
-            result[f"{name}_error"].attrs["comment"] = "no limit in sight: the end is sharp or the grid too coarse"
+        result[name], result[f"{name}_error"] = value, errors[name]
+        if name in unbounded:
+            result[f"{name}_error"].attrs["comment"] = SHARP
+        elif np.isinf(errors[name]):
+            columns, rows = cells[0]
+            comment = f"no limit in sight on {columns} x {rows} cells: {_finer(fine)}"
+            result[f"{name}_error"].attrs["comment"] = comment
     result.attrs["cells"] = [f"{columns} x {rows}" for columns, rows in cells]
     return describe(result, "contact quantities with their discretisation error")
 
@@ -126,6 +143,15 @@ def _estimated_error(coarse: float, fine: float, ratio: float, displaced: float)
     return max(abs(extrapolated(coarse, fine, ASSUMED_ORDER, ratio) - fine), floor)
 
 
+def _left_by_ends(measured: dict[str, float], errors: dict[str, float]) -> float:
+    """By how much an end may be above the peak; the pressure of a lower end without a limit says nothing of it."""
+    peak, found = measured["peak_pressure"], 0.0
+    for name in ("end_pressure_first", "end_pressure_last"):
+        if np.isfinite(errors[name]) or measured[name] >= peak:
+            found = max(found, measured[name] + errors[name] - peak)
+    return found
+
+
 def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
     """First and last column of cells where the shape faces the body."""
     touchable = np.flatnonzero(np.isfinite(contact["gap"].transpose("x", "y").values).any(axis=1))
@@ -134,7 +160,7 @@ def _shape_columns(contact: xr.Dataset) -> tuple[int, int]:
     return int(touchable[0]), int(touchable[-1])
 
 
-def _sharp_ends(contact: xr.Dataset) -> set[str]:
+def _sharp_ends(contact: xr.Dataset, measured: dict[str, float]) -> set[str]:
     """Name the quantities without a limit: where a loaded shape ends inside the body's top."""
     along = contact["pressure"].transpose("x", "y").values.max(axis=1)
     first, last = _shape_columns(contact)
@@ -145,7 +171,18 @@ def _sharp_ends(contact: xr.Dataset) -> set[str]:
         sharp.add("end_pressure_last")
     at_first = "end_pressure_first" in sharp and along.argmax() < first + FITTED
     at_last = "end_pressure_last" in sharp and along.argmax() > last - FITTED
-    return sharp | {"peak_pressure"} if at_first or at_last else sharp
+    at_end = any(measured[name] >= measured["peak_pressure"] for name in sharp)
+    return sharp | {"peak_pressure"} if at_first or at_last or at_end else sharp
+
+
+def _finer(contact: xr.Dataset) -> str:
+    """Say what to try where cells are too coarse: refined columns, or twice as many uniform cells."""
+    refined = "leave the grid out, for columns that are refined"
+    steps = [np.diff(contact[axis].values) for axis in ("x", "y")]
+    if "hertz_half_width" not in contact or not all(np.allclose(step, step[0]) for step in steps):
+        return f"{refined}, or take twice as many"
+    twice = [2 * float(contact["hertz_half_width"]) / step[0] for step in steps]
+    return f"{refined}, or try choose_grid(case, cells_x={twice[0]:.3g}, cells_y={twice[1]:.3g})"
 
 
 def _measured(name: str, contact: xr.Dataset) -> dict[str, float]:
@@ -155,10 +192,11 @@ def _measured(name: str, contact: xr.Dataset) -> dict[str, float]:
     first, last = _shape_columns(contact)
     along = np.array([_peak(pressure[column : column + 1]) for column in range(first, last + 1)])
     middle = 0.5 * (grid.x[first] + grid.x[last])
+    ends = _at_end(along[:FITTED]), _at_end(along[: -FITTED - 1 : -1])
     return {
-        "peak_pressure": _peak(pressure),
-        "end_pressure_first": _at_end(along[:FITTED]),
-        "end_pressure_last": _at_end(along[: -FITTED - 1 : -1]),
+        "peak_pressure": max(_peak(pressure), *ends),
+        "end_pressure_first": ends[0],
+        "end_pressure_last": ends[1],
         "half_width_middle": float(np.interp(middle, grid.x, edges["half_width"].values)),
     }
 

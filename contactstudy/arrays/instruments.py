@@ -6,6 +6,7 @@ SurfaceTopography knows the instruments' own formats. Here lengths become metres
 
 from __future__ import annotations
 
+import logging
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -13,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.arrays.measurements import regular_file
+from contactstudy.arrays.text_files import READ, known_otherwise, regular_file
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError, InvalidInputError
 
@@ -23,6 +24,9 @@ TEXT = ("", ".csv", ".txt", ".tsv", ".dat", ".nc")
 """Endings of files that need no other library: columns with units, and netCDF."""
 
 TURNS = (0, 90, 180, 270)
+
+# Where no one listens, a reader that is tried on a foreign file would print that file on the screen.
+logging.getLogger("igor2").addHandler(logging.NullHandler())
 
 REGULAR = 1e-6
 """Part of a step by which points may be off the lines of a grid. Accuracy."""
@@ -119,6 +123,8 @@ def _backwards(positions: FloatArray) -> FloatArray:
 def _check_installed(path: Path, package: str) -> None:
     """Raise unless a package of the extra is installed, and say how to install it."""
     if find_spec(package) is None:
+        if words := known_otherwise(path):
+            raise _refused(path, READ, f"it is {words}")
         raise ContactStudyError(
             f"reading {path} needs {package}, which the extra `measured` brings: "
             'pip install "contactstudy[measured]"; files with columns end with .csv, .txt, .tsv or .dat'
@@ -166,7 +172,9 @@ def _topography(path: Path) -> Heights:
         read: Any = read_topography(str(path))
         unit, positions, heights = read.unit, read.positions(), np.ma.filled(read.heights(), np.nan)
     except CannotDetectFileFormat:
-        raise _refused(path, "a file in a format that SurfaceTopography knows", "or columns, in a .csv file") from None
+        words = known_otherwise(path)
+        hint = f"it is {words}" if words else "none of these knows it: export it as x3p, or as columns in a .csv file"
+        raise _refused(path, READ, hint) from None
     except Exception as error:  # what its forty readers raise on a damaged file can be anything
         raise _refused(path, "a file that can be read", str(error)[:200]) from error
     metres = _metres(path, unit)

@@ -1,22 +1,23 @@
 """Measured data from files: columns with units, and the checks that every measurement must pass.
 
 Files are CSV, with a header such as ``x [mm], drop [um]``, or netCDF, with the attribute `units` on every variable.
-Nothing is guessed: a missing unit, a gap or a value that is no number is an error that says where.
+Nothing is guessed: a missing unit, a comma of two meanings, a gap or a value that is no number is an error that says
+where.
 """
 
 from __future__ import annotations
 
 import csv
 import re
-import stat
 from array import array
-from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.decimal_marks import Numbers, quoted
+from contactstudy.arrays.text_files import is_unread, lines_of, regular_file
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -39,18 +40,9 @@ METRES = {
 WIDEST_STEP = 3.0
 """A step between positions that is this many times as wide as the steps beside it is a gap. Accuracy."""
 
-COMMENT = "#"
-"""Begins a line of a text file that is not read."""
-
-# Of a file with measurements; a height map of ten million points has as many.
-MOST_BYTES = 500_000_000
-
-NUMBER = re.compile(r"\s*[+-]?(?:(?:\d+(?:\.\d*)?|\.\d+)(?:e[+-]?\d+)?|nan|inf)\s*", re.ASCII | re.IGNORECASE)
-
 # What a message quotes of a file, which may be a foreign one: names of columns, and little else.
 NAME = re.compile(r"[A-Za-z]\w{0,15}", re.ASCII)
 MOST_NAMES = 8
-LONGEST_QUOTE = 24
 
 
 def read_netcdf(path: Path) -> xr.Dataset:
@@ -89,6 +81,8 @@ def unit_in_metres(name: str, unit: object) -> float:
     text = str(unit).strip() if unit else ""
     if text not in METRES:
         hint = f"a header says it in brackets, such as {name} [mm]; netCDF in the attribute units"
+        if is_unread(text):
+            hint = "its encoding is not known: save the file as UTF-8 (in Excel 'CSV UTF-8'), or write um"
         raise InvalidInputError(f"unit of {name}", text or None, f"one of {', '.join(METRES)}", hint)
     return METRES[text]
 
@@ -100,7 +94,9 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     ----------
     path : str or Path
         Text with one line for each point. The first line names the columns with their units, as ``x [mm]`` or
-        ``x (mm)``. Commas, semicolons or tabs between them; lines that begin with ``#`` are left out.
+        ``x (mm)``. Commas, semicolons or tabs between them; lines that begin with ``#`` are left out. Between
+        semicolons or tabs numbers may have decimal commas, where these cannot be anything else. UTF-8, UTF-16 with its
+        mark, or Latin-1 and its kin.
     positions : tuple of str
         Names of columns that must be there.
     values : tuple of str
@@ -117,7 +113,7 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
         If the file cannot be read, a column or unit is missing or unknown, or a field is no number (with its line).
     """
     path = Path(path)
-    lines = _lines(path)
+    lines = lines_of(path)
     first = next(lines, None)
     if first is None:
         hint = f"a header such as: {_wanted_header(positions, values)}"
@@ -126,42 +122,18 @@ def read_columns(path: str | Path, positions: tuple[str, ...], values: tuple[str
     header = [_named_unit(entry) for entry in _fields(*first, separator)]
     names = _chosen([name for name, _ in header], positions, values, path)
     places = [next(place for place, (known, _) in enumerate(header) if known == name) for name in names]
-    columns = [array("d") for _ in names]
+    columns, numbers = [array("d") for _ in names], Numbers(separator)
     for number, line in lines:
         row = _fields(number, line, separator)
         if len(row) != len(header):
             raise InvalidInputError(f"line {number}", f"{len(row)} fields", f"{len(header)} fields, as the header has")
         for name, place, column in zip(names, places, columns, strict=True):
-            column.append(_number(number, name, row[place]))
+            column.append(numbers.read(number, name, row[place]))
+    numbers.check()
     return {
         name: unit_in_metres(name, header[place][1]) * np.array(column)
         for name, place, column in zip(names, places, columns, strict=True)
     }
-
-
-def regular_file(path: Path, kind: str = "text") -> None:
-    """Raise unless `path` is a file of a sensible size: a pipe or a device would never end."""
-    try:
-        state = path.stat()
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise InvalidInputError("path", str(path), f"a {kind} file that can be read", reason) from error
-    if not stat.S_ISREG(state.st_mode):
-        raise InvalidInputError("path", str(path), "a regular file, not a folder, pipe or device")
-    if state.st_size > MOST_BYTES:
-        raise InvalidInputError("path", str(path), f"at most {MOST_BYTES:.0e} bytes", f"it has {state.st_size}")
-
-
-def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    """Yield lines with their numbers, but for empty ones and comments."""
-    regular_file(path)
-    try:
-        with open(path, encoding="utf-8-sig") as file:
-            for number, line in enumerate(file, start=1):
-                if (content := line.strip()) and not content.startswith(COMMENT):
-                    yield number, line
-    except (OSError, UnicodeDecodeError) as error:
-        raise InvalidInputError("path", str(path), "a text file that can be read", str(error)) from error
 
 
 def _fields(number: int, line: str, separator: str) -> list[str]:
@@ -172,20 +144,6 @@ def _fields(number: int, line: str, separator: str) -> list[str]:
         return next(csv.reader((line.rstrip("\r\n"),), delimiter=separator, skipinitialspace=True, strict=True))
     except csv.Error as error:
         raise InvalidInputError(f"line {number}", quoted(line), "fields of numbers", str(error)) from None
-
-
-def quoted(text: str) -> str:
-    """Return the beginning of what a file says: enough to find the place, not enough to give a foreign file away.
-
-    Examples
-    --------
-    >>> quoted("0.1, 0.2")
-    '0.1, 0.2'
-    >>> quoted("a secret that stands in a file of somebody else")
-    'a secret that stands ...'
-    """
-    text = text.strip()
-    return text if len(text) <= LONGEST_QUOTE else f"{text[: LONGEST_QUOTE - 3]}..."
 
 
 def _named_unit(entry: str) -> tuple[str, str]:
@@ -209,15 +167,6 @@ def _chosen(found: list[str], positions: tuple[str, ...], values: tuple[str, ...
 def _wanted_header(positions: tuple[str, ...], values: tuple[str, ...]) -> str:
     """Return an example of a header that would fit."""
     return ", ".join([*(f"{name} [mm]" for name in positions), f"{values[0]} [um]"])
-
-
-def _number(line: int, name: str, field: str) -> float:
-    """Return a field as a number; Python's own reading takes underscores and the digits of all scripts as well."""
-    if NUMBER.fullmatch(field):
-        return float(field)
-    if not field.strip():
-        return np.nan
-    raise InvalidInputError(f"line {line}, {name}", quoted(field), "a number with a decimal point")
 
 
 def check_positions(name: str, positions: FloatArray, least: int = 2) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import xarray as xr
@@ -11,40 +10,17 @@ from contactstudy import checks
 from contactstudy.arrays.required import require
 from contactstudy.arrays.vocabulary import VARIABLES
 from contactstudy.errors import InvalidInputError
-
-KNOWN: dict[str, dict[str, float]] = {
-    "m": {
-        "m": 1.0,
-        "mm": 1e-3,
-        "um": 1e-6,
-        "µm": 1e-6,
-        "μm": 1e-6,
-        "micrometer": 1e-6,
-        "micron": 1e-6,
-        "nm": 1e-9,
-        "km": 1e3,
-        "metre": 1.0,
-        "meter": 1.0,
-        "metres": 1.0,
-        "meters": 1.0,
-    },
-    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
-    "N": {"N": 1.0, "kN": 1e3},
-    "N m": {"N m": 1.0, "Nm": 1.0, "N*m": 1.0, "N.m": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
-    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180},
-    "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
-    "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
-}
-"""Units that input may have, by the one in SI, and their sizes in it."""
+from contactstudy.unit_sizes import factor_to
 
 POSITIONS = ("x", "y", "z", "x_field", "y_field", "x_width")
 """Coordinates in metres."""
 
 
 def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
-    """Return an array with its values in `unit`, one of :data:`KNOWN`, and its positions in metres.
+    """Return an array with its values in `unit`, and its positions in metres.
 
-    Values and positions that do not say their unit are taken to be in these.
+    The unit is one of :data:`contactstudy.unit_sizes.KNOWN`. Values and positions that do not say their unit are taken
+    to be in these.
 
     Raises
     ------
@@ -134,23 +110,3 @@ def _factor(name: str, array: xr.DataArray, unit: str) -> float:
     """Factor that takes the values of an array to `unit`; 1 where it does not say its unit."""
     said = array.attrs.get("units")
     return 1.0 if said is None else factor_to(unit, f"{name}.attrs['units']", said)
-
-
-def factor_to(unit: str, name: str, said: object) -> float:
-    """Return the factor that takes values in the unit that was said to `unit`, one of those in SI.
-
-    Raises
-    ------
-    InvalidInputError
-        With `name` if the unit is none that is known for it.
-
-    Examples
-    --------
-    >>> factor_to("N", "load.attrs['units']", "kN")
-    1000.0
-    """
-    known = KNOWN.get(unit, {})
-    if not isinstance(said, str) or said.strip() not in known:
-        allowed = f"one of {', '.join(known)}" if known else "left out"
-        raise InvalidInputError(name, said, allowed, f"without it {unit} is meant" if known else "")
-    return known[said.strip()]

@@ -8,11 +8,11 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.units import factor_to
 from contactstudy.arrays.variables import UNBOUNDED, describe, named
 from contactstudy.bearing.energy_spline import Motion
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.unit_sizes import factor_to
 
 Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray
 """A number, several, or labelled ones."""

@@ -1,4 +1,4 @@
-"""Elastic constants of materials that rolling contacts are made of, each with its source.
+"""Elastic constants of materials that rolling contacts are made of, each with its source in `SOURCES`.
 
 Moduli of steels differ by one or two percent between sources, and pressures by half of that. What a test certificate or
 a supplier states for the steel at hand goes before these.
@@ -8,27 +8,42 @@ from __future__ import annotations
 
 from contactstudy.bodies.material import Material
 
-__all__ = ["BEARING_STEEL", "DUCTILE_IRON", "GEAR_STEEL", "STRUCTURAL_STEEL"]
+__all__ = ["BEARING_STEEL", "DUCTILE_IRON", "GEAR_STEEL", "SOURCES", "STRUCTURAL_STEEL"]
 
 BEARING_STEEL = Material(young=207e9, poisson=0.3)
-"""Hardened bearing steel such as 100Cr6 (AISI 52100): 207 GPa, 0.3.
-
-The values behind the constants for steel of T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th
-edition (2006), chapter 6: 0.0236 for the semi-axes of a point contact, 3.35e-3 for the half-width of a line contact.
-"""
+"""Hardened bearing steel such as 100Cr6 (AISI 52100): 207 GPa, 0.3."""
 
 GEAR_STEEL = Material(young=206e9, poisson=0.3)
-"""Steel of gears: 206 GPa, 0.3. ISO 6336-2, elasticity factor of steel on steel, 189.8 (N/mm2)**0.5."""
+"""Steel of gears: 206 GPa, 0.3."""
 
 DUCTILE_IRON = Material(young=173e9, poisson=0.3)
-"""Cast iron with nodular graphite: 173 GPa, 0.3. ISO 6336-2, elasticity factor with steel, 181.4 (N/mm2)**0.5."""
+"""Cast iron with nodular graphite: 173 GPa, 0.3."""
 
 STRUCTURAL_STEEL = Material(young=210e9, poisson=0.3)
-"""Structural steel: 210 GPa, 0.3. EN 1993-1-1, 3.2.6."""
+"""Structural steel: 210 GPa, 0.3."""
+
+SOURCES = {
+    "BEARING_STEEL": "hardened bearing steel such as 100Cr6 (AISI 52100). The values behind the constants for steel of "
+    "T. A. Harris, M. N. Kotzalas, Essential Concepts of Bearing Technology, 5th edition (2006), chapter 6: 0.0236 for "
+    "the semi-axes of a point contact, 3.35e-3 for the half-width of a line contact",
+    "DUCTILE_IRON": "cast iron with nodular graphite. ISO 6336-2, elasticity factor with steel, 181.4 (N/mm2)**0.5",
+    "GEAR_STEEL": "steel of gears. ISO 6336-2, elasticity factor of steel on steel, 189.8 (N/mm2)**0.5",
+    "STRUCTURAL_STEEL": "structural steel. EN 1993-1-1, 3.2.6",
+}
+"""What each material is, and where its constants are from."""
+
+
+def documented() -> str:
+    """Return the table of all materials in Markdown, as the documentation shows it."""
+    rows = ["| name | E, GPa | nu | what it is, and the source |", "|---|---|---|---|"]
+    for name, source in SOURCES.items():
+        material: Material = globals()[name]
+        rows.append(f"| `cs.materials.{name}` | {1e-9 * material.young:g} | {material.poisson:g} | {source} |")
+    return "\n".join(rows)
 
 
 def __getattr__(name: str) -> Material:
     """Say which materials there are when another is asked for."""
     raise AttributeError(
-        f"no material {name!r}; there are {', '.join(__all__)}, and Material(young, poisson)", name=name
+        f"no material {name!r}; there are {', '.join(SOURCES)}, and Material(young, poisson)", name=name
     )

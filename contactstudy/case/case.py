@@ -215,7 +215,8 @@ class Case:
 
     def _check_approach(self) -> None:
         """Raise unless the approach is one number that presses the roller, and no more than its radius."""
-        if isinstance(self.approach, (list, tuple, np.ndarray, xr.DataArray)):
+        given: object = self.approach
+        if isinstance(given, (list, tuple)) or (isinstance(given, (np.ndarray, xr.DataArray)) and given.ndim):
             raise InvalidInputError(
                 "approach",
                 self.approach,

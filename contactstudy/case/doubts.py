@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -21,6 +21,7 @@ from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import MagnitudeWarning
 from contactstudy.profiles.base import Shape, checked_drop
+from contactstudy.profiles.crowned import FullCrown, PartialCrown
 from contactstudy.profiles.logarithmic import Logarithmic
 
 if TYPE_CHECKING:
@@ -73,6 +74,13 @@ USUAL = {
 DROP_AT = {"drop": 0.4, "end drop": 0.49}
 """Distances from mid-length over the length where a profile's drop is looked at."""
 
+FLATTEST_CROWN, FLATTEST_SHARE = 1e-7, 1e-5
+"""A crown is doubtful if its arc, over half the roller's length, drops by less than this (metres), and by less than
+this share of the length: no grinder holds the one on a roller of 10 mm and more, nor the other on a shorter one. The
+radius alone says little, for real ones are from 0.1 to some 100 m."""
+
+Part = TypeVar("Part", bound=Shape)
+
 
 def doubts(case: Case) -> tuple[str, ...]:
     """Questions on a case: each names a value, what is usual, and what it may have been meant to be.
@@ -93,6 +101,7 @@ def doubts(case: Case) -> tuple[str, ...]:
         _doubt("friction", "friction", _largest(case.friction)),
         _doubt("tilt", "tilt", abs(case.tilt)),
         _of_crown(case),
+        _of_flat_crown(case),
         _of_design(case),
         _of_load(case),
     ]
@@ -182,21 +191,35 @@ def _largest(friction: object) -> float:
     return float(np.max(np.abs(np.asarray(values, dtype=np.float64))))
 
 
-def _logarithmic(profile: object) -> Iterator[Logarithmic]:
-    """Logarithmic profiles that a profile is, or is made of."""
-    if isinstance(profile, Logarithmic):
+def _parts(profile: object, kind: type[Part]) -> Iterator[Part]:
+    """Profiles of a kind that a profile is, or is made of."""
+    if isinstance(profile, kind):
         yield profile
     elif isinstance(profile, tuple):
         for part in profile:
-            yield from _logarithmic(part)
+            yield from _parts(part, kind)
     elif isinstance(profile, Shape):
-        yield from _logarithmic(tuple(vars(profile).values()))
+        yield from _parts(tuple(vars(profile).values()), kind)
+
+
+def _of_flat_crown(case: Case) -> str:
+    """Return the question on the radius of a crown that is flatter than any that is made."""
+    half, profile = 0.5 * case.roller.length, case.roller.profile
+    crowns: list[FullCrown | PartialCrown] = [*_parts(profile, FullCrown), *_parts(profile, PartialCrown)]
+    for crown in crowns:
+        radius = crown.crown_radius
+        drop = 0.5 * half**2 / radius
+        if drop < min(FLATTEST_CROWN, FLATTEST_SHARE * case.roller.length):
+            name = f"{type(crown).__name__}.crown_radius = {radius:g} m"
+            meant = f"; {radius:g} mm is {1e-3 * radius:g} m" if 1e-3 * radius >= half else ""
+            return f"{name} drops by {drop:.2g} m over half the roller's length, less than is ground{meant}"
+    return ""
 
 
 def _of_design(case: Case) -> str:
     """Return the question on the load that the roller's logarithmic crown is designed for."""
     usual, radius = USUAL["half_width"], case.roller.radius
-    for profile in _logarithmic(case.roller.profile):
+    for profile in _parts(case.roller.profile, Logarithmic):
         amplitude = profile.amplitude
         # A = R (p0 / E*)**2, and so the half-width of the design is 2 (A R)**0.5.
         over = 2 * np.sqrt(amplitude / radius)

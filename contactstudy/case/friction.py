@@ -59,7 +59,7 @@ def checked_friction(friction: object) -> Friction:
     """
     if isinstance(friction, AxialFriction):
         return friction
-    if not isinstance(friction, xr.DataArray):
+    if not isinstance(friction, xr.DataArray) or not friction.dims:
         return checks.finite("friction", friction)
     if friction.dims != ("x",) or "x" not in friction.coords:
         raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")

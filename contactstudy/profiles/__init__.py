@@ -9,6 +9,9 @@ conventions with a sketch, and a table of all profiles with formulas and sources
 (Lundberg, ISO/TS 16281): the roller does not touch there.
 """
 
+from typing import TYPE_CHECKING
+
+from contactstudy.near_names import suggesting
 from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
 from contactstudy.profiles.corners import EffectiveLength
 from contactstudy.profiles.crowned import FullCrown, PartialCrown
@@ -39,3 +42,6 @@ __all__ = [
     "Tapered",
     "local_radius",
 ]
+
+if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
+    __getattr__ = suggesting(__name__, __all__)

@@ -1,5 +1,8 @@
 """Parametric studies: many cases, mapped over processes, one file per case, opened as one Dataset."""
 
+from typing import TYPE_CHECKING
+
+from contactstudy.near_names import suggesting
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.opened import collect, open_study
@@ -19,3 +22,6 @@ __all__ = [
     "rerun_study",
     "run_study",
 ]
+
+if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
+    __getattr__ = suggesting(__name__, __all__)

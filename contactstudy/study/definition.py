@@ -20,7 +20,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameter import points
-from contactstudy.study.parameters import PARAMETERS, checked
+from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked
 from contactstudy.study.plan import LEVELS, Combination, Plan, combinations, in_engineers_words, label, make_plan
 from contactstudy.study.profile_kinds import with_files_in
 
@@ -91,8 +91,9 @@ class Study:
     Raises
     ------
     InvalidInputError
-        If a key is unknown (with the nearest known one), or a value is of a wrong type. Combinations that are
-        impossible are no error: :meth:`plan` lists them as skipped, with the reason.
+        If a key is unknown (with the nearest known one), a value is of a wrong type, or what every case needs, such as
+        a load, is given nowhere. Combinations that are impossible are no error: :meth:`plan` lists them as skipped,
+        with the reason.
 
     Examples
     --------
@@ -166,11 +167,15 @@ class Study:
         for name in names:
             if names.count(name) > 1:
                 raise InvalidInputError("zip", name, "a parameter that is not swept or zipped already")
+        given = {*self.base, *names, *(name for case in self.cases for name in case)}
+        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not given & {*group}]:
+            allowed = f"such that cases have {'; '.join(missing)}"
+            raise InvalidInputError("parameters", sorted(given), allowed, "give it in base, sweep, zip or cases")
 
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
         checks.known_name(where, str(name), PARAMETERS)
-        column = [PARAMETERS[name].check(name, value) for value in _listed(f"{where}.{name}", values)]
+        column = [PARAMETERS[name].checked(value) for value in _listed(f"{where}.{name}", values)]
         if where == "sweep":
             seen = set()
             for value in column:
@@ -191,7 +196,7 @@ class Study:
             wanted[name] = [
                 value
                 if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
-                else label(name, PARAMETERS[name].check(name, value))
+                else label(name, PARAMETERS[name].checked(value))
                 for value in several
             ]
         return wanted

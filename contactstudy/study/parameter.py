@@ -114,6 +114,10 @@ class Parameter:
         said = {"units": self.units, "long_name": self.label or self.name.replace("_", " "), "comment": self.meaning}
         return {name: text for name, text in said.items() if text}
 
+    def checked(self, value: object) -> Any:
+        """Return a value in the form that counts for the identity; a scalar that says its unit is converted first."""
+        return self.check(self.name, checks.scalar(self.name, value, self.units))
+
     @cached_property
     def default(self) -> Any:
         """Value of a case that does not give the parameter; None if there is none, or it may be left out."""

@@ -221,6 +221,16 @@ _WITH_SOLVER = (
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in (*_WITH_CASE, *_WITH_SOLVER)}
 """Every parameter that a case of a study can have."""
 
+REQUIRED = (
+    ("young",),
+    ("poisson",),
+    ("radius",),
+    ("gamma", "roller_length"),
+    ("e_over_a", "end_distance"),
+    ("max_pressure", "load", "approach"),
+)
+"""Parameters of which every case gives exactly one."""
+
 
 def taken_by(taker: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return those of `values` that `taker` has keyword arguments for.
@@ -257,9 +267,7 @@ def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, An
     for name in values:
         checks.known_name(where, str(name), PARAMETERS)
     return {
-        name: parameter.check(name, values[name])
-        for name, parameter in PARAMETERS.items()
-        if values.get(name) is not None
+        name: parameter.checked(values[name]) for name, parameter in PARAMETERS.items() if values.get(name) is not None
     }
 
 

@@ -119,6 +119,12 @@ def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str
     return jobs
 
 
+def _interrupted(place: Folder, plan: Plan) -> str:
+    """Say what an interrupted run leaves, and how it goes on."""
+    kept = sum(place.case_path(case.id).exists() for case in plan.unique)
+    return f"interrupted: {kept} of {len(plan.unique)} cases are kept in {place.path}; run again to go on"
+
+
 def run_study(
     study: Study,
     folder: str | Path | None = None,
@@ -169,7 +175,7 @@ def run_study(
     StoreError
         If the disk or a permission is in the way.
     KeyboardInterrupt
-        After Ctrl-C or SIGTERM, when workers have ended and the lock is released.
+        After Ctrl-C or SIGTERM, when workers have ended and the lock is released; it says how many cases are kept.
 
     Examples
     --------
@@ -197,31 +203,41 @@ def run_study(
     ):
         if took_over:
             log.say(took_over)
-        place.clean()
-        place.write_study(study)
-        for unknown in plan.unknown[:MOST_DOUBTS]:
-            log.remark(unknown)
-        for doubt in plan.doubts[:MOST_DOUBTS]:
-            log.remark(f"doubtful, for units are SI: {doubt}")
-        jobs = _todo(plan, place, again, log.say)
-        log.begin(jobs, total=len(plan.unique))
-        records = execute(jobs, workers=workers, scheduler=scheduler, wait=wait, solver=solver, say=log.remark)
         try:
-            _collect(records, place, jobs, log)
-        except KeyboardInterrupt:
-            log.say("interrupted: finished cases are kept, run again to go on")
-            raise
-        except BaseException as error:
-            log.say(f"stopped: {type(error).__name__}: {error}")
-            raise
-        finally:
-            # The manifest is a cache: a disk that cannot take it must not hide why the run ended.
-            with contextlib.suppress(StoreError):
-                place.clean()
-                place.save_manifest()
+            place.clean()
+            place.write_study(study)
+            for unknown in plan.unknown[:MOST_DOUBTS]:
+                log.remark(unknown)
+            for doubt in plan.doubts[:MOST_DOUBTS]:
+                log.remark(f"doubtful, for units are SI: {doubt}")
+            jobs = _todo(plan, place, again, log.say)
+            log.begin(jobs, total=len(plan.unique))
+            records = execute(jobs, workers=workers, scheduler=scheduler, wait=wait, solver=solver, say=log.remark)
+            _finish(records, place, jobs, log)
+        except KeyboardInterrupt as interrupt:
+            words = _interrupted(place, plan)
+            log.say(words)
+            # A fresh one: the reader needs to know what is kept, not where the solver was.
+            raise (Terminated if isinstance(interrupt, Terminated) else KeyboardInterrupt)(words) from None
         report = RunReport(place.path, plan, place.entries(plan), len(jobs), tuple(log.remarks))
         log.say(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
     return report
+
+
+def _finish(records: Generator[Record, None, None], place: Folder, jobs: list[Job], log: Progress) -> None:
+    """Take in the records, and leave the folder tidy however that ends."""
+    try:
+        _collect(records, place, jobs, log)
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
+        log.say(f"stopped: {type(error).__name__}: {error}")
+        raise
+    finally:
+        # The manifest is a cache: a disk that cannot take it must not hide why the run ended.
+        with contextlib.suppress(StoreError):
+            place.clean()
+            place.save_manifest()
 
 
 def _collect(records: Generator[Record, None, None], place: Folder, jobs: list[Job], log: Progress) -> None:

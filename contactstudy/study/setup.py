@@ -21,7 +21,7 @@ from contactstudy.case.settings import check_accuracy, solver_settings
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.motion_kinds import motion_of
-from contactstudy.study.parameters import PARAMETERS, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
+from contactstudy.study.parameters import PARAMETERS, REQUIRED, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
 from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
 
 USUAL_COLUMNS, USUAL_ROWS, USUAL_DEPTHS = 120, 32, 32
@@ -154,6 +154,8 @@ class Setup:
 def _one_of(values: Mapping[str, Any], *names: str) -> None:
     """Raise unless exactly one of some parameters is given."""
     given = [name for name in names if name in values]
+    if not given and len(names) == 1:
+        raise InvalidInputError(names[0], None, "given")
     if len(given) != 1:
         *others, last = names
         count = "two" if len(names) == 2 else "three"
@@ -266,11 +268,8 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
 def setup_of(parameters: Mapping[str, Any]) -> Setup:
     """Return what :func:`build_setup` does, for parameters that are checked already."""
     values = with_defaults(parameters)
-    for name in ("young", "poisson", "radius"):
-        if name not in values:
-            raise InvalidInputError(name, None, "given")
     _check_approach(values, parameters)
-    for names in (("gamma", "roller_length"), ("e_over_a", "end_distance"), ("max_pressure", "load", "approach")):
+    for names in REQUIRED:
         _one_of(values, *names)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))

@@ -10,10 +10,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.units import factor_to
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.parameter import points
 from contactstudy.study.parameters import PARAMETERS
+from contactstudy.unit_sizes import factor_to
 
 if TYPE_CHECKING:
     from contactstudy.study.definition import Study

@@ -24,7 +24,7 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 import contactstudy
-from contactstudy import cli
+from contactstudy import cli, materials
 from contactstudy.analysis.measures import MEASURES
 from contactstudy.arrays import vocabulary
 from contactstudy.overlapping.quadrature import Resolution
@@ -260,6 +260,7 @@ def modules() -> str:
 
 
 TABLES: dict[str, Callable[[], str]] = {
+    "materials": materials.documented,
     "study-keys": documented,
     "profile-kinds": profile_kinds,
     "measures": measures,

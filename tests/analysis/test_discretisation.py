@@ -1,7 +1,19 @@
+import re
+
 import numpy as np
 import pytest
 
-from contactstudy import Case, FiniteLengthSpace, Grid, InvalidInputError, Material, Roller, profiles, solve
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    InvalidInputError,
+    Material,
+    Roller,
+    choose_grid,
+    profiles,
+    solve,
+)
 from contactstudy.analysis.discretisation import discretisation_error, extrapolated
 
 STEEL = Material(210e9, 0.3)
@@ -45,7 +57,8 @@ def test_a_sharp_end_has_no_limit_and_says_so():
     result = discretisation_error(solved(case, 64), solved(case, 32))
     for name in ("peak_pressure_error", "end_pressure_first_error", "end_pressure_last_error"):
         assert np.isinf(float(result[name]))
-        assert "sharp" in result[name].attrs["comment"]
+        assert "ends sharply" in result[name].attrs["comment"]
+        assert "leave the grid out" in result[name].attrs["comment"]
     assert np.isfinite(float(result.half_width_middle_error))
 
 
@@ -79,3 +92,37 @@ def test_a_peak_away_from_a_sharp_end_has_a_limit():
     assert float(result.end_pressure_first) > 0
     assert np.isinf(float(result.end_pressure_first_error))
     assert float(result.peak_pressure_error) < 0.02 * float(result.peak_pressure)
+
+
+@pytest.mark.parametrize("case", [case_of(5 * HALF_WIDTH, profiles.Cylinder()), case_of(8 * HALF_WIDTH, LUNDBERG)])
+def test_no_end_pressure_is_above_the_peak(case):
+    result = discretisation_error(solved(case, 64), solved(case, 32))
+    ends = [float(result[f"end_pressure_{end}"]) for end in ("first", "last")]
+    assert float(result.peak_pressure) >= max(ends)
+
+
+@pytest.mark.parametrize("poisson", [-0.5, -0.2])
+def test_a_peak_at_a_free_end_is_that_of_the_end(poisson):
+    """A material that shrinks across when it is pressed is stiffer at its free end: the pressure rises to it."""
+    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=Material(210e9, poisson))
+    case = Case(body=body, roller=Roller(radius=5e-3, length=8 * HALF_WIDTH), max_pressure=PRESSURE)
+    coarse, fine, finest = (solved(case, cells) for cells in (24, 48, 96))
+    estimate, reference = discretisation_error(fine, coarse), discretisation_error(finest, fine)
+    for found in (estimate, reference):
+        assert float(found.peak_pressure) == float(max(found.end_pressure_first, found.end_pressure_last))
+    difference = abs(float(estimate.peak_pressure) - float(reference.peak_pressure))
+    assert difference <= float(estimate.peak_pressure_error) <= 0.1 * float(reference.peak_pressure)
+
+
+def test_cells_that_are_too_coarse_are_told_what_to_try():
+    steep = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
+    grid = choose_grid(steep, cells_x=4, cells_y=8)
+    result = solve(steep, grid, error_estimate=True, stresses=False)
+    comment = result.peak_pressure_error.attrs["comment"]
+    assert np.isinf(float(result.peak_pressure_error))
+    assert comment.startswith(f"no limit in sight on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out")
+    numbers = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
+    finer = choose_grid(steep, cells_x=float(numbers[1]), cells_y=float(numbers[2]))
+    assert finer.shape == pytest.approx([2 * count for count in grid.shape], rel=0.1)
+    foreign = [each.drop_vars("hertz_half_width") for each in (solved(steep, 32), solved(steep, 16))]
+    assert "take twice as many" in discretisation_error(*foreign).peak_pressure_error.attrs["comment"]

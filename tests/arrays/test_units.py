@@ -16,6 +16,7 @@ from contactstudy import (
     InvalidInputError,
     Material,
     Roller,
+    Study,
     solve_contact,
     stress_field,
     surface_displacement,
@@ -138,3 +139,70 @@ def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
     loads = xr.DataArray([0.03], dims="load", attrs={"units": "kN"})
     found = best_profile(case, FullCrown, {"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8)
     assert found["case_load"].values.tolist() == [30.0]
+
+
+def scalar(value: object, units: str | None = None) -> xr.DataArray:
+    return xr.DataArray(value, attrs={} if units is None else {"units": units})
+
+
+STEEL = Material(210e9, 0.3)
+SCALARS: dict[str, tuple[Callable[[object], object], float, str, float]] = {
+    "young": (lambda value: Material(value, 0.3).young, 210.0, "GPa", 210e9),
+    "radius": (lambda value: Roller(radius=value, length=1e-3).radius, 5.0, "mm", 5e-3),
+    "length": (lambda value: Roller(radius=5e-3, length=value).length, 1.0, "mm", 1e-3),
+    "crown_radius": (lambda value: FullCrown(value).crown_radius, 1000.0, "mm", 1.0),
+    "load": (lambda value: case_with(load=value).load, 0.1, "kN", 100.0),
+    "max_pressure": (lambda value: case_with(max_pressure=value).max_pressure, 1500.0, "MPa", 1.5e9),
+    "approach": (lambda value: case_with(approach=value).approach, 1.0, "um", 1e-6),
+    "tilt": (lambda value: case_with(load=100.0, tilt=value).tilt, 0.1, "mrad", 1e-4),
+    "friction": (lambda value: case_with(load=100.0, friction=value).friction, 10.0, "%", 0.1),
+    "end_distance": (lambda value: case_with(load=100.0, end_distance=value).end_distance, 0.5, "mm", 0.5e-3),
+}
+
+
+def case_with(**given) -> Case:
+    return Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), **given)
+
+
+@pytest.mark.parametrize("name", SCALARS)
+def test_a_scalar_of_a_result_is_a_number_in_its_own_unit(name: str) -> None:
+    taken, value, units, si = SCALARS[name]
+    for given in (scalar(value, units), scalar(si), np.array(si), scalar(si).chunk()):
+        found = taken(given)
+        assert type(found) is float
+        assert found == pytest.approx(si, rel=1e-15)
+    with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
+        taken(scalar(value, "furlong"))
+    assert len(str(caught.value)) < 200
+
+
+def test_the_load_of_a_result_is_that_of_the_next_case() -> None:
+    load = xr.DataArray(123.0, coords={"friction": 0.1}, attrs={"units": "N", "long_name": "normal load"})
+    assert case_with(load=load) == case_with(load=123.0)
+
+
+def test_a_study_takes_scalars_with_units() -> None:
+    base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
+    study = Study("a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
+    assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
+    with pytest.raises(InvalidInputError, match=r"young.attrs\['units'\] = 'mm'"):
+        Study("a", base={"young": scalar(210, "mm")})
+
+
+@pytest.mark.parametrize(
+    ("value", "shown"),
+    [
+        (scalar(np.ones((40, 20)), "m"), "DataArray of shape (40, 20) and type float64"),
+        (np.ones(3), "ndarray of shape (3,) and type float64"),
+        (scalar(-5.0, "mm"), "-5.0 mm"),
+        (np.float64(-1.0), "-1.0"),
+        (scalar(True), "True"),
+        (scalar("a"), "'a'"),
+        (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
+        ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
+    ],
+)
+def test_no_message_shows_a_whole_array(value: object, shown: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        Roller(radius=value, length=1e-3)
+    assert str(caught.value) == f"radius = {shown}: must be a positive finite number (metres)"

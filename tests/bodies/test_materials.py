@@ -1,10 +1,14 @@
 """Materials have the constants from which their sources' factors follow."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from contactstudy import materials
+from contactstudy import Material, materials
 from contactstudy.bodies.material import contact_modulus
+
+ROOT = Path(__file__).parents[2]
 
 
 def test_factors_of_a_gear_standard_follow() -> None:
@@ -28,3 +32,15 @@ def test_structural_steel_has_the_shear_modulus_of_its_standard() -> None:
 def test_another_material_is_refused_with_those_there_are() -> None:
     with pytest.raises(AttributeError, match=r"no material .STEEL.; there are BEARING_STEEL, .* Material\(young"):
         vars(materials)["__getattr__"]("STEEL")
+
+
+def test_every_material_has_a_source_that_the_reference_shows() -> None:
+    known = {name for name in materials.__all__ if isinstance(getattr(materials, name), Material)}
+    assert set(materials.SOURCES) == known
+    rows = [line.strip("| ").split(" | ") for line in materials.documented().splitlines()[2:]]
+    assert {row[0].strip("`").rpartition(".")[2] for row in rows} == known
+    for name, young, poisson, source in rows:
+        material = getattr(materials, name.strip("`").rpartition(".")[2])
+        assert (float(young), float(poisson)) == (pytest.approx(1e-9 * material.young), material.poisson)
+        assert any(word in source for word in ("ISO 6336", "EN 1993", "edition"))
+    assert "<!-- made: materials -->" in (ROOT / "docs" / "reference" / "materials.md").read_text()

@@ -105,6 +105,29 @@ def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message:
 @pytest.mark.parametrize(
     "crown",
     [
+        profiles.FullCrown(crown_radius=200),
+        profiles.FullCrown(crown_radius=200) + profiles.Cylinder(fillet_radius=0.2e-3),
+        profiles.PartialCrown(4e-3, crown_radius=200),
+    ],
+)
+def test_a_crown_radius_in_millimetres_is_questioned(crown: profiles.Profile) -> None:
+    message = r"Crown.crown_radius = 200 m drops by 6.2e-08 m over half .*, less than is ground; 200 mm is 0.2 m"
+    with pytest.warns(MagnitudeWarning, match=message):
+        Case(body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=10e-3, profile=crown), max_pressure=1e9)
+
+
+@pytest.mark.parametrize(("length", "crown_radius"), [(50e-3, 900.0), (20e-3, 300.0), (10e-3, 100.0), (0.5e-3, 2.0)])
+def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> None:
+    """A tenth of a micrometre and more, or of a pin of a watch some nanometres."""
+    roller = Roller(radius=0.5 * length, length=length, profile=profiles.FullCrown(crown_radius))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1e9)
+
+
+@pytest.mark.parametrize(
+    "crown",
+    [
         profiles.Lundberg(8e-6),
         profiles.Cylinder(fillet_radius=1e-3),
         profiles.FullCrown(crown_radius=12e-3),

@@ -168,7 +168,8 @@ def test_files_that_are_not_toml(tmp_path, text):
 
 
 def test_evenly_spaced_numbers_are_swept():
-    study = small_study(sweep={"friction": {"start": 0.0, "stop": 0.1, "count": 3}})
+    sweep = {"e_over_a": [0.0], "friction": {"start": 0.0, "stop": 0.1, "count": 3}}
+    study = small_study(sweep=sweep)
     assert study.sweep["friction"] == [0.0, 0.05, 0.1]
     with pytest.raises(InvalidInputError, match="or for numbers a table with start, stop and count"):
         small_study(sweep={"friction": {"start": 0.0}})
@@ -189,8 +190,38 @@ def test_uniform_cells_at_their_default_contradict_an_accuracy_as_well():
 
 def test_an_exclusion_changes_nothing_of_the_cases_that_stay():
     sweep, cases = {"friction": [0.0, 0.1]}, [{"cells_x": 12}]
-    plain = small_study(sweep=sweep, cases=cases, base={**small_study().base, "cells_x": None})
+    plain = small_study(sweep=sweep, cases=cases, base={**small_study().base, "e_over_a": 0.0, "cells_x": None})
     ruled = replace(plain, exclude=[{"friction": 0.1, "cells_x": 12}])
     kept = {case.id: case.parameters for case in ruled.plan().cases}
     assert kept.items() <= {case.id: case.parameters for case in plain.plan().cases}.items()
     assert ruled.plan().cases[0].parameters == plain.plan().cases[0].parameters
+
+
+@pytest.mark.parametrize(
+    ("missing", "message"),
+    [
+        ("young", "such that cases have young; give it in base, sweep, zip or cases"),
+        ("poisson", "have poisson;"),
+        ("radius", "have radius;"),
+        ("roller_length", "have one of gamma, roller_length;"),
+        ("max_pressure", "have one of max_pressure, load, approach;"),
+    ],
+)
+def test_what_every_case_needs_is_asked_for_when_the_study_is_made(missing, message):
+    base = {name: value for name, value in small_study().base.items() if name != missing}
+    with pytest.raises(InvalidInputError, match=message):
+        small_study(base=base)
+    value = small_study().base[missing]
+    others = {"e_over_a": [0.0, 1.0]}
+    for given in (
+        {"sweep": others | {missing: [value]}},
+        {"sweep": others, "zip": {missing: [value]}},
+        {"sweep": others, "cases": [{missing: value}]},
+    ):
+        assert small_study(base=base, **given).size
+    assert len(small_study(base=base, sweep={}, cases=[{missing: value, "e_over_a": 0.0}]).plan().unique) == 1
+
+
+def test_all_that_is_missing_is_named_at_once():
+    with pytest.raises(InvalidInputError, match=r"young; poisson; radius; .*one of e_over_a, end_distance; one of max"):
+        Study(name="nothing")

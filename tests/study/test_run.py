@@ -2,13 +2,16 @@ import contextlib
 import json
 import os
 import shutil
+import signal
 import subprocess
 import tempfile
+import traceback
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from contactstudy.errors import Terminated
 from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study
 from contactstudy.study.folder import Folder
 from contactstudy.study.progress import Progress
@@ -72,6 +75,27 @@ def test_rerun_repairs(tmp_path):
     run(study, tmp_path)
     assert rerun_study(tmp_path, workers=0, solver=repaired).counts == {"ok": 4}
     assert not list((tmp_path / "cases").glob("*.failed"))
+
+
+@pytest.mark.parametrize(("number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
+def test_an_interruption_says_what_is_kept_and_leaves_out_where_the_solver_was(study, tmp_path, number, kind):
+    solved = []
+
+    def interrupted(case, grid, **settings):
+        solved.append(case)
+        if len(solved) == 3:
+            signal.raise_signal(number)
+        return solve_fake(case, grid, **settings)
+
+    with pytest.raises(KeyboardInterrupt) as caught:
+        run(study, tmp_path, solver=interrupted)
+    said = f"interrupted: 2 of 4 cases are kept in {tmp_path}; run again to go on"
+    assert (type(caught.value), str(caught.value)) == (kind, said)
+    shown = "".join(traceback.format_exception(caught.value))
+    assert "interrupted(case" not in shown
+    assert shown.count("File ") == 3  # this test, its helper and the door of the package
+    assert said in (tmp_path / "run.log").read_text()
+    assert run(study, tmp_path).solved == 2
 
 
 @pytest.mark.parametrize("workers", [0, pytest.param(1, marks=pytest.mark.system)])

@@ -1,0 +1,98 @@
+"""Text as office programs write it, and files that are no text at all."""
+
+import io
+import logging
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contactstudy.arrays import instruments
+from contactstudy.arrays.instruments import read_heights
+from contactstudy.arrays.measurements import read_columns
+from contactstudy.errors import InvalidInputError
+
+POINTS = [(0.0, 0.0), (2.5, 1.25), (5.0, 3.125)]
+COLUMNS = ("x",), ("drop",)
+
+
+def written(separator: str, mark: str = ",") -> str:
+    rows = [f"{x:.2f}{separator}{drop:.3f}".replace(".", mark) for x, drop in POINTS]
+    return "\n".join([f"x [mm]{separator}drop [µm]", *rows])
+
+
+@pytest.mark.parametrize("encoding", ["latin-1", "cp1252", "utf-8", "utf-8-sig", "utf-16", "mac-roman"])
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_a_table_of_a_german_spreadsheet_is_read(tmp_path: Path, encoding: str, separator: str) -> None:
+    (tmp_path / "a.csv").write_bytes(written(separator).encode(encoding))
+    found = read_columns(tmp_path / "a.csv", *COLUMNS)
+    np.testing.assert_allclose(np.transpose([found["x"], found["drop"]]), np.multiply(POINTS, [1e-3, 1e-6]))
+
+
+def test_an_unknown_encoding_is_named_with_what_to_do(tmp_path: Path) -> None:
+    (tmp_path / "a.csv").write_bytes(written(";").encode("cp850"))
+    with pytest.raises(InvalidInputError, match=r"unit of drop.*save the file as UTF-8"):
+        read_columns(tmp_path / "a.csv", *COLUMNS)
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ("1,000;2,500\n2,000;3,500", "line 3, drop = '3,500': must be a number of one meaning.*decimal points"),
+        ("1,5;2.5", "line 2, x = '1,5': must be a number with the decimal mark of all others; line 2, drop is '2.5'"),
+        ("1,234.5;2", "line 2, x = '1,234.5'"),
+    ],
+)
+def test_commas_that_may_mean_something_else_are_refused(tmp_path: Path, rows: str, message: str) -> None:
+    (tmp_path / "a.csv").write_text(f"x [mm];drop [um]\n{rows}\n")
+    with pytest.raises(InvalidInputError, match=message):
+        read_columns(tmp_path / "a.csv", *COLUMNS)
+
+
+def workbook() -> bytes:
+    with zipfile.ZipFile(content := io.BytesIO(), "w") as archive:
+        archive.writestr("xl/workbook.xml", "<workbook/>")
+    return content.getvalue()
+
+
+FOREIGN = {
+    "picture": (b"\x89PNG\r\n\x1a\n and so on", "it is a picture, which shows heights but does not hold them"),
+    "workbook": (workbook(), "it is a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"),
+    "document": (b"%PDF-1.7 and so on", "it is a PDF document"),
+    "unknown": (bytes(range(256)), "ending"),
+}
+
+
+@pytest.mark.parametrize("kind", FOREIGN)
+@pytest.mark.parametrize("name", ["a.csv", "a"])
+def test_what_is_no_text_is_told_from_it(tmp_path: Path, kind: str, name: str) -> None:
+    content, message = FOREIGN[kind]
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InvalidInputError, match=rf"columns as text.*netCDF.*extra `measured`.*{message}"):
+        read_columns(tmp_path / name, *COLUMNS)
+
+
+@pytest.mark.parametrize(("name", "kind"), [("a.png", "picture"), ("a.xlsx", "workbook"), ("a.pdf", "document")])
+def test_an_extra_that_would_not_help_is_not_asked_for(tmp_path: Path, monkeypatch, name: str, kind: str) -> None:
+    content, message = FOREIGN[kind]
+    (tmp_path / name).write_bytes(content)
+    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    with pytest.raises(InvalidInputError, match=message):
+        read_heights(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "message"),
+    [
+        ("a.png", "picture", "a picture"),
+        ("a.prf", "unknown", "none of these knows it: export it as x3p"),
+    ],
+)
+def test_a_file_that_no_reader_knows(tmp_path: Path, capsys, name: str, kind: str, message: str) -> None:
+    pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")
+    (tmp_path / name).write_bytes(10 * FOREIGN[kind][0])
+    with pytest.raises(InvalidInputError, match=rf"columns as text.*SurfaceTopography knows; .*{message}"):
+        read_heights(tmp_path / name)
+    assert logging.getLogger("igor2").hasHandlers()
+    assert capsys.readouterr().err == ""
