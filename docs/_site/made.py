@@ -127,7 +127,7 @@ def _specifications(entries: Mapping[str, vocabulary.Variable]) -> str:
     def shown(name: str, entry: vocabulary.Variable) -> str:
         text = str(getattr(entry, name) or "")
         if name == "long_name" and entry.comment:
-            return f"{text}: {entry.comment}"
+            return f"{text}, {entry.comment}"
         return f"${text.strip('$')}$" if name == "symbol" and text else text
 
     return table(
