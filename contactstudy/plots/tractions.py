@@ -13,6 +13,7 @@ from contactstudy.analysis import dimension_along, single_case
 from contactstudy.arrays.required import require
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.labels import WIDEST_NAME, fold_labels, folded
 from contactstudy.plots.study_lines import MARKERS
 from contactstudy.plots.study_map import one_value, readable
 from contactstudy.plots.style import as_written, line_styles, new_axes, units
@@ -101,6 +102,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.axis("y"))
+    fold_labels(ax)
     return ax
 
 
@@ -179,12 +181,22 @@ def plot_traction_curve(
             label = f"{own:g}" if isinstance(own, float) else as_written(own)
         drawn = line.dropna(creepage)
         marker = MARKERS[number % len(MARKERS)]
-        ax.plot(drawn[creepage], drawn.values, **style, marker=marker, markersize=4, label=label)
+        ax.plot(
+            drawn[creepage],
+            drawn.values,
+            **style,
+            marker=marker,
+            markersize=4,
+            label=label and folded(label, WIDEST_NAME),
+        )
     ax.axhline(1.0, color="0.6", linewidth=0.8)
     if hue is not None:
         title = readable(dataset[hue], hue)[1] if np.issubdtype(dataset[hue].dtype, np.number) else hue
-        ax.legend(title=title.replace("_", " "), frameon=False, fontsize="small", title_fontsize="small")
+        ax.legend(
+            title=folded(title.replace("_", " "), WIDEST_NAME), frameon=False, fontsize="small", title_fontsize="small"
+        )
     ax.set_xlabel(rf"{creepage.replace('_', ' ')}, $\{'xi' if name == 'force_y' else 'eta'}$")
     ax.set_ylabel(f"force over full sliding's, ${symbol}/(f W)$")
     ax.grid(color="0.9", linewidth=0.6)
+    fold_labels(ax)
     return ax

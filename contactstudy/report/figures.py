@@ -47,10 +47,14 @@ class Picture(NamedTuple):
 def as_address(figure: Figure) -> str:
     """Return a figure as an address that holds it, the same bytes each time."""
     import matplotlib
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     target = io.BytesIO()
+    # `savefig` would draw twice: once to place everything, which drawing does as well.
+    figure.set_dpi(DOTS)
+    canvas: Any = FigureCanvasSVG(figure)
     with matplotlib.rc_context({"svg.hashsalt": "contactstudy"}):
-        figure.savefig(target, format="svg", dpi=DOTS, metadata={"Date": None, "Creator": None})
+        canvas.print_svg(target, metadata={"Date": None, "Creator": None})
     return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
 
 
