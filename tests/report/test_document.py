@@ -192,3 +192,22 @@ def test_files_are_opened_of_the_drawn_cases_alone(folder: Path, tmp_path: Path,
     monkeypatch.setattr(store.xr, "open_dataset", lambda path, **kw: opened.append(path) or inner(path, **kw))
     report.write(folder, tmp_path / "study.html")
     assert len(set(opened)) <= 3  # of four that are solved: two over e/a, and one for the units of its numbers
+
+
+def test_a_case_that_rolls_shows_where_it_sticks(solved: xr.Dataset) -> None:
+    pressed = (solved["pressure"] > 0).drop_attrs()
+    moved = {
+        "traction_x": 0.0 * pressed,
+        "traction_y": 4e7 * pressed,
+        "slip_x": 0.0 * pressed,
+        "slip_y": 2e-3 * pressed,
+    }
+    part = pressed & (pressed["y"] > 0)
+    rolled = solved.assign(moved | {"stick": part, "sticking_part": 0.5})
+    before, page = Page(report.html(solved)), Page(report.html(rolled))
+    assert len(page.fetched) == len(before.fetched) + 2
+    for words in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
+        assert words in page.text
+        assert words not in before.text
+    assert "slip everywhere" in Page(report.html(rolled.assign(stick=0 * part))).text
+    assert "stick everywhere" in Page(report.html(rolled.assign(stick=pressed))).text
