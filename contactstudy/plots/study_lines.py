@@ -36,7 +36,7 @@ OPEN: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle"
 
 NO_ERROR = "no error known"
 
-FOUND = ("peak_", "end_", "contact_")
+FOUND = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")
 """How names of results begin that have an error; of other scalars, such as a load that was given, none is missed."""
 
 LINE = 0.17
