@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-LETTER = 0.08
+LETTER = 0.073
 """Width of a letter of a label, inches; of a legend's it is a little less."""
 
 FEWEST = 14
