@@ -85,6 +85,8 @@ def _parser() -> argparse.ArgumentParser:
     added = commands.add_parser("report", help=text, description=text)
     added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
     added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    text = "value of a swept parameter that a study's figures keep to; repeatable"
+    added.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
     added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
     return parser
 
@@ -227,11 +229,10 @@ def _draw(folder: Path) -> list[Path]:
     try:
         from matplotlib import pyplot
 
-        from contactstudy.plots import study_figures
-        from contactstudy.study import open_study
+        from contactstudy.report.study_pictures import figures_of_folder
 
         paths = []
-        for name, figure in study_figures(open_study(folder, cells="own")).items():
+        for name, (figure, _) in figures_of_folder(folder).items():
             paths.append(folder / f"{name}.png")
             figure.savefig(paths[-1], dpi=150)
             pyplot.close(figure)
@@ -310,10 +311,13 @@ def _collect_rarely(options: argparse.Namespace) -> None:
 
 def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
     _collect_rarely(options)
+    from contactstudy.arrays.named_places import selection_of
     from contactstudy.report import write
     from contactstudy.study.report import shown
 
-    print(f"wrote {shown(write(options.path, options.out, title=options.title).resolve())}")
+    selection = selection_of(options.select or ())
+    written = write(options.path, options.out, title=options.title, selection=selection)
+    print(f"wrote {shown(written.resolve())}")
     return ALL_OK
 
 

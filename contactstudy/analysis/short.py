@@ -37,11 +37,13 @@ PLAIN = {
     "longitudinal_creepage": "longitudinal creepage",
     "lateral_creepage": "lateral creepage",
     "spin": "spin",
+    "shift_x": "shift along the axis",
+    "shift_y": "shift along rolling",
     "friction_work": "frictional work",
 }
 """Scalars that are shown where they are there and not zero."""
 
-FOUND = ("approach", "load_position", "force_x", "force_y", "moment_z", "friction_work")
+FOUND = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
 """Those of them that follow from the solution unless they are prescribed."""
 
 CERTIFICATES = ("load_position",)
@@ -159,12 +161,30 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
         if name in one and float(one[name]) != 0 and np.isfinite(float(one[name])):
             with_estimate = f"{name}_error" in one and name not in CERTIFICATES
             yield _settled(one, name, meaning) if with_estimate else _row(one, name, meaning, _unknown(one, name))
+    yield from _stick(one)
+
+
+def _stick(one: xr.Dataset) -> Iterator[MainNumber]:
+    """Rows of stick and slip: how much of the contact sticks, and the largest traction and slip."""
+    if "sticking_part" in one:
+        yield _row(one, "sticking_part", "part of the contact that sticks", UNBOUNDED)
+    if "stick" not in one:
+        return
+    for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
+        parts = [one[f"{name}_{axis}"] for axis in "xy" if f"{name}_{axis}" in one]
+        if len(parts) == 2 and "pressure" in one:
+            size = ((parts[0] ** 2 + parts[1] ** 2) ** 0.5).where(one["pressure"] > 0, 0.0)
+            units = variable_of(f"{name}_y", parts[1].attrs).units
+            value = float(size.max())
+            text = quantity(value, units) + ("" if units == "m" or name == "traction" else " per distance rolled")
+            yield MainNumber(f"largest_{name}", meaning, value, np.nan, units, text, "of a cell, no error known")
 
 
 def _unknown(one: xr.Dataset, name: str) -> str:
     """Say that a number has no known error, unless it was prescribed."""
     case = attribute(one, INPUTS_ATTRIBUTE).get("case", {})
-    prescribed = case.get(name, case.get("motion", {}).get(name)) is not None
+    motion = case.get("motion", {})
+    prescribed = case.get(name, motion.get(name, motion.get(name.removeprefix("shift_")))) is not None
     # Of a study's case the certificate says it: it misses what was prescribed by a little, and else by nothing.
     met = name in CERTIFICATES and float(one.get(f"{name}_error", 0.0)) > 0
     if prescribed or met or name not in FOUND:

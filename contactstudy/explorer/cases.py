@@ -24,6 +24,14 @@ from contactstudy.study.store import load_variables
 LOOKED_AT = ("pressure", "gap", "initial_gap", "von_mises")
 """Variables that the page draws."""
 
+NOT_SOLVED = {
+    "failed": "This case failed.",
+    "skipped": "This case cannot be solved.",
+    "excluded": "The study leaves this case out.",
+    "missing": "This case is not solved yet.",
+}
+"""What a case's status means, for the reader of a page without figures."""
+
 KEPT = 64
 """Cases that stay in memory. Speed."""
 
@@ -84,6 +92,18 @@ class Cases:
         at = dict(zip(self.scalars["status"].dims, place, strict=True))
         status, message = (str(self.scalars[name].isel(at).item()) for name in ("status", "message"))
         return f"{status}: {message}" if message else status
+
+
+def sentence(state: str) -> str:
+    """Why there is nothing to draw of a case, from its status with its reason.
+
+    Examples
+    --------
+    >>> sentence("skipped: profile: must fit the length"), sentence("missing")
+    ('This case cannot be solved. profile: must fit the length', 'This case is not solved yet.')
+    """
+    status, _, reason = state.partition(": ")
+    return f"{NOT_SOLVED.get(status, f'This case is {status}.')} {reason}".rstrip()
 
 
 def shown(value: Any, units: str) -> str:

@@ -5,7 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from bokeh.models import BasicTicker, ColorBar, ColumnDataSource, Legend, LegendItem, LinearColorMapper, Range1d
+from bokeh.models import (
+    BasicTicker,
+    ColorBar,
+    ColumnDataSource,
+    Legend,
+    LegendItem,
+    LinearColorMapper,
+    Range1d,
+    Whisker,
+)
 from bokeh.plotting import figure
 
 from contactstudy.checks import FloatArray
@@ -84,6 +93,11 @@ class ImageFigure:
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
 
+    @property
+    def shows(self) -> bool:
+        """Whether there is a picture."""
+        return bool(self._source.data["image"])
+
     def show(self, image: Image | None, most: float, title: str) -> None:
         """Draw a picture, its colours up to a largest value; nothing if there is none."""
         self.figure.title.text = title
@@ -104,11 +118,13 @@ class StudyFigure:
 
     def __init__(self) -> None:
         self.figure = _new()
-        self._line = ColumnDataSource({"x": [], "v": []})
+        self._line = ColumnDataSource({"x": [], "v": [], "fill": [], "low": [], "high": []})
         self._endless = ColumnDataSource({"x": [], "v": []})
         self._chosen, self._chosen_endless = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
         self.figure.line("x", "v", source=self._line, color=NEUTRAL, line_width=1.5)
-        self.figure.scatter("x", "v", source=self._line, color=NEUTRAL, size=6)
+        bars = {"base": "x", "lower": "low", "upper": "high", "source": self._line, "line_color": NEUTRAL}
+        self.figure.add_layout(Whisker(**bars, level="underlay"))
+        self.figure.scatter("x", "v", source=self._line, line_color=NEUTRAL, fill_color="fill", size=6)
         mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
         self.figure.scatter("x", "v", source=self._endless, line_color=NEUTRAL, **mark)
         self.figure.scatter("x", "v", source=self._chosen, color="color", size=11)
@@ -123,17 +139,31 @@ class StudyFigure:
         ticks: dict[float, str] | None,
         chosen: list[tuple[int, float, str]],
         names: tuple[str, str],
+        errors: FloatArray | None = None,
     ) -> None:
         """Draw values over places; words take the place of numbers where there are `ticks`.
 
         A value without a limit is a triangle at the top. `chosen` are the cases looked at: where along the parameter,
-        their value, and their colour.
+        their value, and their colour. Errors are bars; of a value whose error is NaN none is known, and its mark is
+        open. Without `errors` values are taken as they are.
         """
         finite = np.isfinite(values)
         known = [*values[finite], *(value for _, value, _ in chosen if np.isfinite(value))]
-        low, high = min([0.0, *known]), max([*known, 1e-12]) if known else 1.0
+        spread = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
+        reach = [*known, *(values + spread)[finite], *(values - spread)[finite & (spread > 0)]]
+        low, high = min([0.0, *reach]), max([*reach, 1e-12]) if known else 1.0
         high += 0.06 * (high - low)
-        self._line.data = {"x": places, "v": np.where(finite, values, np.nan)}
+        unknown = finite & (np.isnan(errors) if errors is not None else False)
+        barred = finite & (spread > 0)
+        self._line.data = {
+            "x": places,
+            "v": np.where(finite, values, np.nan),
+            "fill": np.where(unknown, "white", NEUTRAL),
+            "low": np.where(barred, values - spread, np.nan),
+            "high": np.where(barred, values + spread, np.nan),
+        }
+        said = ["bars: stated errors"] * bool(barred.any()) + ["open marks: no error known"] * bool(unknown.any())
+        self.figure.title.text = "; ".join(said)
         at_top = 0.96 * high
         self._endless.data = {"x": places[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), at_top)}
         for source, endless in ((self._chosen, False), (self._chosen_endless, True)):

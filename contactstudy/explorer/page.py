@@ -14,14 +14,14 @@ from contactstudy.analysis.certainty import certainty_of
 from contactstudy.analysis.short import NOT_PRESSED, ShortView
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import variable_of
+from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.explorer.cases import Cases
+from contactstudy.explorer.cases import Cases, sentence
 from contactstudy.explorer.drawn import PLANES, REGIONS, Image, axial, plane, region, scale_of, top
 from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
 from contactstudy.explorer.looked import Looked
-
-PREFERRED = ("peak_pressure", "peak_von_mises", "end_pressure_over_p0", "end_load_first", "approach")
-"""Numbers that are offered first for the figure of the whole study."""
+from contactstudy.explorer.numbers import by_subject
+from contactstudy.plots.study_lines import FOUND
 
 MOST_STEPS = 60
 """Values of a swept parameter up to which it has a slider; names have a list to choose from."""
@@ -33,6 +33,7 @@ STYLE = """
 table { border-collapse: collapse; font-size: 14px; width: 100%; }
 td, th { padding: 2px 10px 2px 0; border-bottom: 1px solid #dde2e6; text-align: left; vertical-align: top; }
 td.n { font-variant-numeric: tabular-nums; font-weight: 600; }
+p.why { border-left: 4px solid #a65f00; background: #f4f6f8; padding: 6px 10px; overflow-wrap: anywhere; }
 .soft { color: #5b6975; } .yes { color: #1c7c4a; } .care { color: #a65f00; } .no { color: #b3261e; }
 """
 
@@ -59,8 +60,11 @@ class Page:
         self.where = pn.widgets.FloatSlider(
             label="where the plane is", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
         )
-        names = self._numbers()
-        self.number = pn.widgets.Select(label="number of all cases", options=names, visible=bool(cases.dims))
+        groups = by_subject(cases.scalars)
+        first = next((name for names in groups.values() for name in names.values()), None)
+        self.number = pn.widgets.Select(
+            label="number of all cases", groups=groups, value=first, visible=bool(cases.dims)
+        )
         dims = {_called(cases.scalars[dim]): dim for dim in cases.dims}
         self.over = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
@@ -94,21 +98,6 @@ class Page:
             found[dim].param.watch(self._changed, "value")
         return found
 
-    def _numbers(self) -> dict[str, str]:
-        """Scalars of the cases that can be drawn over a swept parameter, by their meaning."""
-        scalars = self.cases.scalars
-        known = [
-            str(name)
-            for name, entry in scalars.data_vars.items()
-            if entry.dtype.kind == "f" and not str(name).endswith("_error") and bool(entry.notnull().any())
-        ]
-        order = [*(name for name in PREFERRED if name in known), *sorted(set(known) - set(PREFERRED))]
-        found: dict[str, str] = {}
-        for name in order:
-            meaning = variable_of(name, scalars[name].attrs).long_name
-            found[meaning if meaning not in found else name] = name
-        return found
-
     def _changed(self, event: Any) -> None:
         """Follow a widget; figures in a notebook have to be told."""
         with pn.io.hold():
@@ -128,10 +117,10 @@ class Page:
         loaded = [self._loaded(side) if side in sides else None for side in (0, 1)]
         self._other_choices.visible = bool(self.compare.value)
         self.where.visible = self.plane.value != PLANES[0]
-        self._show_table(loaded, sides)
         self._show_axial(loaded)
         self._show_fields(loaded)
         self._show_study(sides)
+        self._show_table(loaded, sides, self._reasons(loaded, sides))
 
     def _loaded(self, side: int) -> Looked | None:
         """Return a chosen case; None if it is not solved."""
@@ -140,8 +129,8 @@ class Page:
         except ContactStudyError:
             return None
 
-    def _show_table(self, loaded: list[Looked | None], sides: list[int]) -> None:
-        """Show the main numbers of the cases side by side, and whether they are real."""
+    def _show_table(self, loaded: list[Looked | None], sides: list[int], reasons: str) -> None:
+        """Show the main numbers of the cases side by side, whether they are real, and why figures are missing."""
         columns = [self._column(loaded[side], side) for side in sides]
         rows = list(dict.fromkeys(name for column in columns for name in column))
         head = "".join(
@@ -152,13 +141,13 @@ class Page:
         for name in rows:
             cells = "".join(f"<td class=n>{column.get(name, '')}</td>" for column in columns)
             body += f"<tr><td>{html.escape(name)}</td>{cells}</tr>"
-        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>"
+        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>{reasons}"
 
     def _column(self, one: Looked | None, side: int) -> dict[str, str]:
         """Numbers of one case, by their meaning."""
         place = self.place(side)
         if one is None:
-            return {"state": html.escape(self.cases.state(place))}
+            return {"state": html.escape(self.cases.state(place).partition(": ")[0])}
         if place not in self._columns:
             self._columns[place] = self._numbers_of(one.dataset)
         return self._columns[place]
@@ -193,7 +182,7 @@ class Page:
         """Pressure along the axis."""
         present = [one for one in loaded if one is not None and one.has_pressure]
         if not present:
-            self.axial.show([None, None], (0.0, 1.0), ("", "no pressure is kept"))
+            self.axial.show([None, None], (0.0, 1.0), ("", ""))
             return
         scales = [scale_of(one, relative=self.units.value) for one in present]
         spans = [region(one, self.region.value) for one in present]
@@ -227,18 +216,47 @@ class Page:
             most = max((image.most for image in images if image is not None), default=1.0)
             for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
-                text = f"{what}: not known, or at too few points"
-                if one is not None and image is not None:
-                    beyond = ", more beside the singular end" if one.ends else ""
-                    text = f"{what}{units}{beyond}"
-                each.show(image, most, f"{name}{text}")
-        for pane in (self.panes[2], self.panes[4]):
-            pane.visible = bool(self.compare.value)
+                beyond = ", more beside the singular end" if one is not None and one.ends else ""
+                each.show(image, most, f"{name}{what}{units}{beyond}")
+
+    def _reasons(self, loaded: list[Looked | None], sides: list[int]) -> str:
+        """Return in words why figures are missing, and hide their empty axes."""
+        drawn = [each.shows for each in (*self.tops, *self.planes)]
+        tops, planes = drawn[: len(self.tops)], drawn[len(self.tops) :]
+        self._reveal(0, any(tops))
+        for pane, images in ((1, tops), (3, planes)):
+            for side in (0, 1):
+                self._reveal(pane + side, side in sides and images[side])
+        said = []
+        for side in sides:
+            if (one := loaded[side]) is None:
+                text = sentence(self.cases.state(self.place(side)))
+            elif not tops[side]:
+                text = "The study keeps no surfaces of this case, only its numbers."
+            elif not planes[side]:
+                kept = "at too few points for this plane" if one.has_stress else "not computed or not kept"
+                text = f"Its stresses are {kept}."
+            else:
+                continue
+            name = f"<b>{'case' if side == 0 else 'other'}:</b> " if self.compare.value else ""
+            said.append(f"<p class=why>{name}{html.escape(text)}</p>")
+        if self.cases.dims and not self.panes[5].visible:
+            said.append(
+                "<p class=why>No case with these values of the other parameters has the number of all cases.</p>"
+            )
+        return "".join(said)
+
+    def _reveal(self, number: int, shown: bool) -> None:
+        """Show or hide a figure; panel takes what its model says for the truth, so both must agree."""
+        pane = self.panes[number]
+        if pane.object is not None:
+            pane.object.visible = shown
+        pane.visible = shown
 
     def _show_study(self, sides: list[int]) -> None:
         """One number of all cases over one swept parameter; the others as in the case that is looked at."""
-        self.panes[5].visible = bool(self.cases.dims)
         if not self.cases.dims or not self.number.value:
+            self._reveal(5, False)
             return
         over, name = self.over.value or self.cases.dims[0], self.number.value
         scalars = self.cases.scalars
@@ -259,12 +277,22 @@ class Page:
         else:
             places = np.arange(entry.size, dtype=np.float64)
             ticks = {float(at): text for at, text in enumerate(self.cases.choices(over))}
+        errors = self._errors(name, line, values, factor)
         chosen = []
         for side, color in zip(sides, (FIRST, SECOND), strict=False):
             at = self.place(side)
             chosen.append((at[dims.index(over)], float(all_values[at]) / factor, color))
         named = f"{base.long_name} ({unit})" if unit else base.long_name
-        self.study.show(values, places, ticks, chosen, (meaning, named))
+        self._reveal(5, not np.isnan(values).all())
+        self.study.show(values, places, ticks, chosen, (meaning, named), errors)
+
+    def _errors(self, name: str, line: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
+        """Errors of a number of the cases along a line, NaN where none is known; None of what has no error."""
+        scalars = self.cases.scalars
+        if f"{name}_error" in scalars:
+            stated = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line] / factor
+            return np.where(np.isfinite(stated) & np.isfinite(values), stated, np.nan)
+        return np.full(values.size, np.nan) if name.startswith(FOUND) else None
 
     def view(self) -> Any:
         """Everything, side by side on a wide screen and below each other on a narrow one."""

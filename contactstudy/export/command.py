@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 
 import xarray as xr
 
+from contactstudy.arrays.named_places import place_of, selection_of
 from contactstudy.arrays.old_names import with_present_names
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
@@ -39,27 +39,9 @@ def parse_line(text: str) -> Line:
 
 def _select(dataset: xr.Dataset, selections: Sequence[str]) -> xr.Dataset:
     """Select the case of a study with these values of its swept parameters, each given as ``name=value``."""
-    for text in selections:
-        name, given, value = text.partition("=")
-        if not given or name not in dataset.indexes:
-            swept = [str(dim) for dim in dataset["status"].dims] if "status" in dataset else []
-            raise InvalidInputError("select", text, f"NAME=VALUE with a swept parameter: {', '.join(swept) or 'none'}")
-        labels = dataset.indexes[name]
-        found = [number for number, label in enumerate(labels) if _equal(value, label)]
-        if not found:
-            raise InvalidInputError("select", text, f"one of {', '.join(map(str, labels))}")
-        dataset = dataset.isel({name: found[0]})
+    for name, value in selection_of(selections).items():
+        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
     return dataset
-
-
-def _equal(text: str, label: object) -> bool:
-    """Whether a text names a label: as it stands, or as a number to nine digits."""
-    if isinstance(label, str):
-        return text == label
-    try:
-        return math.isclose(float(text), float(str(label)), rel_tol=1e-9)
-    except ValueError:
-        return False
 
 
 def _open(path: Path) -> xr.Dataset:

@@ -16,7 +16,7 @@ from contactstudy.plots.study_lines import plot_study_lines, study_figures
 from contactstudy.plots.study_map import plot_study_map
 from contactstudy.plots.style import COLORS, save
 from contactstudy.plots.temperature import plot_temperature_map
-from contactstudy.plots.tractions import plot_stick_and_slip, plot_traction_curve
+from contactstudy.plots.tractions import plot_stick_and_slip, plot_traction_curve, plot_traction_map
 from contactstudy.plots.wear import plot_wear
 
 __all__ = [
@@ -35,6 +35,7 @@ __all__ = [
     "plot_study_map",
     "plot_temperature_map",
     "plot_traction_curve",
+    "plot_traction_map",
     "plot_wear",
     "save",
     "study_figures",

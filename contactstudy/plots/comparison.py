@@ -12,6 +12,7 @@ from contactstudy.analysis import along_line, axial_pressure, dimension_along, p
 from contactstudy.analysis.measures import measure
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.labels import WIDEST_NAME, fold_labels, folded
 from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import line_styles, new_axes, units
 
@@ -74,12 +75,13 @@ def plot_comparison(
             axial = axial_pressure(one)
             loaded = positions(axial, "x").where(axial > 0)
             middle = 0.5 * float(loaded.min() + loaded.max())
-        ax.plot((place - middle) / unit.length, shown / unit.stress, label=name, **style)
+        ax.plot((place - middle) / unit.length, shown / unit.stress, label=folded(name, WIDEST_NAME), **style)
         mark_at_top(ax, [(end - middle) / unit.length for end in ends], style["color"])
     ax.set_xlabel(unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$")
     ax.set_ylabel(unit.stress_label(variable))
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
+    fold_labels(ax)
     return ax
 
 
@@ -138,10 +140,16 @@ def plot_depth(
     line = along_line(one, *ends, points=10 * np.size(depth) + 1, variables=names)
     ax = new_axes(ax, (4.8, 4.8))
     for name, style in zip(names, line_styles(len(names)), strict=True):
-        ax.plot(line[name].values / unit.stress, line["z"].values / unit.length, label=unit.stress_label(name), **style)
+        ax.plot(
+            line[name].values / unit.stress,
+            line["z"].values / unit.length,
+            label=folded(unit.stress_label(name), WIDEST_NAME),
+            **style,
+        )
     ax.set_ylim(depth.max() / unit.length, depth.min() / unit.length)
     ax.set_title(f"below {unit.place('x', at)}, {unit.place('y', y)}", fontsize="medium")
     ax.set_xlabel("stress over $p_0$" if not si else "stress (MPa)")
     ax.set_ylabel(unit.axis("z"))
     ax.legend(frameon=False, fontsize="small")
+    fold_labels(ax)
     return ax

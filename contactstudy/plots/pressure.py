@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy.analysis import axial_pressure, dimension_along, single_case
 from contactstudy.arrays.required import require
+from contactstudy.plots.labels import fold_labels
 from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
 from contactstudy.plots.style import COLORS, new_axes, units
 
@@ -64,6 +65,7 @@ def plot_axial_pressure(
     mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.stress_label("pressure"))
+    fold_labels(ax)
     return ax
 
 
@@ -116,7 +118,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
         rasterized=True,
     )
     extend = "neither" if largest is None else "max"
-    ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label("pressure"), extend=extend)
+    bar = ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label("pressure"), extend=extend)
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.axis("y"))
+    fold_labels(ax, bar.ax)
     return ax

@@ -9,6 +9,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.labels import WIDEST_NAME, folded
 from contactstudy.plots.style import line_styles, new_axes
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import checked_drop
@@ -108,7 +109,7 @@ def plot_profiles(
     if not profiles:
         raise InvalidInputError("profiles", dict(profiles), "at least one profile")
     for (name, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
-        ax = plot_profile(profile, length, ax, deepest=deepest, label=name, **style)
+        ax = plot_profile(profile, length, ax, deepest=deepest, label=folded(name, WIDEST_NAME), **style)
     assert ax is not None
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

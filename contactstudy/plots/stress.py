@@ -11,6 +11,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.labels import fold_labels
 from contactstudy.plots.singular import capped
 from contactstudy.plots.style import COLORS, Units, new_axes, units
 
@@ -115,7 +116,8 @@ def plot_stress_plane(
             if most < np.inf and np.asarray(drawn.levels).max() >= most / unit.stress
             else ""
         )
-        ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable) + beyond)
+        fold_labels(ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable) + beyond).ax)
+    fold_labels(ax)
     return ax
 
 
@@ -217,5 +219,5 @@ def plot_end_face(
     over = unit.over_length
     ax.set_xlabel(f"on the end face, ${sign}y{over}$   |   in the plane $y = 0$, $x{over}$ from the face")
     ax.set_ylabel(unit.axis("z"))
-    ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable))
+    fold_labels(ax, ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable)).ax)
     return ax

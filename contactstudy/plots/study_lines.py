@@ -2,24 +2,27 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
-import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.engineering import quantity
+from contactstudy.analysis import single_case
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import DERIVED
-from contactstudy.errors import InvalidInputError
-from contactstudy.plots.edge_effect import plot_edge_effect
+from contactstudy.errors import ContactStudyError, InvalidInputError
+from contactstudy.plots.chosen import in_lines, narrowed, said
+from contactstudy.plots.edge_effect import AXES, Load, edge_effect_figure
+from contactstudy.plots.labels import fold_labels, folded
 from contactstudy.plots.singular import MARK, MEANING, mark_at_top
 from contactstudy.plots.study_map import one_value, readable, scale_of
 from contactstudy.plots.style import as_written, line_styles
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
@@ -29,12 +32,18 @@ MARKERS = "osD^vPX*"
 """Of the lines, in turn."""
 
 OPEN: dict[str, Any] = {"markersize": 6, "markerfacecolor": "white", "linestyle": "none"}
-"""Marker of a value that may be larger beyond the points where it was looked for."""
+"""Marker of a value of which no error is known."""
 
 NO_ERROR = "no error known"
 
-WIDEST_LABEL, WIDEST_LEGEND = 34, 22
-"""Characters after which the text of an axis and of the legend's title goes on in the next line."""
+FOUND = ("peak_", "end_pressure_", "end_load_", "end_intensity", "contact_")
+"""How names of results begin that have an error; of other scalars, such as a load that was given, none is missed."""
+
+LINE = 0.17
+"""Height of a line of text, inches."""
+
+WIDEST_NAME, WIDEST_LEGEND = 18, 22
+"""Letters after which a name at the axis, and the legend's title and names, go on in the next line."""
 
 
 def plot_study_lines(
@@ -65,7 +74,7 @@ def plot_study_lines(
     Figure
         Its title says at which values of the other parameters. Bars are stated errors. An open triangle at the top
         stands for a value without a limit, such as the peak pressure at a sharp end inside the face. An open marker is
-        a value of which no error is known.
+        a value of which no error is known, such as the depth of the largest stress.
 
     Raises
     ------
@@ -114,32 +123,42 @@ def plot_study_lines(
             marker = MARKERS[number % len(MARKERS)]
             endless = np.isinf(line.values)
             shown = np.where(endless, np.nan, line.values)
-            ax.plot(places, shown, **style, marker=marker, markersize=4, label=text)
+            (curve,) = ax.plot(
+                places, shown, **style, marker=marker, markersize=4, label=text and folded(text, WIDEST_LEGEND)
+            )
             if errors is not None:
                 bars = (errors if hue is None else errors.isel({hue: number})).values
-                ax.errorbar(places, shown, bars, fmt="none", ecolor=style["color"], elinewidth=1.0)
+                ax.errorbar(places, shown, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
             if unsure is not None:
                 own = unsure if hue is None else unsure.isel({hue: number})
                 open_marks = np.where(own.values, shown, np.nan)
+                known = np.isfinite(shown) & ~own.values
                 if np.isfinite(open_marks).any():
-                    ax.plot(places, open_marks, color=style["color"], marker=marker, **OPEN)
                     at_edge = True
+                    if known.any():
+                        ax.plot(places, open_marks, color=style["color"], marker=marker, **OPEN)
+                    else:
+                        curve.set(markersize=OPEN["markersize"], markerfacecolor=OPEN["markerfacecolor"])
             mark_at_top(ax, list(places[endless]), style["color"])
             singular |= bool(endless.any())
         if not numeric:
-            ax.set_xticks(places, [as_written(value) for value in across.values], rotation=20)
+            names = [folded(as_written(value), WIDEST_NAME) for value in across.values]
+            ax.set_xticks(places, names, rotation=20)
         ax.set_xlabel(label)
-        ax.set_ylabel("\n".join(textwrap.wrap(meaning, WIDEST_LABEL)))
+        ax.set_ylabel(meaning)
+        fold_labels(ax)
         tops = values if errors is None else values + errors.fillna(0.0)
         ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(tops.where(np.isfinite(tops)).max())), 1e-300))
         ax.grid(color="0.9", linewidth=0.6)
+    figure.set_figheight(figure.get_figheight() + LINE * max(map(_more_lines, axes[0])))
     if hue is not None:
         numeric = np.issubdtype(dataset[hue].dtype, np.number) and not _parameters_of(dataset[hue], hue)
         title = readable(dataset[hue], hue)[1] if numeric else hue.replace("_", " ")
-        wrapped = "\n".join(textwrap.wrap(title, WIDEST_LEGEND))
         handles, labels = axes[0, 0].get_legend_handles_labels()
         small = {"fontsize": "small", "title_fontsize": "small"}
-        figure.legend(handles, labels, loc="outside right center", title=wrapped, frameon=False, **small)
+        figure.legend(
+            handles, labels, loc="outside right center", title=folded(title, WIDEST_LEGEND), frameon=False, **small
+        )
     keys = {MEANING: MARK} if singular else {}
     if at_edge:
         keys[NO_ERROR] = {"marker": "o", **OPEN}
@@ -147,14 +166,18 @@ def plot_study_lines(
         marks = [Line2D([], [], color="0.3", **style) for style in keys.values()]
         figure.legend(marks, list(keys), loc="outside lower right", frameon=False, fontsize="small", ncols=2)
     if chosen:
-        stated = ", ".join(
-            f"{dim} = {quantity(float(value), str(dataset[dim].attrs.get('units', '1')))}"
-            if isinstance(value, int | float | np.number)
-            else f"{dim} = {as_written(value)}"
+        parts = [
+            said(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
             for dim, value in chosen.items()
-        )
-        figure.suptitle("\n".join(textwrap.wrap(stated, 40 * len(drawn))), fontsize="medium")
+        ]
+        figure.suptitle(in_lines(parts, 40 * len(drawn)), fontsize="medium")
     return figure
+
+
+def _more_lines(ax: Axes) -> int:
+    """Lines below an axis beyond one of numbers and one of the label."""
+    names = max((tick.get_text().count("\n") for tick in ax.get_xticklabels()), default=0)
+    return names + ax.get_xlabel().count("\n")
 
 
 def _errors(dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mapping[str, Any]) -> xr.DataArray | None:
@@ -169,13 +192,14 @@ def _errors(dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mappi
 def _without_error(
     dataset: xr.Dataset, name: str, kept: tuple[str, ...], chosen: Mapping[str, Any]
 ) -> xr.DataArray | None:
-    """Where a largest value, or its place, has an infinite error."""
-    base = name.removesuffix("_x").removesuffix("_y").removesuffix("_z")
-    error = f"{base}_error"
-    if error not in dataset:
-        return None
-    endless = one_value(dataset[error], kept, chosen) == np.inf
-    return endless & (one_value(dataset[base], kept, chosen) < np.inf)
+    """Where no error of a result is known: it has no estimate, as the place of a largest value, or an infinite one."""
+    if f"{name}_error" not in dataset:
+        if not name.startswith(FOUND):
+            return None
+        values = one_value(dataset[name], kept, chosen)
+        return values.where(np.isfinite(values)).notnull()
+    endless = one_value(dataset[f"{name}_error"], kept, chosen) == np.inf
+    return endless & (one_value(dataset[name], kept, chosen) < np.inf)
 
 
 def _texts(values: xr.DataArray, name: str) -> list[str]:
@@ -204,13 +228,16 @@ def _first_solved(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping
     return max(combinations, key=lambda each: int(np.isfinite(one_value(array, kept, each)).sum()))
 
 
-def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:
+def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = None) -> dict[str, Figure]:
     """Draw the figures that suit a study, by name.
 
     Parameters
     ----------
     dataset : Dataset
         From :func:`contactstudy.open_study`.
+    selection : mapping, optional
+        Values of swept parameters, to which the figures keep. Of others that have no axis, line or panel the figures
+        show the value with most solved cases, or the first of these, and their titles say which.
 
     Returns
     -------
@@ -219,20 +246,44 @@ def study_figures(dataset: xr.Dataset) -> dict[str, Figure]:
         takes several values: `plot_study_lines` over the longest swept parameter, with a line for each value of the
         next longest.
 
+    Raises
+    ------
+    InvalidInputError
+        If a parameter of the selection is not swept, or does not take the value.
+
     Examples
     --------
     >>> values = xr.DataArray([1.0, 2.0], dims="friction", coords={"friction": [0.0, 0.1]})
     >>> list(study_figures(xr.Dataset({"peak_pressure": values, "status": values})))
     ['study']
     """
-    figures = {}
-    if "e_over_a" in dataset.dims and "pressure" in dataset:
-        chosen = _first_solved(dataset["hertz_half_width"], ("e_over_a", "body"), {})
-        figures["edge_effect"] = plot_edge_effect(dataset, selection=chosen)
+    part = narrowed(dataset, selection or {})
+    load = single_case if "pressure" in dataset else None
+    return {name: figure for name, (figure, _) in suiting_figures(part, load).items()}
+
+
+def suiting_figures(dataset: xr.Dataset, load: Load | None) -> dict[str, tuple[Figure, list[str]]]:
+    """Figures of :func:`study_figures`, each with the parameters of which it shows one value among several.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Scalars of the cases are enough.
+    load : callable or None
+        Takes the part of the Dataset that is one case, returns the case with its surfaces; None: none are kept.
+    """
     swept = sorted(
-        (dim for dim in dataset["status"].dims if dataset.sizes[dim] > 1), key=lambda dim: -dataset.sizes[dim]
+        (str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1), key=lambda dim: -dataset.sizes[dim]
     )
-    names = [str(dim) for dim in swept if dim != "case"]
+    figures = {}
+    if "e_over_a" in dataset.dims and load is not None and "hertz_half_width" in dataset:
+        chosen = _first_solved(dataset["hertz_half_width"], AXES, {})
+        with contextlib.suppress(ContactStudyError):  # nothing of it is solved yet, or is there any more
+            figures["edge_effect"] = (
+                edge_effect_figure(dataset, load, chosen),
+                [name for name in swept if name not in AXES],
+            )
+    names = [name for name in swept if name != "case"]
     if names and any(name in dataset for name in QUANTITIES):
-        figures["study"] = plot_study_lines(dataset, *names[:2])
+        figures["study"] = (plot_study_lines(dataset, *names[:2]), names[2:])
     return figures

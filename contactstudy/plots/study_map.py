@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
+from contactstudy.arrays.named_places import place_of
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
+from contactstudy.plots.labels import fold_labels, folded
 from contactstudy.plots.style import COLORS, SYMBOLS, as_written, new_axes
 
 if TYPE_CHECKING:
@@ -25,6 +27,9 @@ SCALES = {
 STATES = ("failed", "skipped", "excluded", "missing")
 """What a study says of a case without a result."""
 
+WIDEST_STEP = 18
+"""Letters after which a name at an axis goes on in the next line."""
+
 MOST_NUMBERS = 80
 """Cells up to which each is labelled with its value."""
 
@@ -32,6 +37,8 @@ MOST_NUMBERS = 80
 def readable(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
     """Values and label of a parameter or of a quantity; stresses in MPa or GPa, lengths in um or mm."""
     text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
+    if text.startswith("z of "):
+        text = f"depth of {text.removeprefix('z of ')}"
     factor, unit = scale_of(array)
     return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
 
@@ -55,11 +62,7 @@ def one_value(array: xr.DataArray, kept: tuple[str, ...], selection: Mapping[str
             raise InvalidInputError("selection", name, f"of {', '.join(others) or 'nothing'}")
     for dim in [str(dim) for dim in array.dims if dim not in kept]:
         if dim in selection:
-            labels = array.indexes[dim]
-            found = [number for number, label in enumerate(labels) if label == selection[dim]]
-            if not found:
-                raise InvalidInputError(f"selection[{dim!r}]", selection[dim], f"one of {', '.join(map(str, labels))}")
-            array = array.isel({dim: found[0]})
+            array = array.isel({dim: place_of(array, dim, selection[dim])})
         elif array.sizes[dim] == 1:
             array = array.isel({dim: 0})
         else:
@@ -165,9 +168,12 @@ def plot_study_map(
     for parameter, ticks, axis in ((x, across, ax.xaxis), (y, up, ax.yaxis)):
         numeric = np.issubdtype(values[parameter].dtype, np.number)
         steps, text = readable(values[parameter], parameter) if numeric else (values[parameter], parameter)
-        axis.set_ticks(ticks, [f"{step:g}" if numeric else as_written(step) for step in steps.values])
+        axis.set_ticks(
+            ticks, [f"{step:g}" if numeric else folded(as_written(step), WIDEST_STEP) for step in steps.values]
+        )
         axis.set_label_text(text)
-    ax.figure.colorbar(drawn, ax=ax, label=label or meaning)
+    bar = ax.figure.colorbar(drawn, ax=ax, label=label or meaning)
+    fold_labels(ax, bar.ax)
     return ax
 
 

@@ -10,6 +10,7 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import variable_of
+from contactstudy.plots.labels import fold_labels
 from contactstudy.plots.style import new_axes, units
 
 if TYPE_CHECKING:
@@ -72,7 +73,8 @@ def plot_temperature_map(
     j, i = divmod(int(values.argmax()), values.shape[1])
     ax.plot(places[0][i], places[1][j], "+", color="black", markersize=9)
     known = variable_of(name, rise.attrs)
-    ax.figure.colorbar(drawn, ax=ax, label=f"{known.long_name} (K)")
+    bar = ax.figure.colorbar(drawn, ax=ax, label=f"{known.long_name} (K)")
     ax.set_xlabel(unit.axis("x"))
     ax.set_ylabel(unit.axis("y"))
+    fold_labels(ax, bar.ax)
     return ax

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from datetime import UTC, datetime
 from functools import cache
 from pathlib import Path
@@ -39,7 +40,9 @@ def _templates() -> jinja2.Environment:
     )
 
 
-def html(source: xr.Dataset | str | Path, *, title: str | None = None) -> str:
+def html(
+    source: xr.Dataset | str | Path, *, title: str | None = None, selection: Mapping[str, Any] | None = None
+) -> str:
     """Report of a result or of a study as the text of one HTML page.
 
     Parameters
@@ -48,6 +51,9 @@ def html(source: xr.Dataset | str | Path, *, title: str | None = None) -> str:
         A result of one case; the netCDF file of one; or the folder of a study.
     title : str, optional
         Heading of the page; default: from the file's or the study's name.
+    selection : mapping, optional
+        Of a study: values of swept parameters to which the figures keep, such as ``{"profile": "crowned"}``. Its table
+        has all cases. Default: figures with more parameters than axes show one value of the others, and say which.
 
     Returns
     -------
@@ -59,7 +65,8 @@ def html(source: xr.Dataset | str | Path, *, title: str | None = None) -> str:
     Raises
     ------
     InvalidInputError
-        If there is no such result, or more than one case.
+        If there is no such result, or more than one case; if the selection names no swept parameter or value, or
+        there is one and the source is no study.
 
     Examples
     --------
@@ -74,17 +81,25 @@ def html(source: xr.Dataset | str | Path, *, title: str | None = None) -> str:
         checks.instance("source", source, (str, Path), "a Dataset, a netCDF file or a study's folder")
         path = Path(source)
         if path.is_dir():
-            context = study_context(path)
+            context = study_context(path, selection)
             return (
                 _templates().get_template("study.html").render(shared | context | ({"title": title} if title else {}))
             )
         source = _opened(path)
         title = title or _called(source, path)
+    if selection:
+        raise InvalidInputError("selection", dict(selection), "left out: the report of one case shows that case")
     context = _case_context(source) | {"title": title or "Contact of a roller"}
     return _templates().get_template("case.html").render(shared | context)
 
 
-def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, title: str | None = None) -> Path:
+def write(
+    source: xr.Dataset | str | Path,
+    path: str | Path | None = None,
+    *,
+    title: str | None = None,
+    selection: Mapping[str, Any] | None = None,
+) -> Path:
     """Write the report of a result or of a study as one HTML file.
 
     Parameters
@@ -93,7 +108,7 @@ def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, ti
         As for :func:`html`.
     path : str or Path, optional
         The file, ``.html``. Default: beside the netCDF file, or ``report.html`` in the study's folder.
-    title : str, optional
+    title, selection : optional
         As for :func:`html`.
 
     Returns
@@ -125,7 +140,7 @@ def write(source: xr.Dataset | str | Path, path: str | Path | None = None, *, ti
     if target.suffix.lower() not in (".html", ".htm"):
         hint = "a browser prints the page to PDF" if target.suffix.lower() == ".pdf" else ""
         raise InvalidInputError("path", str(path), "a name that ends in .html: the report is a page", hint)
-    page = html(source, title=title)
+    page = html(source, title=title, selection=selection)
     with checks.writing(target):
         target.write_text(page, encoding="utf-8")
     return target

@@ -16,7 +16,13 @@ from contactstudy.arrays.engineering import quantity
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.plots import plot_axial_pressure, plot_pressure_map, plot_profile, plot_stress_plane
+from contactstudy.plots import (
+    plot_axial_pressure,
+    plot_pressure_map,
+    plot_profile,
+    plot_stress_plane,
+    plot_traction_map,
+)
 from contactstudy.plots.singular import capped, mark_at_top, near_singular, singular_ends
 from contactstudy.profiles.base import checked_drop
 
@@ -47,10 +53,14 @@ class Picture(NamedTuple):
 def as_address(figure: Figure) -> str:
     """Return a figure as an address that holds it, the same bytes each time."""
     import matplotlib
+    from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     target = io.BytesIO()
+    # `savefig` would draw twice: once to place everything, which drawing does as well.
+    figure.set_dpi(DOTS)
+    canvas: Any = FigureCanvasSVG(figure)
     with matplotlib.rc_context({"svg.hashsalt": "contactstudy"}):
-        figure.savefig(target, format="svg", dpi=DOTS, metadata={"Date": None, "Creator": None})
+        canvas.print_svg(target, metadata={"Date": None, "Creator": None})
     return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
 
 
@@ -75,6 +85,8 @@ def case_pictures(one: xr.Dataset, case: Case | None) -> list[Picture]:
     drawn: list[Callable[[], Picture]] = []
     if "pressure" in one:
         drawn += [lambda: _axial(one), lambda: _map(one)]
+    if {"pressure", "stick", "traction_x", "slip_x"} <= set(one.data_vars):
+        drawn += [lambda: _tractions(one), lambda: _slip(one)]
     if case is not None and checked_drop(case.roller.profile, _along(case, 0.5), case.roller.length).any():
         drawn.append(lambda: _profile(case))
     if "von_mises" in one and bool(one["von_mises"].notnull().any()):
@@ -121,6 +133,33 @@ def _map(one: xr.Dataset) -> Picture:
     figure, (ax,) = _new()
     plot_pressure_map(one, ax, si=True)
     return Picture(as_address(figure), "Pressure on the top of the body. The two axes have different scales.")
+
+
+def _tractions(one: xr.Dataset) -> Picture:
+    """Tractions on the top, with the border of the area that sticks."""
+    figure, (ax,) = _new()
+    plot_traction_map(one, ax, si=True)
+    if not bool(one["stick"].where(one["pressure"] > 0, False).any()):
+        border = "The surfaces slip everywhere."
+    elif bool(one["stick"].where(one["pressure"] > 0, True).all()):
+        border = "The surfaces stick everywhere."
+    else:
+        border = "The surfaces stick within the red line, and slip between it and the grey one."
+    said = f"Size of the traction on the body. {border} The two axes have different scales."
+    return Picture(as_address(figure), said)
+
+
+def _slip(one: xr.Dataset) -> Picture:
+    """Slip on the top, with the border of the area that sticks."""
+    figure, (ax,) = _new()
+    plot_traction_map(one, ax, variable="slip", si=True)
+    shifted = str(one["slip_y"].attrs.get("units", "1")) == "m"
+    said = (
+        "in the last step"
+        if shifted
+        else "per distance rolled; the contact moves along +y, so its leading edge is at the top"
+    )
+    return Picture(as_address(figure), f"Size of the slip of the roller against the body, {said}.")
 
 
 def _profile(case: Case) -> Picture:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,12 +15,10 @@ import xarray as xr
 from contactstudy.analysis.certainty import CARE, NO, UNKNOWN, YES, certainty
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.engineering import with_error
-from contactstudy.errors import ContactStudyError
-from contactstudy.plots import study_figures
 from contactstudy.report.figures import Picture, as_address
+from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
-from contactstudy.study.opened import open_study, summaries
 from contactstudy.study.parameters import PARAMETERS, with_defaults
 from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
 
@@ -34,16 +33,13 @@ SHOWN = {
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
-    "study": "Largest values of the cases over the swept parameters. Bars: stated errors; without one no error is "
+    "study": "Largest values of the cases over the swept parameters. Bars: stated errors; open marks: no error is "
     "known. An open triangle at the top: singular, there is no largest value.",
 }
 """What figures show, by name."""
 
 LONGEST = 30
 """Letters of a column's heading."""
-
-MOST_FIELDS = 60
-"""Cases up to which figures of fields are drawn: the file of every one is opened for them. Speed."""
 
 
 class Row(NamedTuple):
@@ -58,13 +54,15 @@ class Row(NamedTuple):
     reason: str
 
 
-def study_context(path: Path) -> dict[str, Any]:
+def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Everything that the template of a study needs.
 
     Parameters
     ----------
     path : Path
         The study's folder.
+    selection : mapping, optional
+        Values of swept parameters to which the figures keep; the table has all cases.
     """
     folder = Folder(path)
     study = folder.read_study()
@@ -90,7 +88,7 @@ def study_context(path: Path) -> dict[str, Any]:
         "reasons": _reasons(rows),
         "answers": _answers(rows),
         "doubtful": [row for row in rows if row.real == NO],
-        "pictures": _pictures(path, len(plan.cases)),
+        "pictures": _pictures(path, selection),
         "provenance": _provenance(runs),
     }
 
@@ -193,24 +191,28 @@ def _reasons(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     return [(status, reason, cases) for (status, reason), cases in grouped.items()]
 
 
-def _pictures(path: Path, cases: int) -> list[Picture]:
+def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     """Figures that suit the study; none if nothing of it can be drawn."""
-    import dask
-    from dask.local import get_sync
     from matplotlib import pyplot
 
-    opened = open_study(path, cells="own") if cases <= MOST_FIELDS else summaries(path)[0]
-    try:
-        # A scheduler that is left out, or named by a word, lets dask import all that speaks with clusters.
-        with dask.config.set(scheduler=get_sync):
-            figures = study_figures(opened)
-    except ContactStudyError:
-        return []
     found = []
-    for name, figure in figures.items():
-        found.append(Picture(as_address(figure), CAPTIONS.get(name, name.replace("_", " "))))
+    for name, (figure, others) in figures_of_folder(path, selection).items():
+        caption = CAPTIONS.get(name, name.replace("_", " "))
+        found.append(Picture(as_address(figure), f"{caption}{_to_choose(others)}"))
         pyplot.close(figure)
     return found
+
+
+def _to_choose(others: dict[str, str]) -> str:
+    """Say of which parameters one value is drawn, and how to draw another."""
+    if not others:
+        return ""
+    name, value = next(iter(others.items()))
+    command = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
+    return (
+        f" Of {' and '.join(_short(each) for each in others)} one value is drawn, which the title says. Another is "
+        f"drawn by: contactstudy report FOLDER --select {command}"
+    )
 
 
 def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:

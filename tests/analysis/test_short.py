@@ -41,6 +41,26 @@ def test_scalars_of_a_motion_have_their_errors(solved: xr.Dataset) -> None:
     assert np.isnan(view["load_position"].error)
 
 
+def test_stick_and_slip_are_said(solved: xr.Dataset) -> None:
+    pressed = (solved["pressure"] > 0).drop_attrs()
+    tractions = {
+        "traction_x": 3e7 * pressed,
+        "traction_y": 4e7 * pressed,
+        "slip_x": 0 * pressed,
+        "slip_y": 2e-3 * pressed,
+    }
+    rolled = solved.assign(tractions | {"stick": pressed, "sticking_part": 0.0})
+    view = short(rolled)
+    assert (view["sticking_part"].text, view["sticking_part"].remark) == ("0", "no error known")
+    assert view["largest_traction"].text == "50 MPa"
+    assert view["largest_slip"].text == "0.002 per distance rolled"
+    shifted = rolled.assign(slip_y=(2e-6 * pressed).assign_attrs(units="m"), shift_y=3e-6)
+    assert short(shifted)["largest_slip"].text == "2 \N{MICRO SIGN}m"
+    assert short(shifted)["shift_y"].remark == "no error known"
+    given = {"contactstudy_inputs": '{"case": {"motion": {"kind": "Shift", "y": 3e-6}}}'}
+    assert short(shifted.assign_attrs(given))["shift_y"].remark == ""
+
+
 def test_no_singular_value_is_shown_as_a_number(singular: xr.Dataset) -> None:
     view = short(singular)
     for name in ("peak_pressure", "end_pressure_first", "peak_von_mises"):

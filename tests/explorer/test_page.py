@@ -14,11 +14,13 @@ pytest.importorskip("panel")
 
 from contactstudy import ContactStudyError, InvalidInputError, explore, open_study
 from contactstudy.analysis import in_plane
+from contactstudy.arrays.variables import specification
 from contactstudy.explorer import server, show
 from contactstudy.explorer.cases import Cases, of_dataset, of_folder
 from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, scale_of, top
-from contactstudy.explorer.figures import StudyFigure
+from contactstudy.explorer.figures import NEUTRAL, StudyFigure
 from contactstudy.explorer.looked import Looked
+from contactstudy.explorer.numbers import ORDER, SUBJECTS
 from contactstudy.explorer.page import Page
 from contactstudy.explorer.pixels import between, pixels
 
@@ -74,11 +76,61 @@ def test_two_cases_side_by_side_share_their_colours(page: Page) -> None:
 
 def test_a_case_that_failed_says_why(page: Page) -> None:
     page.choices[0]["friction"].value = 1
-    assert "this friction fails in tests" in page.table.object
+    assert ">failed<" in page.table.object
+    assert "This case failed. WindowError: this friction fails in tests" in page.table.object
     assert page.tops[0]._source.data["image"] == []
     assert np.isnan(page.study._chosen.data["v"]).all()
+    assert not any(pane.visible for pane in page.panes)  # no empty axes
+    assert "No case with these values" in page.table.object
+    page.compare.value = True
+    assert page.panes[2].visible
+    assert not page.panes[1].visible
+    assert "<b>case:</b> This case failed" in page.table.object
+    page.compare.value = False
     page.choices[0]["friction"].value = 0
     assert len(page.tops[0]._source.data["image"]) == 1
+    assert "class=why" not in page.table.object
+    assert [pane.visible for pane in page.panes] == [True, True, False, True, False, True]
+
+
+def test_a_plane_without_stresses_is_said(page: Page) -> None:
+    place, inner = page.place(0), page.cases.load
+    bare = Looked(inner(place).dataset.drop_vars("von_mises"))
+    less = Page(Cases(page.cases.scalars, lambda wanted: bare, page.cases.title))
+    assert "Its stresses are not computed or not kept." in less.table.object
+    assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
+
+
+def test_numbers_stand_by_subject(page: Page) -> None:
+    groups = page.number.groups
+    assert list(groups) == [subject for subject in ORDER if subject in groups]
+    assert list(groups)[:2] == ["pressure", "stresses"]
+    assert list(groups)[-1] == "how it was solved"
+    names = [name for group in groups.values() for name in group.values()]
+    assert names[0] == page.number.value == "peak_pressure"
+    floats = {name for name, entry in page.cases.scalars.data_vars.items() if entry.dtype.kind == "f"}
+    assert {name for name in floats if not name.endswith("_error")} >= set(names)
+    assert len(names) == len(set(names)) == len({text for group in groups.values() for text in group})
+    known = [name for subject in SUBJECTS.values() for name in subject]
+    assert len(known) == len(set(known))
+    assert all(name.endswith("_") or specification(name) for name in known)
+
+
+def test_errors_of_the_study_are_bars_and_missing_ones_are_said(page: Page) -> None:
+    scalars = page.cases.scalars
+    peak = scalars["peak_pressure"]
+    error = (0.1 * peak).where(scalars["max_pressure"] > 1.1e9, np.inf)
+    made = Page(Cases(scalars.assign(peak_pressure_error=error), page.cases.load, page.cases.title))
+    data = made.study._line.data
+    np.testing.assert_allclose(data["high"][1:], 1.1 * data["v"][1:])
+    np.testing.assert_allclose(data["low"][1:], 0.9 * data["v"][1:])
+    assert np.isnan([data["low"][0], data["high"][0]]).all()
+    assert data["fill"].tolist() == ["white", NEUTRAL, NEUTRAL]
+    assert made.study.figure.title.text == "bars: stated errors; open marks: no error known"
+    assert made.study.figure.y_range.end > data["high"][-1]
+    made.number.value = "normal_load"  # it was given: nothing is missed
+    assert made.study._line.data["fill"].tolist() == [NEUTRAL] * 3
+    assert made.study.figure.title.text == ""
 
 
 def test_planes_are_those_of_the_analysis(folder: Path) -> None:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+import matplotlib.axes
 import matplotlib.figure
+import matplotlib.lines
 import numpy as np
 import pytest
 import xarray as xr
@@ -41,6 +43,12 @@ def assert_nothing_clipped() -> Callable[[matplotlib.figure.Figure], None]:
             assert box.y1 <= frame.y1 + 1
 
     return check
+
+
+@pytest.fixture
+def lines_of() -> Callable[[matplotlib.axes.Axes], list[matplotlib.lines.Line2D]]:
+    """Lines of axes without the ends of error bars, which matplotlib keeps among them."""
+    return lambda ax: [line for line in ax.lines if line.get_marker() != "_"]
 
 
 @pytest.fixture

@@ -61,7 +61,7 @@ def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clip
 def test_without_singular_cases_there_is_no_mark():
     figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), "e_over_a", "friction")
     assert len(figure.axes[0].lines) == 2
-    assert len(figure.legends) == 1
+    assert not any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
 def test_a_map_says_where_there_is_no_limit():
@@ -69,11 +69,11 @@ def test_a_map_says_where_there_is_no_limit():
     assert [text.get_text() for text in ax.texts].count("\N{INFINITY}") == 1
 
 
-def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker():
+def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker(lines_of):
     one = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
     one["peak_von_mises_error"] = one["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
     figure = plots.plot_study_lines(one, "e_over_a", "friction", variables=["peak_von_mises"])
-    _, line, marks = figure.axes[0].lines
+    _, line, marks = lines_of(figure.axes[0])
     assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
     assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
     assert any("no error known" in text.get_text() for legend in figure.legends for text in legend.get_texts())
@@ -91,4 +91,4 @@ def test_colours_stop_at_the_stress_away_from_a_singular_end():
         :1
     ]
     assert filled.norm.vmax < 0.5 * float(one["von_mises"].max()) / 1.5e9
-    assert "more beside the singular end" in ax.figure.axes[-1].get_ylabel()
+    assert "more beside the singular end" in ax.figure.axes[-1].get_ylabel().replace("\n", " ")

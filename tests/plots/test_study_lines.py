@@ -6,10 +6,10 @@ from contactstudy import plots
 from contactstudy.errors import InvalidInputError
 
 
-def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped):
+def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped, lines_of):
     figure = plots.plot_study_lines(opened, "e_over_a", "body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
-    assert all(len(ax.lines) == 2 for ax in figure.axes)
+    assert all(len(lines_of(ax)) == 2 for ax in figure.axes)
     expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
     np.testing.assert_allclose(figure.axes[1].lines[0].get_ydata(), expected)
     assert all("(" in ax.get_ylabel() for ax in figure.axes)
@@ -41,7 +41,7 @@ def test_quantities_must_be_there(opened):
 def test_the_first_solved_cases_are_drawn_and_named(opened):
     failed_first = opened.isel(friction=[1, 0])
     figure = plots.plot_study_lines(failed_first, "e_over_a", "body")
-    assert figure.get_suptitle() == "friction = 0.1"
+    assert figure.get_suptitle() == "friction = 0.1 (1 of 2)"
     assert np.isfinite(figure.axes[0].lines[0].get_ydata()).all()
     assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
     only_failed = plots.plot_study_lines(opened.isel(friction=[1]), "e_over_a", "body")
@@ -52,13 +52,13 @@ def test_what_is_held_is_named_with_its_unit(opened):
     load = xr.DataArray([200.0, 300.0], dims="load", attrs={"units": "N"})
     loaded = opened.isel(friction=0, drop=True).expand_dims(load=load)
     loaded["load"].attrs["units"] = "N"
-    assert plots.plot_study_lines(loaded, "e_over_a", "body").get_suptitle() == "load = 200 N"
+    assert plots.plot_study_lines(loaded, "e_over_a", "body").get_suptitle() == "load = 200 N (1 of 2)"
 
 
 def test_the_legend_has_the_unit_of_its_title(opened):
     by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
     by_pressure["max_pressure"].attrs["units"] = "Pa"
-    (legend,) = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").legends
+    legend, *_ = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").legends
     assert "GPa" in legend.get_title().get_text()
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
 
@@ -69,7 +69,7 @@ def test_parameters_that_change_together_are_named_together(opened):
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
     )
     together["body_and_model"] = [0, 1]
-    (legend,) = plots.plot_study_lines(together, "e_over_a", "body_and_model").legends
+    legend, *_ = plots.plot_study_lines(together, "e_over_a", "body_and_model").legends
     assert legend.get_title().get_text() == "body and model"
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
 
@@ -84,3 +84,30 @@ def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
     assert ends == [pytest.approx([0.9, 1.1]), pytest.approx([2.8, 3.2])]
     without = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), "e_over_a")
     assert not without.axes[0].collections
+
+
+def test_a_place_without_an_error_has_open_markers_and_a_given_number_none(lines_of) -> None:
+    steps = {"e_over_a": [0.0, 1.0]}
+    peaks = xr.DataArray([1e9, 2e9], steps, "e_over_a", attrs={"units": "Pa"})
+    known = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
+    names = ["peak_von_mises", "peak_von_mises_z", "normal_load"]
+    figure = plots.plot_study_lines(xr.Dataset(known | {"normal_load": peaks}), "e_over_a", variables=names)
+    faces = [line.get_markerfacecolor() for ax in figure.axes for line in lines_of(ax)]
+    assert [isinstance(face, str) and face == "white" for face in faces] == [False, True, False]
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == ["no error known"]
+
+
+def test_a_selection_chooses_what_figures_show(opened) -> None:
+    (edge, _), (chosen, _) = (
+        [figure.get_suptitle() for figure in plots.study_figures(opened, selection=selection).values()]
+        for selection in ({}, {"friction": "0.10"})
+    )
+    assert "friction = 0.1 (1 of 2)" in edge
+    assert "friction = 0.1" in chosen
+    assert "of 2" not in chosen
+    assert plots.study_figures(opened, selection={"body": "half-space"})["study"].get_suptitle() == "body = half-space"
+    with pytest.raises(InvalidInputError, match="swept parameter: e_over_a"):
+        plots.study_figures(opened, selection={"speed": 1.0})
+    with pytest.raises(InvalidInputError, match="one of"):
+        plots.study_figures(opened, selection={"friction": 0.7})

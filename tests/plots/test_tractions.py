@@ -84,3 +84,26 @@ def test_bad_input() -> None:
         plots.plot_traction_curve(study(), creepage="lateral_creepage")
     with pytest.raises(InvalidInputError, match="creepage = 'spin'"):
         plots.plot_traction_curve(study(), creepage="spin")
+
+
+def test_maps_show_the_size_and_the_border_of_the_area_that_sticks(assert_nothing_clipped) -> None:
+    one = rolled()
+    ax = plots.plot_traction_map(one, si=True)
+    mesh, contact, stick = ax.collections
+    largest = np.hypot(one["traction_x"], one["traction_y"]).where(one["pressure"] > 0, 0.0).max()
+    assert float(mesh.get_array().max()) == pytest.approx(float(largest) / 1e6)
+    assert int((~np.ma.getmaskarray(mesh.get_array())).sum()) == int((one["pressure"] > 0).sum())
+    # Up each row of cells the border is crossed where the flag changes.
+    flags = np.pad(one["stick"].transpose("x", "y").values.astype(int), ((0, 0), (1, 1)))
+    lying = [piece for piece in stick.get_segments() if piece[0, 1] == piece[1, 1]]
+    assert len(lying) == int(np.abs(np.diff(flags, axis=1)).sum())
+    assert len(contact.get_segments()) > 0
+    assert_nothing_clipped(ax.figure)
+    slip = plots.plot_traction_map(one, variable="slip")
+    assert slip.figure.axes[-1].get_ylabel() == "slip per distance rolled"
+    shifted = one.assign({name: one[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
+    assert "mm" in plots.plot_traction_map(shifted, variable="slip").figure.axes[-1].get_ylabel()
+    with pytest.raises(InvalidInputError, match="heat"):
+        plots.plot_traction_map(one, variable="heat")
+    with pytest.raises(InvalidInputError, match="stick"):
+        plots.plot_traction_map(one.drop_vars("stick"))

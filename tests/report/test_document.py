@@ -163,3 +163,51 @@ def test_a_report_imports_nothing_of_clusters(tmp_path: Path) -> None:
 def test_a_report_is_a_page_and_no_other_file(tmp_path: Path) -> None:
     with pytest.raises(InvalidInputError, match=r"x.pdf': must be a name that ends in .html.*prints the page to PDF"):
         report.write(xr.Dataset(), tmp_path / "x.pdf")
+
+
+def test_a_studys_figures_say_what_they_leave_out_and_show_another(folder: Path, tmp_path: Path, capsys) -> None:
+    page = read(report.write(folder, tmp_path / "all.html"))
+    assert "Of friction and profile one value is drawn" in page.text
+    assert "contactstudy report FOLDER --select friction=0.66" in page.text
+    chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
+    assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
+    one = read(tmp_path / "one.html")
+    assert "one value is drawn" not in one.text
+    assert {f"case-{number}" for number in range(1, 13)} <= one.anchors
+    assert main(["report", str(folder), "--select", "speed=1"]) == 2
+    assert "swept parameter: e_over_a, friction, profile" in capsys.readouterr().err
+    assert main(["report", str(folder), "--select", "friction"]) == 2
+    assert "NAME=VALUE" in capsys.readouterr().err
+
+
+def test_a_case_has_no_figures_to_choose(solved: xr.Dataset) -> None:
+    with pytest.raises(InvalidInputError, match="selection"):
+        report.html(solved, selection={"friction": 0.1})
+
+
+def test_files_are_opened_of_the_drawn_cases_alone(folder: Path, tmp_path: Path, monkeypatch) -> None:
+    from contactstudy.study import store
+
+    opened, inner = [], store.xr.open_dataset
+    monkeypatch.setattr(store.xr, "open_dataset", lambda path, **kw: opened.append(path) or inner(path, **kw))
+    report.write(folder, tmp_path / "study.html")
+    assert len(set(opened)) <= 3  # of four that are solved: two over e/a, and one for the units of its numbers
+
+
+def test_a_case_that_rolls_shows_where_it_sticks(solved: xr.Dataset) -> None:
+    pressed = (solved["pressure"] > 0).drop_attrs()
+    moved = {
+        "traction_x": 0.0 * pressed,
+        "traction_y": 4e7 * pressed,
+        "slip_x": 0.0 * pressed,
+        "slip_y": 2e-3 * pressed,
+    }
+    part = pressed & (pressed["y"] > 0)
+    rolled = solved.assign(moved | {"stick": part, "sticking_part": 0.5})
+    before, page = Page(report.html(solved)), Page(report.html(rolled))
+    assert len(page.fetched) == len(before.fetched) + 2
+    for words in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
+        assert words in page.text
+        assert words not in before.text
+    assert "slip everywhere" in Page(report.html(rolled.assign(stick=0 * part))).text
+    assert "stick everywhere" in Page(report.html(rolled.assign(stick=pressed))).text
