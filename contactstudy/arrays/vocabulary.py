@@ -59,9 +59,7 @@ STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
 
 COORDINATES = {
     "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
-    "y": Variable(
-        ("y",), "m", "y", "position along rolling", "from under the roller's centre"
-    ),
+    "y": Variable(("y",), "m", "y", "position along rolling", "from under the roller's centre"),
     "z": Variable(("z",), "m", "z", "depth", "below the loaded surface"),
     "x_field": Variable(("x_field",), "m", "x", "position along the axis", "of the stresses, from end I of the body"),
     "y_field": Variable(("y_field",), "m", "y", "position along rolling", "of the stresses"),
