@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
-from contactstudy.analysis.between_columns import Columns, beside, open_steps
+from contactstudy.analysis.between_columns import Columns, power_means
 from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.stated import SIDES, pressure_errors
 from contactstudy.arrays.across import largest_across
@@ -141,13 +141,9 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoa
     radius[under] = local_radius(case.roller.profile, place[under] - middle, case.roller.length, case.roller.radius)
     line = hertz.line_load(1.0, 1.0, case.modulus) * top**2 * radius
     columns = Columns(np.stack([place - half, place + half], axis=-1), place, line)
-    weights = columns.shares(borders)
-    scale = float(line.max())
-    mean = weights @ (line / scale) ** LIFE_POWER / np.diff(borders)
-    load = scale * mean ** (1 / LIFE_POWER)
-    common = _of_pressure(result, load, line, weights)
-    pressed = weights.any(axis=0)
-    error = common + weights[:, pressed] @ beside(open_steps(line[pressed])) / np.diff(borders)
+    load, left_open = power_means(columns, borders, LIFE_POWER)
+    common = _of_pressure(result, load, line, columns.shares(borders))
+    error = common + left_open
     for end, side in ((0, "first"), (-1, "last")):
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
             load[end] = error[end] = common[end] = np.inf

@@ -39,7 +39,7 @@ def inputs(case: Case) -> dict[str, list[Input]]:
 
     Examples
     --------
-    >>> from contactstudy import Case, Roller
+    >>> from contactstudy import Case, HalfSpace, Material, Roller
     >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> inputs(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9))["Roller"][0].text
     '5 mm'
@@ -123,7 +123,7 @@ def in_lines(case: Case) -> str:
 
     Examples
     --------
-    >>> from contactstudy import Case, Roller
+    >>> from contactstudy import Case, HalfSpace, Material, Roller
     >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> print(in_lines(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.1)))
     Case: W = 153.2 N, p0 = 1.5 GPa, a = 65 µm, e = 0 µm

@@ -19,8 +19,10 @@ from contactstudy import (
     profiles,
     solve,
 )
+from contactstudy.analysis.between_columns import Columns, largest_between
 from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.study import Study, open_study, run_study
+from tests.split_columns import split_columns
 
 
 @given(count=st.integers(1, 16))
@@ -89,6 +91,7 @@ def pressed(profile: profiles.Profile, length: float, body: float | None, **give
 
 KINDS = {
     "crowned": pressed(profiles.FullCrown(crown_radius=0.06), 1.6e-3, 2e-3),
+    "crowned, tilted": pressed(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3, tilt=1e-3),
     "straight, flush with free ends": pressed(profiles.Cylinder(), 1e-3, 1e-3),
     "straight, flush and tilted": pressed(profiles.Cylinder(), 1e-3, 1e-3, tilt=1e-3),
     "logarithmic, on a half-space": pressed(DESIGN, 1e-3, None),
@@ -100,7 +103,8 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_stated_errors_cover_what_finer_columns_say(kind: str) -> None:
-    coarse, fine = (solve(KINDS[kind], stresses=False, accuracy=accuracy) for accuracy in (0.01, 0.002))
+    coarse = solve(KINDS[kind], stresses=False, accuracy=0.01)
+    fine = solve(KINDS[kind], split_columns(coarse, 4), stresses=False)
     for count in (3, 12, 30):
         table, finer = analysis.slices(coarse, count), analysis.slices(fine, count)
         for name in ("axial_pressure", "normal_load"):
@@ -109,6 +113,23 @@ def test_stated_errors_cover_what_finer_columns_say(kind: str) -> None:
             assert (missed <= table[f"{name}_error"]).all(), (count, name)
             typical = float((table[f"{name}_error"] / finer[name].where(limited).max()).where(limited).median())
             assert typical < 0.1, (count, name)
+
+
+def test_slices_and_their_errors_are_the_same_from_either_end() -> None:
+    """A border between an unloaded slice and the contact leaves the same open on both sides."""
+    result = solve(pressed(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3), stresses=False, accuracy=0.03)
+    table = analysis.slices(result, 25)
+    for name in ("axial_pressure", "axial_pressure_error", "normal_load", "normal_load_error"):
+        values = table[name].values
+        assert values == pytest.approx(values[::-1], rel=1e-6, abs=1e-9 * values.max())
+    pressures, errors = largest_between(
+        Columns(
+            np.stack([np.arange(6.0), np.arange(6.0) + 1], axis=-1), np.arange(6) + 0.5, np.array([0, 0, 0, 5, 5, 5])
+        ),
+        np.array([0.0, 2.7, 6.0]),
+    )
+    assert pressures[0] == pytest.approx(np.sqrt(0.2 * 25))
+    assert errors[0] == 5.0
 
 
 def test_the_table_holds_a_peak_in_narrow_columns_and_no_number_at_a_singular_end() -> None:

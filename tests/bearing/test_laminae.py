@@ -19,6 +19,8 @@ from contactstudy import (
 )
 from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.bearing import lamina_factors
+from contactstudy.verification import closed_forms
+from tests.split_columns import split_columns
 
 STEEL = Material(210e9, 0.3)
 DESIGN = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
@@ -94,6 +96,7 @@ def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
     ("profile", "tilt"),
     [
         (profiles.FullCrown(crown_radius=0.06), 0.0),
+        (profiles.FullCrown(crown_radius=0.02), 4e-3),
         (profiles.Cylinder(fillet_radius=0.05e-3), 4e-4),
         (DESIGN, 6e-3),
         (profiles.Cylinder(), 5e-4),
@@ -102,13 +105,33 @@ def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
 def test_stated_errors_cover_what_finer_columns_say(profile: profiles.Profile, tilt: float) -> None:
     roller = Roller(radius=5e-3, length=1.6e-3, profile=profile)
     case = Case(body=FiniteLengthSpace(length=2e-3, material=STEEL), roller=roller, max_pressure=1.5e9, tilt=tilt)
-    coarse, fine = (solve(case, stresses=False, accuracy=accuracy) for accuracy in (0.01, 0.002))
-    for laminae in (9, 30, 60):
+    coarse = solve(case, stresses=False, accuracy=0.01)
+    fine = solve(case, split_columns(coarse, 4), stresses=False)
+    for laminae in (4, 9, 30, 60):
         found, finer = (lamina_factors(each, laminae=laminae).hertz_load_per_length for each in (coarse, fine))
         error = lamina_factors(coarse, laminae=laminae).hertz_load_per_length_error
         known = np.isfinite(found)
         assert (abs(found - finer) <= error)[known].all()
         assert float(error[known].median()) < 0.05 * float(finer[known].max())
+
+
+@pytest.mark.parametrize("crown_radius", [0.01, 0.04])
+def test_stated_errors_cover_hertz_ellipse_which_ends_inside_the_roller(crown_radius: float) -> None:
+    """Over the contact the load per length is that of p0 (1 - (x/b)**2)**0.5, beyond it 0: a step within a lamina."""
+    roller = Roller(radius=5e-3, length=1e-3, profile=profiles.FullCrown(crown_radius))
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=0.6e9)
+    result = solve(case, stresses=False)
+    contact = closed_forms.hertz_ellipse(case.normal_load, crown_radius, roller.radius, case.modulus)
+    places = np.linspace(-0.5e-3, 0.5e-3, 400001)
+    square = contact.max_pressure**2 * np.clip(1 - (places / contact.long) ** 2, 0.0, None)
+    line = np.pi * roller.radius / case.modulus * square
+    for laminae in (5, 13):
+        found = lamina_factors(result, laminae=laminae)
+        at = np.clip(((places + 0.5e-3) / 1e-3 * laminae).astype(int), 0, laminae - 1)
+        exact = (np.bincount(at, line ** (9 / 2)) / np.bincount(at)) ** (2 / 9)
+        error = found.hertz_load_per_length_error.values
+        assert (np.abs(found.hertz_load_per_length.values - exact) <= error + 1e-3).all()
+        assert np.median(error) < 0.1 * exact.max()
 
 
 def test_laminae_that_the_slice_model_does_not_load_have_no_factor() -> None:

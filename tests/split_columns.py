@@ -1,0 +1,17 @@
+"""The columns of a result, each split: a finer answer that shares nothing of the way to its columns."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import Grid
+
+
+def split_columns(result: xr.Dataset, parts: int) -> Grid:
+    """Cells of a result with every column cut into equal parts along x."""
+    edges = np.append(result["x_bounds"].values[:, 0], result["x_bounds"].values[-1, 1])
+    finer = np.interp(np.arange(parts * (edges.size - 1) + 1) / parts, np.arange(edges.size), edges)
+    y = result["y"].values
+    half = 0.5 * (y[1] - y[0])
+    return Grid.from_edges(finer, (y[0] - half, y[-1] + half), y.size)
