@@ -83,3 +83,7 @@ class MagnitudeWarning(UserWarning):
 
 class TemperatureWarning(UserWarning):
     """The temperature of a contact passes the limit that was given."""
+
+
+class BoundWarning(UserWarning):
+    """A best value lies at the bound of where it was sought."""

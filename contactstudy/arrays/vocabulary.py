@@ -325,6 +325,7 @@ BEARING = {
 
 DESIGN = {
     "optimum": Variable(PARAMETER, "", "", "best value of the parameter"),
+    "at_bound": Variable(PARAMETER, "", "", "whether the best value is a bound"),
     "flat_from": Variable(PARAMETER, "", "", "least value of the parameter that is as good within the errors"),
     "flat_to": Variable(PARAMETER, "", "", "largest value of the parameter that is as good within the errors"),
     "lower_bound": Variable(PARAMETER, "", "", "least value of the parameter that is looked at"),

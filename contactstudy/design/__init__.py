@@ -10,9 +10,10 @@ search.py         the optimum, and how flat it is
 from typing import TYPE_CHECKING
 
 from contactstudy.design.best_profile import best_profile
+from contactstudy.errors import BoundWarning
 from contactstudy.near_names import suggesting
 
-__all__ = ["best_profile"]
+__all__ = ["BoundWarning", "best_profile"]
 
 if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
     __getattr__ = suggesting(__name__, __all__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -17,8 +18,11 @@ from contactstudy.case.settings import check_accuracy
 from contactstudy.checks import FloatArray
 from contactstudy.design.evaluations import Design, Evaluations, Measure, Range
 from contactstudy.design.search import fewest, flat_range, optimum
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import BoundWarning, InvalidInputError
 from contactstudy.profiles.base import Profile
+
+AT_BOUND = 0.01
+"""Part of a range by which an optimum is away from its bound if it is one of its own. Accuracy."""
 
 NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 """The default settings: a measure of the contact needs no stresses."""
@@ -67,16 +71,22 @@ def best_profile(
     -------
     Dataset
         Along `parameter`: `optimum`; `flat_from` and `flat_to`, between which that parameter, alone, changes the
-        measure by less than the errors of both values; `lower_bound` and `upper_bound`. `measure` of the optimum in
-        its worst case and `measure_error`. Along `evaluation` everything that was looked at: `design` (evaluation,
-        parameter), `design_measure`, `design_measure_error`, and `case_measure` (evaluation, case) with the
-        coordinates `case_load` (N) and `case_tilt` (rad). ``profile(**found.optimum.to_series())`` is the profile.
+        measure by less than the errors of both values; `lower_bound` and `upper_bound`, and whether the optimum lies at
+        one of them, `at_bound`. `measure` of the optimum in its worst case and `measure_error`. Along `evaluation`
+        everything that was looked at: `design` (evaluation, parameter), `design_measure`, `design_measure_error`, and
+        `case_measure` (evaluation, case) with the coordinates `case_load` (N) and `case_tilt` (rad).
+        ``profile(**found.optimum.to_series())`` is the profile.
 
     Raises
     ------
     InvalidInputError
         If an argument is out of range, the measure is unknown or nowhere finite within the bounds, or no profile within
         them can be.
+
+    Warns
+    -----
+    BoundWarning
+        If the optimum lies at a bound: beyond it may be a better one.
 
     Notes
     -----
@@ -110,7 +120,21 @@ def best_profile(
     best = optimum(looked_at, checks.count("evaluations", evaluations, least=fewest(len(ranges))))
     ends = [flat_range(looked_at, best, index) for index in range(len(ranges))]
     # While the ends were sought, something may have turned out to be as good, within the errors.
-    return _dataset(looked_at, min(looked_at.known, key=lambda design: design.value), ends)
+    found = _dataset(looked_at, min(looked_at.known, key=lambda design: design.value), ends)
+    _warn_at_bounds(found)
+    return found
+
+
+def _warn_at_bounds(found: xr.Dataset) -> None:
+    """Warn of parameters whose best value is a bound."""
+    for one in found["parameter"].values[found["at_bound"].values]:
+        value, low, high = (float(found[name].sel(parameter=one)) for name in ("optimum", "lower_bound", "upper_bound"))
+        warnings.warn(
+            f"the best {one} = {value:.4g} lies at a bound ({low:g} to {high:g}): beyond it may be a better one; "
+            "widen the bounds if a roller can be made so",
+            BoundWarning,
+            stacklevel=3,
+        )
 
 
 def _ranges(bounds: object) -> dict[str, Range]:
@@ -160,12 +184,18 @@ def _dataset(looked_at: Evaluations, best: Design, ends: list[tuple[float, float
         (each.value(min(low, float(part))), each.value(max(high, float(part))))
         for each, (low, high), part in zip(ranges, ends, best.parts, strict=True)
     ]
+    # Where all of a range is as good, its bounds say nothing.
+    at_bound = [
+        min(part, 1 - part) < AT_BOUND and not (low < AT_BOUND and high > 1 - AT_BOUND)
+        for (low, high), part in zip(ends, best.parts, strict=True)
+    ]
     arrays: dict[str, tuple[object, object]] = {
         "optimum": ("parameter", [values[name] for name in names]),
         "flat_from": ("parameter", [low for low, _ in flat]),
         "flat_to": ("parameter", [high for _, high in flat]),
         "lower_bound": ("parameter", [each.low for each in ranges]),
         "upper_bound": ("parameter", [each.high for each in ranges]),
+        "at_bound": ("parameter", at_bound),
         "measure": ((), best.value),
         "measure_error": ((), best.error),
         "design": (("evaluation", "parameter"), [list(looked_at.parameters(each.parts).values()) for each in known]),

@@ -98,6 +98,19 @@ def test_what_is_wrong_is_said(solved: xr.Dataset) -> None:
     assert certainty(xr.Dataset({"pressure": ("x", [1.0])})).overall != "yes"
 
 
+def test_noise_of_a_measured_profile_is_asked_about() -> None:
+    """The cells settle the pressure on noise as well as that on a crown."""
+    x = np.linspace(-0.5e-3, 0.5e-3, 201)
+    points = x.tolist(), (0.5 * x**2).tolist()
+    for cutoff, overall in ((None, "with care"), (5e-5, "yes")):
+        profile = profiles.Cylinder(fillet_radius=1e-4) + profiles.Measured(*points, cutoff=cutoff)
+        roller = Roller(radius=5e-3, length=1e-3, profile=profile)
+        result = solve(Case(body=HalfSpace(material=STEEL), roller=roller, load=50.0), stresses=False)
+        found = certainty(result)
+        assert found.overall == overall, found
+        assert any("cut" in each.reason for each in found.answers)
+
+
 def test_the_case_is_kept_with_the_result(singular: xr.Dataset, tmp_path) -> None:
     singular.to_netcdf(tmp_path / "case.nc")
     with xr.open_dataset(tmp_path / "case.nc") as again:

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, profiles
-from contactstudy.design import best_profile
+from contactstudy.design import BoundWarning, best_profile
 
 CASE = Case(body=HalfSpace(material=Material(210e9, 0.3)), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9)
 ERROR = 0.01
@@ -101,8 +101,10 @@ def test_infinite_measures_and_profiles_that_cannot_be_are_avoided(solves) -> No
 
 def test_an_optimum_on_a_bound_says_so(solves) -> None:
     solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
-    found = best_profile(CASE, made, ONE)
+    with pytest.warns(BoundWarning, match=r"the best edge_drop = 1e-06 lies at a bound \(1e-06 to 0.0001\)"):
+        found = best_profile(CASE, made, ONE)
     assert float(found.flat_from[0]) == pytest.approx(float(found.lower_bound[0]))
+    assert found.at_bound.values.tolist() == [True]
 
 
 def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) -> None:
@@ -119,7 +121,8 @@ def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) ->
     assert found.sizes["case"] == 4
     assert float(found.measure) == pytest.approx(2.002)
     assert float(found.measure_error) == 0.5
-    # All is as good as the best.
+    # All is as good as the best, so nothing is said of the bounds.
+    assert not found.at_bound.any()
     assert float(found.flat_from[0]) == pytest.approx(1e-6)
     assert float(found.flat_to[0]) == pytest.approx(1e-4)
     plain = best_profile(CASE, made, ONE, lambda result: result.peak_pressure, accuracy=0.02, evaluations=8)
