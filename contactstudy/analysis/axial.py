@@ -11,7 +11,7 @@ from contactstudy.analysis.border import contact_borders
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.required import require
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import named
+from contactstudy.arrays.variables import named, without_error
 from contactstudy.errors import InvalidInputError
 
 
@@ -219,4 +219,4 @@ def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:
     result = half_width(dataset).assign(axial_pressure=axial_pressure(dataset), line_load=line_load(dataset))
     if "initial_gap" in dataset:
         result = result.assign(unloaded_gap=unloaded_gap(dataset))
-    return result
+    return without_error(result, *map(str, result.data_vars))

@@ -12,7 +12,7 @@ from contactstudy.analysis.cut_ends import CUT, cut_ends
 from contactstudy.analysis.peaks import peak
 from contactstudy.analysis.reduced import reduced
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import UNBOUNDED, named
+from contactstudy.arrays.variables import UNBOUNDED, named, without_error
 from contactstudy.checks import Array
 
 OF_CELL = f"mean of the outermost loaded cell, {UNBOUNDED}; end_pressure of a settled result has one"
@@ -168,7 +168,8 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     scalars = {name: named(name, value) for name, value in values.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    return _peak(dataset, resultant).assign(edge_pressure(dataset).data_vars).assign(scalars).compute()
+    found = _peak(dataset, resultant).assign(edge_pressure(dataset).data_vars).assign(scalars).compute()
+    return without_error(found, *scalars)
 
 
 def _peak(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:

@@ -93,7 +93,10 @@ def _ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, flo
     """First and last x of the contact: within a uniform cell, or the faces of the outermost of other cells."""
     if grid.uniform:
         starts, stops = contact_borders(pressure.T, grid.x, gap.T)
-        return float(np.nanmin(starts)), float(np.nanmax(stops))
+        # A smooth end that is found beyond the shape or the body is one at its face.
+        faced, edges = np.flatnonzero(np.isfinite(gap).any(axis=1)), grid.x_edges
+        first, last = max(np.nanmin(starts), edges[faced[0]]), min(np.nanmax(stops), edges[faced[-1] + 1])
+        return float(first), float(last)
     loaded, edges = np.flatnonzero(pressure.any(axis=1)), grid.x_edges
     return float(edges[loaded[0]]), float(edges[loaded[-1] + 1])
 

@@ -12,7 +12,7 @@ from contactstudy.analysis.cut_ends import cut_ends
 from contactstudy.analysis.measures import measure
 from contactstudy.analysis.peaks import section_peak
 from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import named, variable_of
+from contactstudy.arrays.variables import named, variable_of, without_error
 from contactstudy.errors import InvalidInputError
 
 PLACES = ("first", "last", "middle", "peak")
@@ -67,7 +67,7 @@ def edge_factors(
     *,
     reach: float | None = None,
 ) -> xr.Dataset:
-    """Largest value near each end of the contact over that at mid-length, and over that of another model.
+    """Largest value near each end of the contact over that in its middle, and over that of another model.
 
     Parameters
     ----------
@@ -116,7 +116,8 @@ def edge_factors(
         for name, own, other in zip(PLACES, (first, last, middle, largest), others, strict=True):
             values[f"over_reference_{name}"] = own / other
     base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
-    return xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in values.items()})
+    found = xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in values.items()})
+    return without_error(found, *values)
 
 
 def _values(

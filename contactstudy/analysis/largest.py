@@ -19,7 +19,7 @@ from contactstudy.arrays.between import refined
 from contactstudy.arrays.grid import ON_TOP
 from contactstudy.arrays.peak_width import changes_within
 from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import Variable, named, variable_of
+from contactstudy.arrays.variables import Variable, named, variable_of, without_error
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -200,7 +200,8 @@ def settled_peak(result: xr.Dataset, value: float, error: float, place: tuple[fl
         found = Peak(value, error + value * of_pressure, dict(zip("xyz", place, strict=True)), "")
     else:
         found = Peak(value, np.nan, dict(zip("xyz", place, strict=True)), "the error of the given cells is not known")
-    return labelled_peak("von_mises", found, variable_of("von_mises", result["von_mises"].attrs))
+    labelled = labelled_peak("von_mises", found, variable_of("von_mises", result["von_mises"].attrs))
+    return without_error(labelled, *(f"peak_von_mises_{axis}" for axis in "xyz"))
 
 
 def _without_limit(one: xr.Dataset, places: dict[str, FloatArray], at: tuple[np.intp, ...]) -> str:

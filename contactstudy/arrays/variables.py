@@ -25,6 +25,7 @@ __all__ = [
     "package_version",
     "specification",
     "variable_of",
+    "without_error",
 ]
 
 DERIVED = "follows from the other parameters"
@@ -127,6 +128,22 @@ def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.Da
 def package_version() -> str:
     """Version of the installed package."""
     return version_of("contactstudy")
+
+
+def without_error(dataset: xr.Dataset, *names: str) -> xr.Dataset:
+    """Return `dataset` with the mark that no error is known on those of the named variables that it has.
+
+    Examples
+    --------
+    >>> without_error(xr.Dataset({"approach": 1e-6}), "approach", "tilt").approach.attrs["comment"]
+    'no error known'
+    """
+    marked = dataset.copy()
+    for name in names:
+        if name in marked:
+            said = str(marked[name].attrs.get("comment", ""))
+            marked[name].attrs["comment"] = said if UNBOUNDED in said else ", ".join(filter(None, (said, UNBOUNDED)))
+    return marked
 
 
 def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:

@@ -13,7 +13,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.units import in_si
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, without_error
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
@@ -224,6 +224,8 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
     result["displacement_z"].attrs |= displacement_reference(contact.reference)
     for name in ("approach", "tilt"):
         result[name].attrs["reference"] = motion_reference(shape.body, shape.counterbody)
+    prescribed = {"approach": shape.prescribed.approach, "load_position": shape.prescribed.load_position}
+    result = without_error(result, *(name for name, value in prescribed.items() if value is None))
     return describe(result, "contact of a shape with an elastic body")
 
 

@@ -175,7 +175,7 @@ class Page:
             endless = name in numbers and np.isinf(numbers[name].value)
             value = float(factors[f"end_over_middle_{end}"])
             text = "singular" if endless else f"{value:.3f} (no error known)"
-            found[f"edge factor, {place} over the middle (largest within a)"] = text
+            found[f"edge factor of the contact towards {place} (largest within a, over its middle)"] = text
         return found
 
     def _show_axial(self, loaded: list[Looked | None]) -> None:

@@ -17,7 +17,7 @@ from contactstudy import (
 )
 from contactstudy.analysis import contact_edges
 from contactstudy.analysis.border import EDGE_UNCERTAINTY
-from contactstudy.profiles import Cylinder
+from contactstudy.profiles import Cylinder, FullCrown
 
 UNIT = HalfSpace(material=Material(0.75, 0.5))
 
@@ -147,3 +147,14 @@ def test_the_narrow_middle_of_a_contact_with_wide_ends_counts():
         coords={"x": x, "y": y},
     )
     assert float(contact_edges(contact).contact_area) == pytest.approx(0.2 * half_width.sum(), rel=0.01)
+
+
+def test_a_contact_on_uniform_cells_is_no_longer_than_its_body() -> None:
+    """The pressure of a flat crown falls off towards flush ends, and would be 0 a little beyond them."""
+    steel = Material(210e9, 0.3)
+    roller = Roller(radius=5e-3, length=1e-3, profile=FullCrown(crown_radius=0.5))
+    case = Case(body=FiniteLengthSpace(length=1e-3, material=steel), roller=roller, max_pressure=1e9)
+    edges = contact_edges(solve(case, choose_grid(case), stresses=False))
+    assert float(edges.x_first) >= 0
+    assert float(edges.x_last) <= 1e-3
+    assert float(edges.contact_length) == pytest.approx(1e-3)

@@ -16,6 +16,7 @@ from contactstudy import analysis, bearing, design, fatigue, passes, study, veri
 from contactstudy.arrays.variables import (
     COORDINATES,
     RULES,
+    UNBOUNDED,
     VARIABLES,
     describe,
     named,
@@ -292,3 +293,15 @@ def test_names_on_axes_fit_into_one_line() -> None:
     for name, entry in (*COORDINATES.items(), *PARAMETERS.items()):
         known = entry.attrs
         assert len(f"{known['long_name']} [{known.get('units', '')}]") <= 30, name
+
+
+def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
+    """Every scalar in SI of a result or its summary has an error beside it, is an input, or says that it has none."""
+    given = ("normal_load", "hertz_half_width", "hertz_max_pressure", "tilt", "end_traction_residual")
+    for stated in (solved, analysis.contact_results(solved), analysis.edge_factors(solved)):
+        for name, value in stated.data_vars.items():
+            number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")
+            if number and name not in given and f"{name}_error" not in stated:
+                assert UNBOUNDED in value.attrs["comment"], name
+    assert UNBOUNDED in solved["load_position"].attrs["comment"]  # its _error says how well the balance is met
+    assert all(UNBOUNDED in value.attrs["comment"] for value in analysis.axial_profiles(solved).data_vars.values())

@@ -69,7 +69,7 @@ def test_two_cases_side_by_side_share_their_colours(page: Page) -> None:
     assert page.panes[2].visible
     assert page.axial._legend.visible
     assert page.tops[0]._mapper.high == page.tops[1]._mapper.high > 1500
-    assert page.table.object.count("edge factor, end I over the middle (largest within a)") == 1
+    assert page.table.object.count("edge factor of the contact towards end I (largest within a, over its middle)") == 1
     assert ">1 GPa<" in page.table.object
     assert ">1.5 GPa<" in page.table.object
 

@@ -34,7 +34,7 @@ def test_what_the_analysis_returns(solved: xr.Dataset) -> None:
     assert "axial_pressure [Pa] (no error known)" in table
     assert table["axial_pressure_error [Pa]"].isnull().all()
     assert "width [m]" in table
-    assert "half_width [m]" in export.to_table(analysis.axial_profiles(solved))
+    assert "half_width [m] (no error known)" in export.to_table(analysis.axial_profiles(solved))
     assert "von_mises" in export.to_table(analysis.normalized(solved), "von_mises")
 
 
