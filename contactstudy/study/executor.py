@@ -10,6 +10,7 @@ import logging
 import os
 import queue
 import signal
+import threading
 from collections.abc import Callable, Generator, Iterator
 from typing import TYPE_CHECKING, Any
 
@@ -191,16 +192,10 @@ def _clusters() -> list[Any]:
 @contextlib.contextmanager
 def _client_of(scheduler: str) -> Iterator[Client]:
     """Client of a scheduler that runs already."""
-    import dask
-    from distributed import Client
     from distributed.comm.core import CommClosedError
 
     with _silence():
-        try:
-            with dask.config.set(SHORT_LOGS):
-                client = Client(scheduler, timeout=START_SECONDS)
-        except (OSError, ValueError) as error:
-            raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
+        client = _connected(scheduler)
         try:
             yield client
         except (CommClosedError, TimeoutError) as error:
@@ -208,6 +203,34 @@ def _client_of(scheduler: str) -> Iterator[Client]:
         finally:
             with contextlib.suppress(Exception):
                 client.close(timeout=CLOSE_SECONDS)
+
+
+def _connected(scheduler: str) -> Client:
+    """Client of a scheduler, or an error within its time: dask waits without end for what listens and says nothing."""
+    import dask
+    from distributed import Client
+
+    found: list[Client] = []
+    failed: list[Exception] = []
+
+    def connect() -> None:
+        try:
+            with dask.config.set(SHORT_LOGS):
+                found.append(Client(scheduler, timeout=START_SECONDS))
+        except Exception as error:
+            failed.append(error)
+
+    thread = threading.Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(START_SECONDS + CLOSE_SECONDS)
+    if found:
+        return found[0]
+    if not failed:
+        raise StudyFileError(f"what listens at {scheduler} is no dask scheduler: it did not answer")
+    (error,) = failed
+    if isinstance(error, (OSError, ValueError)):
+        raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
+    raise StudyFileError(f"what answers at {scheduler} is no dask scheduler: {type(error).__name__}") from error
 
 
 @contextlib.contextmanager

@@ -1,5 +1,6 @@
 """Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
 
+import socket
 from pathlib import Path
 
 import pytest
@@ -34,6 +35,16 @@ def test_a_run_says_that_it_seeks_the_scheduler_before_it_gives_up(tmp_path, mon
     with pytest.raises(StudyFileError, match="no dask scheduler answers"):
         run_study(small_study(), tmp_path, scheduler="tcp://127.0.0.1:1", solver=solve_fake)
     assert "connecting to the dask scheduler at tcp://127.0.0.1:1" in (tmp_path / "run.log").read_text()
+
+
+def test_what_listens_and_does_not_answer_is_no_scheduler(tmp_path, monkeypatch):
+    """Dask alone would wait without end for the rest of a greeting."""
+    for name in ("START_SECONDS", "CLOSE_SECONDS"):
+        monkeypatch.setattr(f"contactstudy.study.executor.{name}", 0.3)
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
+        with pytest.raises(StudyFileError, match="no dask scheduler"):
+            run_study(small_study(), tmp_path, scheduler=address, solver=solve_fake)
 
 
 @pytest.mark.system
