@@ -43,7 +43,7 @@ def test_estimates_bound_the_difference_from_a_much_finer_grid(case):
     for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "half_width_middle"):
         difference = abs(float(estimate[name]) - float(reference[name]))
         assert difference <= float(estimate[f"{name}_error"]), name
-        assert float(estimate[f"{name}_error"]) <= 0.06 * max(float(reference[name]), 1.0)
+        assert float(estimate[f"{name}_error"]) <= 0.08 * max(float(reference[name]), 1.0)
 
 
 def test_symmetric_contacts_have_equal_ends():
@@ -86,12 +86,56 @@ def test_richardson_refuses_what_says_nothing(arguments):
         extrapolated(*arguments)
 
 
-def test_a_peak_away_from_a_sharp_end_has_a_limit():
-    crowned = case_of(4 * HALF_WIDTH, profiles.FullCrown(0.015))
-    result = discretisation_error(solved(crowned, 64), solved(crowned, 32))
-    assert float(result.end_pressure_first) > 0
-    assert np.isinf(float(result.end_pressure_first_error))
-    assert float(result.peak_pressure_error) < 0.02 * float(result.peak_pressure)
+@pytest.mark.parametrize(("pressure", "cells"), [(1e9, 2), (0.8e9, 6)])
+def test_a_peak_has_no_limit_where_a_sharp_end_is_pressed(pressure, cells):
+    """Coarse cells show the peak in the middle, though that of the end is above it: without a limit, it is the peak."""
+    body = FiniteLengthSpace(length=0.8e-3, material=STEEL)
+    roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.FullCrown(0.1))
+    case = Case(body=body, roller=roller, max_pressure=pressure)
+    result = solve(case, choose_grid(case, cells_x=cells), error_estimate=True, stresses=False)
+    assert 0 < float(result.end_pressure_first) < float(result.peak_pressure)
+    assert np.isinf(float(result.peak_pressure_error))
+    assert "ends sharply" in result.peak_pressure_error.attrs["comment"]
+
+
+EDGES = [
+    profiles.PartialCrown(straight_length=0.4e-3, crown_radius=0.05e-3),
+    profiles.PartialCrown(straight_length=0.4e-3, crown_radius=0.2e-3),
+    profiles.Cylinder(fillet_radius=0.05e-3),
+    profiles.Cylinder(fillet_radius=0.2e-3),
+]
+"""Edges of a roller of 0.5 mm that take more than 16 cells per half-width."""
+
+
+@pytest.mark.parametrize("profile", EDGES, ids=repr)
+@pytest.mark.parametrize("length", [0.5e-3, 0.8e-3], ids=["flush", "inside"])
+@pytest.mark.parametrize("cells", [2, 4, 8])
+def test_cells_too_coarse_for_an_edge_radius_have_no_finite_error(profile, length, cells):
+    body = FiniteLengthSpace(length=length, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
+    grid = choose_grid(case, cells_x=cells, cells_y=8, window=3)
+    result = solve(case, grid, error_estimate=True, stresses=False)
+    assert np.isinf(float(result.peak_pressure_error))
+    comment = result.peak_pressure_error.attrs["comment"]
+    assert comment.startswith(f"the cells are too coarse for the shape's turn on {grid.shape[0]} x {grid.shape[1]}")
+    assert np.isfinite(float(result.half_width_middle_error))
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [profiles.FullCrown(0.005), profiles.FullCrown(0.1), profiles.PartialCrown(0.25e-3, 5e-3), profiles.Cylinder()],
+    ids=repr,
+)
+@pytest.mark.parametrize("cells", [2, 8])
+def test_finite_errors_cover_what_refined_columns_settle(profile, cells):
+    body = FiniteLengthSpace(length=0.5e-3, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3, profile=profile), max_pressure=1e9)
+    result = solve(case, choose_grid(case, cells_x=cells), error_estimate=True, stresses=False)
+    settled = solve(case, stresses=False)
+    assert float(result.peak_pressure_error) < 0.06 * float(result.peak_pressure)
+    for name in ("peak_pressure", "end_pressure_first", "end_pressure_last"):
+        left = float(result[f"{name}_error"]) + float(settled[f"{name}_error"])
+        assert abs(float(result[name]) - float(settled[name])) <= left, name
 
 
 @pytest.mark.parametrize("case", [case_of(5 * HALF_WIDTH, profiles.Cylinder()), case_of(8 * HALF_WIDTH, LUNDBERG)])
@@ -111,7 +155,7 @@ def test_a_peak_at_a_free_end_is_that_of_the_end(poisson):
     for found in (estimate, reference):
         assert float(found.peak_pressure) == float(max(found.end_pressure_first, found.end_pressure_last))
     difference = abs(float(estimate.peak_pressure) - float(reference.peak_pressure))
-    assert difference <= float(estimate.peak_pressure_error) <= 0.1 * float(reference.peak_pressure)
+    assert difference <= float(estimate.peak_pressure_error) <= 0.12 * float(reference.peak_pressure)
 
 
 def test_cells_that_are_too_coarse_are_told_what_to_try():
@@ -120,9 +164,22 @@ def test_cells_that_are_too_coarse_are_told_what_to_try():
     result = solve(steep, grid, error_estimate=True, stresses=False)
     comment = result.peak_pressure_error.attrs["comment"]
     assert np.isinf(float(result.peak_pressure_error))
-    assert comment.startswith(f"no limit in sight on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out")
+    assert f"turn on {grid.shape[0]} x {grid.shape[1]} cells: leave the grid out" in comment
     numbers = re.search(r"choose_grid\(case, cells_x=([\d.]+), cells_y=([\d.]+)\)", comment)
     finer = choose_grid(steep, cells_x=float(numbers[1]), cells_y=float(numbers[2]))
-    assert finer.shape == pytest.approx([2 * count for count in grid.shape], rel=0.1)
+    assert finer.shape[0] >= 4 * grid.shape[0]
+    assert finer.shape[1] == pytest.approx(2 * grid.shape[1], rel=0.1)
     foreign = [each.drop_vars("hertz_half_width") for each in (solved(steep, 32), solved(steep, 16))]
-    assert "take twice as many" in discretisation_error(*foreign).peak_pressure_error.attrs["comment"]
+    assert re.search(r"or take [\d.]+ times as many", discretisation_error(*foreign).peak_pressure_error.comment)
+
+
+@pytest.mark.parametrize("wider", [1.5, 1.0005])
+def test_uneven_columns_are_not_told_a_uniform_grid(wider):
+    """The middles of columns of two widths in turn have equal distances; their widths may differ by nanometres."""
+    case = case_of(8 * HALF_WIDTH, profiles.Cylinder(fillet_radius=0.05e-3))
+    edges = np.cumsum([0.0, *np.tile([1.0, wider], 16)])
+    window = 2 * case.hertz_half_width
+    grid = Grid.from_edges(edges * (BODY.length / edges[-1]), (-window, window), 32)
+    comment = solve(case, grid, error_estimate=True, stresses=False).peak_pressure_error.attrs["comment"]
+    assert "times as many" in comment
+    assert "choose_grid" not in comment
