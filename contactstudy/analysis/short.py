@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -173,13 +173,14 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
 
 
 def _without_rounding(one: xr.Dataset, row: MainNumber) -> MainNumber:
-    """Row of a force or moment that follows from the solution and is nothing but rounding, with the text of none."""
+    """Row of a force or moment that is nothing but rounding, with the text of none."""
+    given = _prescribed(one, row.name)
     force = max((abs(float(one[name])) for name in ("force_x", "force_y") if name in one), default=0.0)
     arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(one.get("hertz_half_width", 0.0))}
     limit = ROUNDING * force * arms.get(row.name, 0.0)
     # A value that its error tells from nothing is one, however small; and a larger error is worth to be seen.
     within = np.isnan(row.error) or abs(row.value) <= row.error < limit
-    if abs(row.value) < limit and within and not _is_prescribed(one, row.name):
+    if abs(row.value) < limit and within and not given:
         remark = f"rounding: below {ROUNDING:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
         return row._replace(text=f"0 {row.units}", remark=remark)
     return row
@@ -205,16 +206,16 @@ def _unknown(one: xr.Dataset, name: str) -> str:
     """Say that a number has no known error, unless it was prescribed."""
     # Of a study's case the certificate says it: it misses what was prescribed by a little, and else by nothing.
     met = name in CERTIFICATES and float(one.get(f"{name}_error", 0.0)) > 0
-    if _is_prescribed(one, name) or met or name not in FOUND:
+    if _prescribed(one, name) is not None or met or name not in FOUND:
         return ""
     return UNBOUNDED
 
 
-def _is_prescribed(one: xr.Dataset, name: str) -> bool:
-    """Whether the case of a result gives a value for a number that otherwise follows from the solution."""
+def _prescribed(one: xr.Dataset, name: str) -> Any:
+    """Value that the case of a result gives for a number that otherwise follows from the solution; None: it does."""
     case = attribute(one, INPUTS_ATTRIBUTE).get("case", {})
     motion = case.get("motion", {})
-    return case.get(name, motion.get(name, motion.get(name.removeprefix("shift_")))) is not None
+    return case.get(name, motion.get(name, motion.get(name.removeprefix("shift_"))))
 
 
 def _row(one: xr.Dataset, name: str, meaning: str = "", remark: str = "") -> MainNumber:

@@ -335,6 +335,8 @@ def _marked(text: str, remark: str) -> str:
     """Return a number with the mark that it needs."""
     if remark.startswith("singular"):
         return "singular: no largest value"
-    if remark == NOT_PRESSED or remark.startswith(("p = K", "rounding")):
+    if remark == NOT_PRESSED or remark.startswith("p = K"):
         return f"{text}: {remark}"
+    if remark.startswith("rounding"):
+        return f"{text} ({remark})"
     return f"{text} (no error known)" if "no error known" in remark else text

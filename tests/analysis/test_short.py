@@ -48,13 +48,16 @@ def test_rounding_is_no_force(solved: xr.Dataset) -> None:
     assert (view["force_x"].text, view["moment_z"].text, view["force_y"].text) == ("0 N", "0 N m", "2 N")
     assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
     assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
+    # Also where none was asked for.
+    case = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
+    assert short(moved.assign_attrs(contactstudy_inputs=case % "0.0"))["force_x"].text == "0 N"
     # Known better than its size, known worse than rounding, above it, without another force, and prescribed.
     for other in (
         moved.assign(force_x_error=1e-10),
         moved.assign(force_x_error=1e-3),
         moved.assign(force_x=3e-6, force_x_error=4e-6),
         moved.assign(force_y=0.0),
-        moved.assign_attrs(contactstudy_inputs='{"case": {"motion": {"kind": "Rolling", "force_x": -5.7e-9}}}'),
+        moved.assign_attrs(contactstudy_inputs=case % "-5.7e-9"),
     ):
         row = short(other)["force_x"]
         assert "rounding" not in row.remark
