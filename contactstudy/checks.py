@@ -71,7 +71,8 @@ def scalar(name: str, value: Any, unit: str = "") -> Any:
     """
     if isinstance(value, np.generic) or getattr(value, "ndim", None) != 0 or not hasattr(value, "item"):
         return value
-    number, said = value.item(), getattr(value, "attrs", {}).get("units")
+    # By way of numpy: a lazy array has no item().
+    number, said = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
     known = SI_WORDS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
     if said is None or said == known or isinstance(number, bool) or not isinstance(number, Real):
         return number

@@ -48,13 +48,20 @@ class InvalidInputError(ContactStudyError, ValueError):
 
 
 def _shown(value: Any) -> str:
-    """Return a value on one short line: of an array its kind and shape, of one without dimensions the number."""
+    """Return a value on one short line: of an array its kind and shape, of one without dimensions the number.
+
+    A lazy array is not computed for it.
+    """
     try:
         shape, dtype = getattr(value, "shape", None), getattr(value, "dtype", None)
-        if hasattr(value, "data_vars"):
+        if isinstance(value, type):  # its attributes are those of its instances
+            shown = repr(value)
+        elif hasattr(value, "data_vars"):
             shown = f"{type(value).__name__} of {len(value.data_vars)} variables"
         elif dtype is None or not isinstance(shape, tuple):
             shown = " ".join(line.strip() for line in repr(value).splitlines())
+        elif getattr(value, "chunks", None) is not None:
+            shown = f"lazy {type(value).__name__} of {f'shape {shape} and ' if shape else ''}type {dtype}"
         elif shape:
             shown = f"{type(value).__name__} of shape {shape} and type {dtype}"
         else:

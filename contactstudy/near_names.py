@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+import sys
+from collections.abc import Iterable
 
 
 def nearest(name: str, known: Iterable[str], likeness: float = 0.6) -> str:
@@ -25,12 +26,15 @@ def missing(name: str, owner: str, known: Iterable[str]) -> AttributeError:
     return AttributeError(f"{owner} has no attribute {name!r}{hint}", name=name)
 
 
-def suggesting(module: str, known: Iterable[str]) -> Callable[[str], object]:
-    """Return the ``__getattr__`` of a module that has the names `known`.
+def suggest(module: str, known: Iterable[str]) -> None:
+    """Make a module that has the names `known` refuse others with the nearest of them.
+
+    The module's ``__getattr__`` is set from here: to a type checker, a module that defines one has every name.
 
     Examples
     --------
-    >>> suggesting("contactstudy.profiles", ["Lundberg"])("Lundburg")
+    >>> import contactstudy.profiles
+    >>> contactstudy.profiles.Lundburg
     Traceback (most recent call last):
     AttributeError: module 'contactstudy.profiles' has no attribute 'Lundburg'; did you mean Lundberg?
     """
@@ -38,4 +42,4 @@ def suggesting(module: str, known: Iterable[str]) -> Callable[[str], object]:
     def refuse(name: str) -> object:
         raise missing(name, f"module {module!r}", known)
 
-    return refuse
+    vars(sys.modules[module])["__getattr__"] = refuse

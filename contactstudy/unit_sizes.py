@@ -1,4 +1,4 @@
-"""Units that input may have, by the one in SI, and their sizes in it."""
+"""Conversion of what input says to be its unit."""
 
 from __future__ import annotations
 

@@ -4,8 +4,6 @@ They work on results of :func:`contactstudy.solve`, on surfaces without stresses
 where that has a meaning, on a whole study opened by :func:`contactstudy.open_study`.
 """
 
-from typing import TYPE_CHECKING
-
 from contactstudy.analysis.axes import dimension_along, positions, single_case
 from contactstudy.analysis.axial import (
     axial_pressure,
@@ -29,7 +27,7 @@ from contactstudy.analysis.provenance import solved_case
 from contactstudy.analysis.scaling import normalized, positions_over_a
 from contactstudy.analysis.short import short
 from contactstudy.analysis.slices import slices
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 
 __all__ = [
     "MEASURES",
@@ -62,5 +60,4 @@ __all__ = [
     "unloaded_gap",
 ]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

@@ -85,8 +85,13 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     dim = dimension_along(array, axis)
     name = position_name(dim)
     if name not in array.coords:
-        raise InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
+        raise no_positions(array, name)
     return array[name].reset_coords(drop=True)
+
+
+def no_positions(array: xr.DataArray | xr.Dataset, name: str) -> InvalidInputError:
+    """Return the error of an array that has no positions `name`."""
+    return InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
 
 
 def position_name(dim: str) -> str:

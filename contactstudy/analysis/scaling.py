@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.axes import position_name, single_case
+from contactstudy.analysis.axes import no_positions, position_name, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
 from contactstudy.arrays.required import require
 from contactstudy.arrays.units import POSITIONS, required_in_si
@@ -81,6 +81,7 @@ def normalized(dataset: xr.Dataset) -> xr.Dataset:
         shared = name in dataset.dims and half_width.ndim > 0
         if name in COORDINATES and known.units == "m" and not shared:
             coordinates[name] = scaled(coordinate, known)
+            coordinates[name].attrs |= labels(f"{name}_over_a", coordinate=True)  # the words of positions_over_a
     return dataset.assign_coords(coordinates).assign(variables)
 
 
@@ -103,7 +104,8 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InvalidInputError
-        If there is no half-width, the positions over a differ between the cases, or `x` itself is over a.
+        If there is no half-width, there are no positions, those over a differ between the cases, or `x` itself is
+        over a.
 
     Examples
     --------
@@ -129,6 +131,8 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
         if dataset[dim].attrs.get("units") == "1":
             raise InvalidInputError(dim, "over a", "in metres", "results of analysis.normalized are over a already")
         if half_width.ndim == 0:
+            if dim not in dataset.coords:
+                raise no_positions(dataset, name)
             values = dataset[dim].variable / half_width.variable
         elif over in dataset.coords and dataset[over].dims == (dim,):
             values = dataset[over].variable

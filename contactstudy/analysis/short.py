@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -19,6 +19,7 @@ from contactstudy.arrays.engineering import quantity, with_error
 from contactstudy.arrays.html_table import LEFT, NUMBER, html_table
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES, UNBOUNDED, variable_of
+from contactstudy.case.settings import TOLERANCE
 
 SINGULAR = "singular: it grows without a limit towards a sharp end"
 OF_CELLS = f"mean of the highest cell, {UNBOUNDED}"
@@ -48,6 +49,12 @@ FOUND = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x
 
 CERTIFICATES = ("load_position",)
 """Scalars of which the variable with ``_error`` says how well a prescribed value was met, in other units."""
+
+ROUNDING = TOLERANCE
+"""Share of the largest tangential force that counts as nothing: what the iteration of the tractions leaves by default.
+
+Of contacts that are the same on both sides of y = 0 it left up to 3e-8 of it across. A moment is compared with this
+force at the distance a. Presentation only."""
 
 
 class MainNumber(NamedTuple):
@@ -160,8 +167,23 @@ def _numbers(one: xr.Dataset) -> Iterator[MainNumber]:
     for name, meaning in PLAIN.items():
         if name in one and float(one[name]) != 0 and np.isfinite(float(one[name])):
             with_estimate = f"{name}_error" in one and name not in CERTIFICATES
-            yield _settled(one, name, meaning) if with_estimate else _row(one, name, meaning, _unknown(one, name))
+            row = _settled(one, name, meaning) if with_estimate else _row(one, name, meaning, _unknown(one, name))
+            yield _without_rounding(one, row)
     yield from _stick(one)
+
+
+def _without_rounding(one: xr.Dataset, row: MainNumber) -> MainNumber:
+    """Row of a force or moment that is nothing but rounding, with the text of none."""
+    given = _prescribed(one, row.name)
+    force = max((abs(float(one[name])) for name in ("force_x", "force_y") if name in one), default=0.0)
+    arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(one.get("hertz_half_width", 0.0))}
+    limit = ROUNDING * force * arms.get(row.name, 0.0)
+    # A value that its error tells from nothing is one, however small; and a larger error is worth to be seen.
+    within = np.isnan(row.error) or abs(row.value) <= row.error < limit
+    if abs(row.value) < limit and within and not given:
+        remark = f"rounding: below {ROUNDING:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
+        return row._replace(text=f"0 {row.units}", remark=remark)
+    return row
 
 
 def _stick(one: xr.Dataset) -> Iterator[MainNumber]:
@@ -182,14 +204,18 @@ def _stick(one: xr.Dataset) -> Iterator[MainNumber]:
 
 def _unknown(one: xr.Dataset, name: str) -> str:
     """Say that a number has no known error, unless it was prescribed."""
-    case = attribute(one, INPUTS_ATTRIBUTE).get("case", {})
-    motion = case.get("motion", {})
-    prescribed = case.get(name, motion.get(name, motion.get(name.removeprefix("shift_")))) is not None
     # Of a study's case the certificate says it: it misses what was prescribed by a little, and else by nothing.
     met = name in CERTIFICATES and float(one.get(f"{name}_error", 0.0)) > 0
-    if prescribed or met or name not in FOUND:
+    if _prescribed(one, name) is not None or met or name not in FOUND:
         return ""
     return UNBOUNDED
+
+
+def _prescribed(one: xr.Dataset, name: str) -> Any:
+    """Value that the case of a result gives for a number that otherwise follows from the solution; None: it does."""
+    case = attribute(one, INPUTS_ATTRIBUTE).get("case", {})
+    motion = case.get("motion", {})
+    return case.get(name, motion.get(name, motion.get(name.removeprefix("shift_"))))
 
 
 def _row(one: xr.Dataset, name: str, meaning: str = "", remark: str = "") -> MainNumber:

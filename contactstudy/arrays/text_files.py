@@ -46,6 +46,9 @@ BEGINNINGS = (
 )
 """First bytes of files that are given instead of measurements, and what to do about them."""
 
+SHORT = 3
+"""Length of beginnings that a word in a text may have as well: they count in files that are no text."""
+
 READ = (
     "columns as text (.csv, .txt, .tsv, .dat), netCDF (.nc), or with the extra `measured` x3p (.x3p) "
     "and the formats of profilometers that SurfaceTopography knows"
@@ -100,7 +103,7 @@ def known_otherwise(path: Path) -> str:
     """Return what a file is that holds no measurements, and what to do about it; empty if that is not known."""
     head = _head(path)
     for beginning, words in BEGINNINGS:
-        if head.startswith(beginning):
+        if head.startswith(beginning) and (len(beginning) > SHORT or _is_no_text(head)):
             return words
     if head.startswith(b"PK"):
         try:
@@ -123,6 +126,11 @@ def _head(path: Path) -> bytes:
         return b""  # whoever opens it next says why
 
 
+def _is_no_text(head: bytes) -> bool:
+    """Whether the first bytes of a file are those of no text in an encoding of single bytes."""
+    return head.translate(None, NEVER_TEXT) != head
+
+
 def _encoding(path: Path) -> str:
     """Return the encoding of a text file by its first bytes, or raise with what it is instead."""
     head = _head(path)
@@ -130,7 +138,7 @@ def _encoding(path: Path) -> str:
         return "utf-16"
     if words := known_otherwise(path):
         raise InvalidInputError("path", str(path), READ, f"it is {words}")
-    if head.translate(None, NEVER_TEXT) != head:
+    if _is_no_text(head):
         hint = "named as text, it holds none: give a profilometer's file its own ending, or export columns"
         raise InvalidInputError("path", str(path), READ, hint)
     return "utf-8-sig"

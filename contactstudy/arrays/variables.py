@@ -70,11 +70,14 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
 
 def _filled(row: Variable, base: Variable) -> Variable:
     """Row of a table with what its braces stand for."""
-    words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol}
+    words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
     dims = base.dims if row.dims == ("{name}",) else row.dims
-    symbol = row.symbol.format(**words) if "{symbol}" in row.symbol else row.symbol
-    long_name, comment = (text.format(**words) for text in (row.long_name, row.comment))
-    return Variable(dims, row.units.format(**words), symbol, long_name, comment)
+    symbol = row.symbol
+    if "{symbol}" in symbol:
+        symbol = symbol.format(**words) if base.symbol else ""
+    long_name = row.long_name.format(**words)
+    words["variable"] = ", ".join(filter(None, (base.long_name, base.comment)))
+    return Variable(dims, row.units.format(**words), symbol, long_name, row.comment.format(**words))
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:

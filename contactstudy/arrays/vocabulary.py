@@ -22,7 +22,8 @@ class Variable(NamedTuple):
     symbol : str
         LaTeX, without dollar signs.
     long_name : str
-        Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from. Those of
+        Meaning. ``{variable}`` stands for the meaning of the variable that a quantity was derived from, and
+        ``{symbol}`` for its symbol, or its meaning if it has none. Those of
         coordinates are short: they stand on axes, where xarray breaks them after 30 characters, which is cut off.
     comment : str
         What a short meaning leaves out.

@@ -12,16 +12,13 @@ reference_life.py  life by slices, by the half-space and by free ends
 =================  ================================================================
 """
 
-from typing import TYPE_CHECKING
-
 from contactstudy.bearing.laminae import lamina_factors
 from contactstudy.bearing.law import ContactLaw
 from contactstudy.bearing.raceways import Raceways
 from contactstudy.bearing.reference_life import reference_life, roller_ratings
 from contactstudy.bearing.tabulation import contact_law
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 
 __all__ = ["ContactLaw", "Raceways", "contact_law", "lamina_factors", "reference_life", "roller_ratings"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

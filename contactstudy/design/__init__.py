@@ -7,13 +7,10 @@ search.py         the optimum, and how flat it is
 ================  ==========================================
 """
 
-from typing import TYPE_CHECKING
-
 from contactstudy.design.best_profile import best_profile
 from contactstudy.errors import BoundWarning
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 
 __all__ = ["BoundWarning", "best_profile"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

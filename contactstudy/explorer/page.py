@@ -26,9 +26,6 @@ from contactstudy.plots.study_lines import FOUND
 MOST_STEPS = 60
 """Values of a swept parameter up to which it has a slider; names have a list to choose from."""
 
-LONGEST = 40
-"""Characters of a meaning that fit beside a widget and an axis."""
-
 STYLE = """
 table { border-collapse: collapse; font-size: 14px; width: 100%; }
 td, th { padding: 2px 10px 2px 0; border-bottom: 1px solid #dde2e6; text-align: left; vertical-align: top; }
@@ -330,10 +327,8 @@ class Page:
 
 
 def _called(entry: xr.DataArray) -> str:
-    """Meaning of a swept parameter, or its name where that is shorter."""
-    name = str(entry.name).replace("_over_a", "/a").replace("_", " ")
-    meaning = str(entry.attrs.get("long_name", name))
-    return meaning if len(meaning) <= LONGEST else name
+    """Return what a swept parameter is called beside a widget and an axis."""
+    return str(entry.attrs.get("long_name", entry.name))
 
 
 def _marked(text: str, remark: str) -> str:
@@ -342,4 +337,6 @@ def _marked(text: str, remark: str) -> str:
         return "singular: no largest value"
     if remark == NOT_PRESSED or remark.startswith("p = K"):
         return f"{text}: {remark}"
+    if remark.startswith("rounding"):
+        return f"{text} ({remark})"
     return f"{text} (no error known)" if "no error known" in remark else text

@@ -1,13 +1,10 @@
 """Results for others' tools: fields as VTK for ParaView, everything for MATLAB, lines and tables as CSV."""
 
-from typing import TYPE_CHECKING
-
 from contactstudy.export.matlab import to_mat
 from contactstudy.export.table import to_csv, to_table
 from contactstudy.export.vtk import to_vtk
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 
 __all__ = ["to_csv", "to_mat", "to_table", "to_vtk"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

@@ -5,8 +5,6 @@ and after; the window along y must hold the extremes, see :func:`window_remainde
 is :func:`contactstudy.orthogonal_shear_range`.
 """
 
-from typing import TYPE_CHECKING
-
 from contactstudy.fatigue.critical_plane import findley
 from contactstudy.fatigue.history import window_remainder
 from contactstudy.fatigue.in_plane import shakedown_in_plane
@@ -15,7 +13,7 @@ from contactstudy.fatigue.life import LifeExponents, relative_life
 from contactstudy.fatigue.limits import FatigueLimits
 from contactstudy.fatigue.risk import ioannides_harris, lundberg_palmgren
 from contactstudy.fatigue.shakedown import shakedown, shakedown_limit
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 
 __all__ = [
     "FatigueLimits",
@@ -32,5 +30,4 @@ __all__ = [
     "window_remainder",
 ]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

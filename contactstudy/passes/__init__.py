@@ -12,15 +12,12 @@ rolled_in.py    passes of a stress field over an elastic-plastic body
 ==============  ======================================================================================================
 """
 
-from typing import TYPE_CHECKING
-
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.passes.plastic import ElasticPlastic
 from contactstudy.passes.residual import residual_stress
 from contactstudy.passes.rolled_in import STRAINS, rolled_in
 
 __all__ = ["STRAINS", "STRESSES", "ElasticPlastic", "residual_stress", "rolled_in"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

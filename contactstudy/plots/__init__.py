@@ -4,9 +4,7 @@ Every function takes results of :func:`contactstudy.solve`, or of :func:`contact
 selected, and draws into given axes or a new figure. Colours keep their order in grey, lines differ by their dashes.
 """
 
-from typing import TYPE_CHECKING
-
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.plots.comparison import plot_comparison, plot_depth
 from contactstudy.plots.edge_effect import plot_edge_effect
 from contactstudy.plots.pressure import plot_axial_pressure, plot_pressure_map
@@ -41,5 +39,4 @@ __all__ = [
     "study_figures",
 ]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

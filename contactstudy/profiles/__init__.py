@@ -9,9 +9,7 @@ conventions with a sketch, and a table of all profiles with formulas and sources
 (Lundberg, ISO/TS 16281): the roller does not touch there.
 """
 
-from typing import TYPE_CHECKING
-
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
 from contactstudy.profiles.corners import EffectiveLength
 from contactstudy.profiles.crowned import FullCrown, PartialCrown
@@ -43,5 +41,4 @@ __all__ = [
     "local_radius",
 ]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

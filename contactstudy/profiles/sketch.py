@@ -50,12 +50,15 @@ def sketch(profile: Profile, length: float, title: str) -> str:
         deepest = SHOWN * inner
     elif inner > 0:
         deepest = min(deepest, SHOWN * inner)
-    cut_off = bool((drop > deepest).any())
-    height = ROLLER_HEIGHT - np.minimum(drop / deepest, 1.0) * DEEPEST if deepest else np.full(POINTS, ROLLER_HEIGHT)
+    # Without any finite drop there is no scale; what is infinite is cut off all the same.
+    cut_off = drop > deepest
+    height = ROLLER_HEIGHT - np.where(cut_off, 1.0, drop / (deepest or 1.0)) * DEEPEST
     across = MARGIN + (x + 0.5) * (WIDTH - 2 * MARGIN)
     line = " ".join(f"{at:.1f},{y:.1f}" for at, y in zip(across, height, strict=True))
     said = f"drop drawn up to {quantity(deepest, 'm')}" if deepest else "no drop"
-    said += ", cut off at the ends" if cut_off and deepest else ""
+    if cut_off.any():
+        # Within, the scale has room for all that is finite.
+        said += ", cut off where it is infinite" if cut_off[np.abs(x) <= INSIDE].any() else ", cut off at the ends"
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" width="{WIDTH:g}" '
         f'style="max-width:100%" role="img" aria-label="{escape(title)}" font-family="sans-serif" font-size="13">'

@@ -3,12 +3,9 @@
 It holds everything that it shows: no script, no font and no picture is fetched from anywhere.
 """
 
-from typing import TYPE_CHECKING
-
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.report.document import html, write
 
 __all__ = ["html", "write"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

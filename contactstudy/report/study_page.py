@@ -38,9 +38,6 @@ CAPTIONS = {
 }
 """What figures show, by name."""
 
-LONGEST = 30
-"""Letters of a column's heading."""
-
 
 class Row(NamedTuple):
     """One case in the table."""
@@ -82,7 +79,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
         "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
-        "headings": [_heading(name) for name in swept],
+        "headings": [_called(name) for name in swept],
         "number_headings": [SHOWN[name] for name in numbers],
         "rows": rows,
         "reasons": _reasons(rows),
@@ -103,21 +100,15 @@ def _meaning(name: str) -> str:
     return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
 
 
-def _heading(name: str) -> str:
-    """Heading of a column: the meaning of its parameter, or its name where that is much shorter."""
-    meaning = _meaning(name)
-    return meaning if len(meaning) <= LONGEST else _short(name)
-
-
-def _short(name: str) -> str:
-    """Name of a parameter as it is written.
+def _called(name: str) -> str:
+    """Return what a parameter is called on axes; groups of parameters have the study's names.
 
     Examples
     --------
-    >>> _short("e_over_a"), _short("max_pressure")
-    ('e/a', 'max pressure')
+    >>> _called("e_over_a"), _called("tilt"), _called("case")
+    ('end distance over a', 'tilt', 'case')
     """
-    return name.replace("_over_a", "/a").replace("_", " ")
+    return PARAMETERS[name].attrs["long_name"] if name in PARAMETERS else name.replace("_", " ")
 
 
 def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
@@ -178,7 +169,7 @@ def _values(name: str, rows: list[Row], at: int) -> str:
 def _shape(plan: Plan) -> str:
     """Dimensions of the study in words."""
     pairs = zip(plan.cube.dims, plan.cube.shape, strict=True)
-    said = " x ".join(f"{size} of {_short(dim)}" for dim, size in pairs)
+    said = ", ".join(f"{_called(dim)}: {size}" for dim, size in pairs)
     return f"{len(plan.cases)} cases ({said})"
 
 
@@ -210,7 +201,7 @@ def _to_choose(others: dict[str, str]) -> str:
     name, value = next(iter(others.items()))
     command = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
     return (
-        f" Of {' and '.join(_short(each) for each in others)} one value is drawn, which the title says. Another is "
+        f" Of {' and '.join(_called(each) for each in others)} one value is drawn, which the title says. Another is "
         f"drawn by: contactstudy report FOLDER --select {command}"
     )
 

@@ -1,8 +1,6 @@
 """Parametric studies: many cases, mapped over processes, one file per case, opened as one Dataset."""
 
-from typing import TYPE_CHECKING
-
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.study.definition import Study
 from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.opened import collect, open_study
@@ -23,5 +21,4 @@ __all__ = [
     "run_study",
 ]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

@@ -8,13 +8,10 @@ profile.py        worn profiles, to be contacted again
 ================  ==============================================================
 """
 
-from typing import TYPE_CHECKING
-
-from contactstudy.near_names import suggesting
+from contactstudy.near_names import suggest
 from contactstudy.wear.profile import worn_profile
 from contactstudy.wear.wear_in import wear_in
 
 __all__ = ["wear_in", "worn_profile"]
 
-if not TYPE_CHECKING:  # to a type checker, a module with __getattr__ has every name
-    __getattr__ = suggesting(__name__, __all__)
+suggest(__name__, __all__)

@@ -91,6 +91,20 @@ def test_positions_that_differ_over_a_are_refused(strip_result) -> None:
     assert analysis.positions_over_a(cases.isel(load=1))["x_over_a"].max() == pytest.approx(2.9375)
 
 
+def test_positions_that_are_not_there_are_not_made_up(strip_result) -> None:
+    with pytest.raises(InvalidInputError, match=r"coords = .*must be with the positions x \(metres\)"):
+        analysis.positions_over_a(strip_result(1e-4, 1e9).drop_vars("x"))
+
+
+def test_positions_over_a_are_called_the_same_everywhere(strip_result) -> None:
+    result = strip_result(1e-4, 1e9)
+    scaled, over = analysis.normalized(result), analysis.positions_over_a(result)
+    for name in ("x", "y", "z", "x_field"):
+        assert scaled[name].attrs == over[f"{name}_over_a"].attrs, name
+    assert scaled["z"].attrs["long_name"] == "z over a"
+    assert scaled["z"].attrs["comment"] == "depth, below the loaded surface"
+
+
 def test_positions_over_a_are_of_millimetres_too(strip_result) -> None:
     result = strip_result(1e-4, 1e9)
     in_mm = result.assign_coords(x=(1e3 * result["x"]).assign_attrs(units="mm"))

@@ -41,6 +41,29 @@ def test_scalars_of_a_motion_have_their_errors(solved: xr.Dataset) -> None:
     assert np.isnan(view["load_position"].error)
 
 
+def test_rounding_is_no_force(solved: xr.Dataset) -> None:
+    arm = float(solved["hertz_half_width"])
+    moved = solved.assign(force_y=2.0, force_x=-5.7e-9, force_x_error=7e-9, moment_z=1e-9 * arm)
+    view = short(moved)
+    assert (view["force_x"].text, view["moment_z"].text, view["force_y"].text) == ("0 N", "0 N m", "2 N")
+    assert view["force_x"].remark == "rounding: below 1e-06 of the largest force"
+    assert list(view.to_dataframe().loc["force_x", ["value", "error"]]) == [-5.7e-9, 7e-9]
+    # Also where none was asked for.
+    case = '{"case": {"motion": {"kind": "Rolling", "force_x": %s}}}'
+    assert short(moved.assign_attrs(contactstudy_inputs=case % "0.0"))["force_x"].text == "0 N"
+    # Known better than its size, known worse than rounding, above it, without another force, and prescribed.
+    for other in (
+        moved.assign(force_x_error=1e-10),
+        moved.assign(force_x_error=1e-3),
+        moved.assign(force_x=3e-6, force_x_error=4e-6),
+        moved.assign(force_y=0.0),
+        moved.assign_attrs(contactstudy_inputs=case % "-5.7e-9"),
+    ):
+        row = short(other)["force_x"]
+        assert "rounding" not in row.remark
+        assert not row.text.startswith("0 ")
+
+
 def test_stick_and_slip_are_said(solved: xr.Dataset) -> None:
     pressed = (solved["pressure"] > 0).drop_attrs()
     tractions = {

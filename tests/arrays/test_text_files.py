@@ -59,6 +59,8 @@ def workbook() -> bytes:
 FOREIGN = {
     "picture": (b"\x89PNG\r\n\x1a\n and so on", "it is a picture, which shows heights but does not hold them"),
     "workbook": (workbook(), "it is a workbook of a spreadsheet program: save the sheet as 'CSV UTF-8'"),
+    "bitmap": (b"BM" + (1078).to_bytes(4, "little") + bytes(8), "it is a picture"),
+    "netCDF": (b"CDF\x01" + bytes(8), "it is netCDF: let its name end with .nc"),
     "document": (b"%PDF-1.7 and so on", "it is a PDF document"),
     "unknown": (bytes(range(256)), "ending"),
 }
@@ -71,6 +73,13 @@ def test_what_is_no_text_is_told_from_it(tmp_path: Path, kind: str, name: str) -
     (tmp_path / name).write_bytes(content)
     with pytest.raises(InvalidInputError, match=rf"columns as text.*netCDF.*extra `measured`.*{message}"):
         read_columns(tmp_path / name, *COLUMNS)
+
+
+@pytest.mark.parametrize("first", ["BM nr", "CDF"])
+def test_a_first_column_may_be_named_like_the_mark_of_a_picture(tmp_path: Path, first: str) -> None:
+    (tmp_path / "a.csv").write_text(f"{first},x [mm], drop [um]\n1,0,2\n2,1,3\n")
+    found = read_columns(tmp_path / "a.csv", *COLUMNS)
+    np.testing.assert_allclose([found["x"], found["drop"]], [[0, 1e-3], [2e-6, 3e-6]])
 
 
 @pytest.mark.parametrize(("name", "kind"), [("a.png", "picture"), ("a.xlsx", "workbook"), ("a.pdf", "document")])

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 
+import dask
+import dask.array as da
 import numpy as np
 import pytest
 import xarray as xr
@@ -17,6 +20,7 @@ from contactstudy import (
     Material,
     Roller,
     Study,
+    solve,
     solve_contact,
     stress_field,
     surface_displacement,
@@ -141,6 +145,11 @@ def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
     assert found["case_load"].values.tolist() == [30.0]
 
 
+def opened(value: float) -> da.Array:
+    """Return a number as it is in a file that was opened with chunks."""
+    return da.from_array(np.array(value))
+
+
 def scalar(value: object, units: str | None = None) -> xr.DataArray:
     return xr.DataArray(value, attrs={} if units is None else {"units": units})
 
@@ -167,13 +176,26 @@ def case_with(**given) -> Case:
 @pytest.mark.parametrize("name", SCALARS)
 def test_a_scalar_of_a_result_is_a_number_in_its_own_unit(name: str) -> None:
     taken, value, units, si = SCALARS[name]
-    for given in (scalar(value, units), scalar(si), np.array(si), scalar(si).chunk()):
+    for given in (scalar(value, units), scalar(si), np.array(si), scalar(opened(si)), scalar(opened(value), units)):
         found = taken(given)
         assert type(found) is float
         assert found == pytest.approx(si, rel=1e-15)
     with pytest.raises(InvalidInputError, match=rf"{name}.attrs\['units'\] = 'furlong': must be one of") as caught:
         taken(scalar(value, "furlong"))
     assert len(str(caught.value)) < 200
+
+
+def test_the_largest_pressure_of_a_result_opened_with_chunks_is_that_of_the_next_case(tmp_path: Path) -> None:
+    xr.Dataset({"pressure": ("x", [1e9, 2e9], {"units": "Pa"})}).to_netcdf(tmp_path / "a.nc")
+    with xr.open_dataset(tmp_path / "a.nc", chunks={}) as result:
+        assert case_with(max_pressure=result.pressure.max(keep_attrs=True)) == case_with(max_pressure=2e9)
+
+
+def test_no_message_computes_what_is_lazy() -> None:
+    never = da.from_delayed(dask.delayed(pytest.fail)("computed"), (), float)
+    for value, kind in ((never, "Array"), (scalar(never, "N"), "DataArray"), (scalar(never).expand_dims(x=3), "")):
+        with pytest.raises(InvalidInputError, match=rf"case = lazy {kind}.*type float64: must be a Case"):
+            solve(value)
 
 
 def test_the_load_of_a_result_is_that_of_the_next_case() -> None:
@@ -200,6 +222,10 @@ def test_a_study_takes_scalars_with_units() -> None:
         (scalar("a"), "'a'"),
         (xr.Dataset({"a": 1, "b": 2}), "Dataset of 2 variables"),
         ([np.ones((2, 2))], "[array([[1., 1.], [1., 1.]])]"),
+        (scalar(opened(-5.0), "mm"), "lazy DataArray of type float64"),
+        (scalar(da.ones((40, 20))), "lazy DataArray of shape (40, 20) and type float64"),
+        (xr.Dataset, repr(xr.Dataset)),
+        (da.Array, repr(da.Array)),
     ],
 )
 def test_no_message_shows_a_whole_array(value: object, shown: str) -> None:

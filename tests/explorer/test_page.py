@@ -21,7 +21,7 @@ from contactstudy.explorer.drawn import PLANES, REGIONS, axial, plane, region, s
 from contactstudy.explorer.figures import NEUTRAL, StudyFigure
 from contactstudy.explorer.looked import Looked
 from contactstudy.explorer.numbers import ORDER, SUBJECTS
-from contactstudy.explorer.page import Page
+from contactstudy.explorer.page import Page, _marked
 from contactstudy.explorer.pixels import between, pixels
 
 SOURCES: dict[str, Callable[[Path], Cases]] = {
@@ -258,3 +258,7 @@ def test_a_value_without_a_limit_is_a_triangle_whoever_looks_at_it() -> None:
     assert (figure._chosen_endless.data["x"], figure._chosen_endless.data["color"]) == ([1.0], ["red"])
     figure.show(np.array([np.inf, np.inf]), places, None, [(1, np.inf, "red")], ("x", "v"))
     assert figure.figure.y_range.end > 1.0
+
+
+def test_a_number_that_is_rounding_says_so() -> None:
+    assert _marked("0 N", "rounding: below 1e-06 of it") == "0 N (rounding: below 1e-06 of it)"

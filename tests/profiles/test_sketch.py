@@ -36,5 +36,20 @@ def test_a_sketch_is_the_drop_in_one_scale(profile: Profile, said: str, deepest:
     assert "a &lt;profile&gt;" in svg
 
 
+def test_what_is_infinite_is_cut_off_without_any_finite_drop() -> None:
+    class Short:
+        def drop(self, x, length):
+            return np.where(np.abs(x) > 0.302 * length, np.inf, 0.0)
+
+    svg = sketch(Short(), 10e-3, "short")
+    line = re.search(r'<polyline points="([^"]*)"', svg)
+    assert line is not None
+    points = np.array([point.split(",") for point in line.group(1).split()], dtype=float)
+    lower = points[:, 1] < points[:, 1].max() - 20
+    place = np.abs(points[:, 0] - points[:, 0].mean()) / np.ptp(points[:, 0])
+    assert np.array_equal(lower, place > 0.302)
+    assert "no drop, cut off where it is infinite; L = 10 mm" in svg
+
+
 def test_a_straight_roller_has_no_drop() -> None:
     assert "no drop; L = 2 mm" in sketch(Cylinder(), 2e-3, "straight")

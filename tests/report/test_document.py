@@ -117,11 +117,11 @@ def test_a_study_has_its_cases_its_figures_and_its_failures(folder: Path) -> Non
             "error not known",
             "4 cases",
             "Are these numbers real?",
-            "3 of e/a x 2 of friction x 2 of profile",
+            "(end distance over a: 3, coefficient of friction: 2, roller profile: 2)",
         ),
     ):
         assert words in page.text, words
-    for words in ("Are these numbers real?", "3 of e/a x 2 of friction x 2 of profile"):
+    for words in ("Are these numbers real?", "end distance over a: 3, coefficient of friction: 2"):
         assert words in page.text, words
     assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
     assert len(page.fetched) == 2
@@ -167,7 +167,7 @@ def test_a_report_is_a_page_and_no_other_file(tmp_path: Path) -> None:
 
 def test_a_studys_figures_say_what_they_leave_out_and_show_another(folder: Path, tmp_path: Path, capsys) -> None:
     page = read(report.write(folder, tmp_path / "all.html"))
-    assert "Of friction and profile one value is drawn" in page.text
+    assert "Of coefficient of friction and roller profile one value is drawn" in page.text
     assert "contactstudy report FOLDER --select friction=0.66" in page.text
     chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
     assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
