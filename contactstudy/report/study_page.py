@@ -15,7 +15,7 @@ import xarray as xr
 from contactstudy.analysis.certainty import CARE, NO, UNKNOWN, YES, certainty
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.engineering import with_error
-from contactstudy.report.figures import Picture, as_address
+from contactstudy.report.figures import PIXELS, Picture, as_address
 from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
@@ -40,6 +40,13 @@ CAPTIONS = {
 
 LONGEST = 30
 """Letters of a column's heading."""
+
+
+SIZE = re.compile(r" to ([0-9.]+)%$")
+"""Size of an error at the end of a reason."""
+
+WORST_FIRST = (NO, CARE, UNKNOWN, YES)
+"""Answers."""
 
 
 class Row(NamedTuple):
@@ -87,7 +94,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "rows": rows,
         "reasons": _reasons(rows),
         "answers": _answers(rows),
-        "doubtful": [row for row in rows if row.real == NO],
+        "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
         "provenance": _provenance(runs),
     }
@@ -163,10 +170,29 @@ def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     for row in rows:
         if row.real:
             # The size of an error differs from case to case; the sentence before it is the reason.
-            grouped.setdefault((row.real, re.sub(r" to [0-9.]+%$", "", row.reason)), []).append(row)
-    order = (NO, CARE, UNKNOWN, YES)
-    keys = sorted(grouped, key=lambda key: order.index(key[0]))
-    return [(answer, reason, grouped[answer, reason]) for answer, reason in keys]
+            grouped.setdefault((row.real, SIZE.sub("", row.reason)), []).append(row)
+    keys = sorted(grouped, key=lambda key: WORST_FIRST.index(key[0]))
+    return [(answer, _sized(reason, grouped[answer, reason]), grouped[answer, reason]) for answer, reason in keys]
+
+
+def _sized(reason: str, cases: list[Row]) -> str:
+    """Reason of several cases, with the range of the errors that their own reasons end with."""
+    sizes = [float(found[1]) for row in cases if (found := SIZE.search(row.reason))]
+    if not sizes:
+        return reason
+    known = reason.replace("the peak is settled", "the peak is known only")
+    low, high = min(sizes), max(sizes)
+    return f"{known} to {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
+
+
+def _verdict(rows: list[Row]) -> tuple[str, str]:
+    """Worst answer of a study's cases, and how many have which; what is not solved needs care."""
+    count = Counter(row.real for row in rows if row.real)
+    worst = next((answer for answer in WORST_FIRST if answer in count), UNKNOWN)
+    if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
+        worst = CARE
+    words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
+    return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
 
 
 def _values(name: str, rows: list[Row], at: int) -> str:
@@ -198,7 +224,9 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     found = []
     for name, (figure, others) in figures_of_folder(path, selection).items():
         caption = CAPTIONS.get(name, name.replace("_", " "))
-        found.append(Picture(as_address(figure), f"{caption}{_to_choose(others)}"))
+        found.append(
+            Picture(as_address(figure), f"{caption}{_to_choose(others)}", round(PIXELS * figure.get_figwidth()))
+        )
         pyplot.close(figure)
     return found
 

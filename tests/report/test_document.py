@@ -14,7 +14,10 @@ import xarray as xr
 
 from contactstudy import InvalidInputError, report
 from contactstudy.cli import main
+from contactstudy.report import study_page
 from contactstudy.study import run_study
+from contactstudy.study.folder import Entry
+from tests.browser import browser, chromium
 from tests.small_study import small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
@@ -125,6 +128,48 @@ def test_a_study_has_its_cases_its_figures_and_its_failures(folder: Path) -> Non
         assert words in page.text, words
     assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
     assert len(page.fetched) == 2
+
+
+def settled_cases(*parts: float) -> list[study_page.Row]:
+    """Rows of solved cases whose peaks are known to parts of them."""
+    rows = []
+    for part in parts:
+        scalars = {"peak_pressure": 2e9, "peak_pressure_error": part * 2e9, "converged": 1.0}
+        real, reason = study_page._certainty(Entry("ok", scalars=scalars))
+        rows.append(study_page.Row("case-1", [], [], "ok", "", real, reason))
+    return rows
+
+
+def test_a_shared_reason_says_what_is_wrong() -> None:
+    ((answer, reason, cases), (best, _, _)) = study_page._answers(settled_cases(0.1, 0.06, 0.001))
+    assert (answer, len(cases), best) == ("with care", 2, "yes")
+    assert reason == "the peak is known only to 10.0% in the worst case, 6.0% in the best"
+
+
+def test_the_banner_follows_the_worst_answer(folder: Path, tmp_path: Path) -> None:
+    assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
+    run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
+    page = report.html(tmp_path)
+    assert 'class="verdict with-care"' in page
+    assert "4 ok; numbers of these: 4 real with care" in Page(page).text
+
+
+@pytest.mark.skipif(chromium() is None, reason="needs Chromium")
+def test_a_study_fits_a_narrow_and_a_wide_screen(folder: Path, tmp_path: Path) -> None:
+    pytest.importorskip("playwright")
+    path = report.write(folder, tmp_path / "study.html")
+    own = {}
+    for width in (420, 1400):
+        with browser(width, 900) as page:
+            page.goto(path.as_uri())
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"
+            own[width] = page.evaluate(widths)
+            hints = page.locator(".hint").evaluate_all("all => all.filter(each => each.offsetParent).length")
+            assert bool(hints) == (width == 420)
+    assert all(shown <= 1.4 * natural + 4 for shown, natural in own[1400])
+    assert all(shown < 400 or shown <= 0.5 * natural + 2 for shown, natural in own[420])
 
 
 def test_the_file_of_a_studys_case_has_its_inputs(folder: Path, tmp_path: Path, capsys) -> None:
