@@ -54,7 +54,7 @@ NARROW = 380
 
 
 class Picture(NamedTuple):
-    """A figure in a page: its address, which holds it, the words under it, and its own width in pixels if that binds."""
+    """A figure in a page: its address, which holds it, its caption, and its own width in pixels where that binds."""
 
     address: str
     caption: str

@@ -30,10 +30,19 @@ SHOWN = {
 }
 """Numbers of a case in the table, with their headings."""
 
+SINGULAR_SHOWN = {
+    "end_intensity_first": "K at end I",
+    "end_intensity_last": "K at end II",
+    "end_load_first": "load on the last a, end I",
+    "end_load_last": "load on the last a, end II",
+}
+"""Numbers that stand for the pressure at a singular end, with their headings: only of such ends."""
+
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
-    "study": "Largest values of the cases over the swept parameters. Bars: stated errors; open marks: no error is "
+    "study": "Largest values of the cases over the swept parameters; where all are singular, the loads on the last "
+    "half-width a at the ends. Bars: stated errors; open marks: no error is "
     "known. An open triangle at the top: singular, there is no largest value.",
 }
 """What figures show, by name."""
@@ -75,7 +84,8 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     study = folder.read_study()
     plan = study.plan()
     entries = folder.entries(plan)
-    numbers = [name for name in SHOWN if any(name in entry.scalars for entry in entries)]
+    numbers = [name for name in SHOWN if any(_has_more(entry, name) for entry in entries)]
+    numbers += [name for name in SINGULAR_SHOWN if any(_is_singular(entry, name) for entry in entries)]
     swept = list(dict.fromkeys([*study.sweep, *(name for group in study.zip for name in group), *_explicit(study)]))
     rows = [
         _row(case, entry, _swept_values(plan, case, swept), numbers, number)
@@ -90,7 +100,8 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
         "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
         "headings": [_heading(name) for name in swept],
-        "number_headings": [SHOWN[name] for name in numbers],
+        "number_headings": [(SHOWN | SINGULAR_SHOWN)[name] for name in numbers],
+        "intensities": any(name.startswith("end_intensity") for name in numbers),
         "rows": rows,
         "reasons": _reasons(rows),
         "answers": _answers(rows),
@@ -143,18 +154,47 @@ def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str],
     scalars = entry.scalars
     found = []
     for name in numbers:
-        if name not in scalars:
+        if name not in scalars or (name in SINGULAR_SHOWN and not _is_singular(entry, name)):
             found.append("")
+        elif name.startswith("end_intensity"):
+            found.append(_intensity(scalars, name))
         elif np.isinf(scalars[name]) or (name == "peak_von_mises" and np.isinf(scalars.get("peak_pressure", 0.0))):
             found.append("singular")
         else:
-            error = scalars.get(f"{name}_error")
-            known = error is not None and np.isfinite(error)
-            text = with_error(scalars[name], error if known else None, "Pa")
-            found.append(text if known else f"{text} (error not known)")
+            units = "N" if name.startswith("end_load") else "Pa"
+            found.append(_with_mark(scalars[name], scalars.get(f"{name}_error"), units))
     real, reason = _certainty(entry) if scalars else ("", "")
     note = reason if real == NO else entry.reason
     return Row(f"case-{number}", values, found, entry.status, note, real, reason)
+
+
+def _has_more(entry: Entry, name: str) -> bool:
+    """Whether a case has a number; that a pressure at an end is singular its K says already."""
+    if name not in entry.scalars:
+        return False
+    said = f"end_intensity_{name.rpartition('_')[2]}" in entry.scalars and name.startswith("end_pressure")
+    return not (said and np.isinf(entry.scalars[name]))
+
+
+def _is_singular(entry: Entry, name: str) -> bool:
+    """Whether the end that a number belongs to is singular, and the number is known."""
+    end = name.rpartition("_")[2]
+    return f"end_intensity_{end}" in entry.scalars and np.isfinite(entry.scalars.get(name, np.nan))
+
+
+def _intensity(scalars: Mapping[str, float], name: str) -> str:
+    """K of the law of a singular end; its unit says the exponent."""
+    exponent = scalars[name.replace("intensity", "exponent")]
+    factor = 1e9 * 1e-3**exponent
+    error = scalars.get(f"{name}_error", np.nan)
+    return _with_mark(scalars[name] / factor, error / factor, f"GPa mm^{exponent:.3g}")
+
+
+def _with_mark(value: float, error: float | None, units: str) -> str:
+    """Write a number with its error, or with the mark that it has none."""
+    known = error is not None and np.isfinite(error)
+    text = with_error(value, error if known else None, units)
+    return text if known else f"{text} (error not known)"
 
 
 def _certainty(entry: Entry) -> tuple[str, str]:

@@ -11,10 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 from contactstudy import InvalidInputError, report
 from contactstudy.cli import main
 from contactstudy.report import study_page
+from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study import run_study
 from contactstudy.study.folder import Entry
 from tests.browser import browser, chromium
@@ -149,10 +151,35 @@ def test_a_shared_reason_says_what_is_wrong() -> None:
 def test_the_banner_follows_the_worst_answer(folder: Path, tmp_path: Path) -> None:
     assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
     assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
-    run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
+
+    def coarse(*given, **more) -> xr.Dataset:
+        return solve_fake(*given, **more).assign(peak_pressure=2e9, peak_pressure_error=2e8)
+
+    run_study(small_study(), tmp_path, workers=0, solver=coarse, progress=False)
     page = report.html(tmp_path)
     assert 'class="verdict with-care"' in page
     assert "4 ok; numbers of these: 4 real with care" in Page(page).text
+
+
+def test_singular_ends_have_numbers_and_a_figure(tmp_path: Path) -> None:
+    def sharp(*given, **more) -> xr.Dataset:
+        law = {"end_exponent_first": 0.5, "end_intensity_first": 3.245e6, "end_intensity_first_error": 1.8e4}
+        loads = {"end_load_first": 4.02, "end_load_first_error": 0.02, "end_load_last": 3.0}
+        peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
+        return solve_fake(*given, **more).assign(law | loads | peaks)
+
+    run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
+    page = Page(report.html(tmp_path))
+    for words in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "load on the last a, end I", "4.020 ± 0.020 N"):
+        assert words in page.text, words
+    assert "at end I largest" not in page.text
+    assert "K at end II" not in page.text  # that end is not singular
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert "load on the last" in labels[0]
+    assert not any("largest contact pressure" in label for label in labels)
+    assert [line for line in figure.axes[0].lines if np.isfinite(line.get_ydata()).all()]
+    pyplot.close(figure)
 
 
 @pytest.mark.skipif(chromium() is None, reason="needs Chromium")
