@@ -20,7 +20,7 @@ from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
+from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words, label
 
 SHOWN = {
     "peak_pressure": "largest pressure",
@@ -145,6 +145,8 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     for name in swept:
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else given.get(name)
+        if isinstance(given.get(name), dict) and value == label(name, given[name]):
+            value = given[name]  # it has no name of its own: say its values
         found.append("" if value is None else in_engineers_words(name, value))
     return found
 

@@ -20,7 +20,7 @@ from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study import run_study
 from contactstudy.study.folder import Entry
 from tests.browser import browser, chromium
-from tests.small_study import small_study
+from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
 VOID = {"meta", "img", "br", "link", "input"}
@@ -159,6 +159,24 @@ def test_the_banner_follows_the_worst_answer(folder: Path, tmp_path: Path) -> No
     page = report.html(tmp_path)
     assert 'class="verdict with-care"' in page
     assert "4 ok; numbers of these: 4 real with care" in Page(page).text
+
+
+def test_inputs_have_the_units_of_engineers_everywhere(tmp_path: Path) -> None:
+    profile = {"kind": "cylinder", "fillet_radius": 1e-4}
+    sweep = {"tilt": [0.0, 3e-4], "profile": ["cylinder", profile | {"fillet_radius": 5e-5}]}
+    study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=sweep)
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    page = Page(report.html(tmp_path))
+    assert "cylinder, fillet radius 50 µm" in page.text
+    assert "0.3 mrad" in page.text
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    assert any("mrad" in ax.get_xlabel() for ax in figure.axes)
+    assert figure.axes[0].lines[0].get_xdata().max() == pytest.approx(0.3)
+    pyplot.close(figure)
+    run_study(
+        small_study(base=BASE | {"profile": profile}), tmp_path / "b", workers=0, solver=solve_fake, progress=False
+    )
+    assert "cylinder, fillet radius 0.1 mm" in Page(report.html(tmp_path / "b")).text
 
 
 def test_singular_ends_have_numbers_and_a_figure(tmp_path: Path) -> None:
