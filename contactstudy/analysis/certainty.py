@@ -231,7 +231,7 @@ def _cells(one: xr.Dataset) -> Answer:
         return Answer(question, CARE, str(reason))
     part = error / peak if peak else 0.0
     if part > SETTLED:
-        return Answer(question, CARE, f"the peak is known to {part:.1%} only")
+        return Answer(question, CARE, f"the peak is known only to {part:.1%}")
     return Answer(question, YES, f"the peak is settled to {part:.1%}")
 
 

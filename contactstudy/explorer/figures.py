@@ -19,6 +19,7 @@ from bokeh.plotting import figure
 
 from contactstudy.checks import FloatArray
 from contactstudy.explorer.drawn import Image, Line
+from contactstudy.explorer.pixels import Span
 
 FIRST, SECOND, NEUTRAL = "#1f4e79", "#c05a00", "#8894a0"
 """Colours of the case, of the one that it is compared with, and of the others."""
@@ -98,8 +99,8 @@ class ImageFigure:
         """Whether there is a picture."""
         return bool(self._source.data["image"])
 
-    def show(self, image: Image | None, most: float, title: str) -> None:
-        """Draw a picture, its colours up to a largest value; nothing if there is none."""
+    def show(self, image: Image | None, most: float, title: str, up: Span | None = None) -> None:
+        """Draw a picture, its colours up to a largest value; nothing if there is none. `up`: what the axis spans."""
         self.figure.title.text = title
         if image is None:
             self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
@@ -109,6 +110,7 @@ class ImageFigure:
         self._mapper.update(high=max(most, 1e-12))
         self.figure.x_range.update(start=left, end=right)
         deep = self._downwards and image.names[1].startswith("depth")
+        low, high = up or image.up
         self.figure.y_range.update(start=high if deep else low, end=low if deep else high)
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
 

@@ -113,7 +113,9 @@ class Page:
         sides = [0, 1] if self.compare.value else [0]
         loaded = [self._loaded(side) if side in sides else None for side in (0, 1)]
         self._other_choices.visible = bool(self.compare.value)
-        self.where.visible = self.plane.value != PLANES[0]
+        stressed = any(one is not None and one.has_stress for one in loaded)
+        self.plane.visible = stressed
+        self.where.visible = stressed and self.plane.value != PLANES[0]
         self._show_axial(loaded)
         self._show_fields(loaded)
         self._show_study(sides)
@@ -210,11 +212,14 @@ class Page:
             tops.append(top(one, scale, shown))
             planes.append(plane(one, scale, shown, self.plane.value, self.where.value))
         for images, figures, what in ((tops, self.tops, "pressure"), (planes, self.planes, "von Mises stress")):
-            most = max((image.most for image in images if image is not None), default=1.0)
+            present = [image for image in images if image is not None]
+            most = max((image.most for image in present), default=1.0)
+            lows, highs = zip(*(image.up for image in present), strict=True) if present else ((0.0,), (1.0,))
+            up = (min(lows), max(highs))
             for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
                 beyond = ", more beside the singular end" if one is not None and one.ends else ""
-                each.show(image, most, f"{name}{what}{units}{beyond}")
+                each.show(image, most, f"{name}{what}{units}{beyond}", up)
 
     def _reasons(self, loaded: list[Looked | None], sides: list[int]) -> str:
         """Return in words why figures are missing, and hide their empty axes."""
@@ -296,7 +301,7 @@ class Page:
         count = int((self.cases.scalars["status"] != "excluded").sum())
         head = pn.pane.HTML(
             f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"
-            f"<div class=soft>{count} cases</div>",
+            f"<div class=soft>{count} case{'s' if count != 1 else ''}</div>",
             stylesheets=[STYLE],
             sizing_mode="stretch_width",
         )

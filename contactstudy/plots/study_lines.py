@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 QUANTITIES = ("peak_pressure", "peak_von_mises", "peak_von_mises_z")
 """What is drawn if nothing else is asked for."""
 
+AT_SINGULAR = ("end_load_first", "end_load_last")
+"""What is drawn in the place of a peak that no case has: the loads on the last half-width."""
+
 MARKERS = "osD^vPX*"
 """Of the lines, in turn."""
 
@@ -126,6 +129,8 @@ def plot_study_lines(
             (curve,) = ax.plot(
                 places, shown, **style, marker=marker, markersize=4, label=text and folded(text, WIDEST_LEGEND)
             )
+            if np.isnan(line.values).all():  # nothing of it is solved: the legend does without it
+                curve.set_label("_unsolved")
             if errors is not None:
                 bars = (errors if hue is None else errors.isel({hue: number})).values
                 ax.errorbar(places, shown, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
@@ -244,7 +249,7 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     dict
         "edge_effect" for a study over e/a that kept its surfaces, see `plot_edge_effect`; "study" if any parameter
         takes several values: `plot_study_lines` over the longest swept parameter, with a line for each value of the
-        next longest.
+        next longest. Where every peak is singular it has the loads on the last half-width instead.
 
     Raises
     ------
@@ -284,6 +289,15 @@ def suiting_figures(dataset: xr.Dataset, load: Load | None) -> dict[str, tuple[F
                 [name for name in swept if name not in AXES],
             )
     names = [name for name in swept if name != "case"]
-    if names and any(name in dataset for name in QUANTITIES):
-        figures["study"] = (plot_study_lines(dataset, *names[:2]), names[2:])
+    if names and (drawn := _with_values(dataset)):
+        figures["study"] = (plot_study_lines(dataset, *names[:2], variables=drawn), names[2:])
     return figures
+
+
+def _with_values(dataset: xr.Dataset) -> list[str]:
+    """Quantities to draw: those that are finite somewhere, and loads at the ends where no peak is."""
+    present = [name for name in QUANTITIES if name in dataset]
+    finite = [name for name in (*present, *AT_SINGULAR) if name in dataset and np.isfinite(dataset[name]).any()]
+    if "peak_pressure" in present and "peak_pressure" not in finite and set(finite) & set(AT_SINGULAR):
+        return sorted(finite, key=lambda name: name not in AT_SINGULAR)
+    return [name for name in finite if name in QUANTITIES] or present

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 SCALES = {
     "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
     "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
+    "rad": ((0.0, 1e-3, "mrad"),),
 }
 """Units that figures show: from which size on, how much it is in SI, and its name."""
 

@@ -11,7 +11,7 @@ from markupsafe import Markup, escape
 from contactstudy.arrays.engineering import quantity
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
-from contactstudy.profiles.base import checked_drop
+from contactstudy.profiles.base import checked_drop, local_radius
 
 WIDTH, MARGIN = 760.0, 56.0
 """Width of the drawing and of the room on either side, in its own units."""
@@ -109,6 +109,12 @@ def draw(case: Case) -> Drawing:
     said = f"Side view, to scale in both directions: lower half of the roller on the body; {crown}."
     if cut:
         said += " The roller is cut below its axis."
+    if np.ptp(local_radius(roller.profile, x, roller.length, roller.radius)) > ROUNDING:
+        first, last = local_radius(roller.profile, x[[0, -1]], roller.length, roller.radius)
+        said += (
+            f" The radius across the roller changes from {quantity(float(first), 'm')} to "
+            f"{quantity(float(last), 'm')} along it; the drawing has the radius at mid-length all along."
+        )
     if case.tilt or case.load_position is not None:
         said += " The tilt is not drawn."
     return Drawing(Markup(svg), said)

@@ -43,11 +43,37 @@ DOTS = 110
 """Dots per inch of the parts of a figure that are pictures."""
 
 
+PIXELS = 96
+"""Pixels of a page per inch."""
+
+LEAST, MOST = 0.5, 1.4
+"""How much smaller and larger than it is a figure may be shown: its words stay readable."""
+
+NARROW = 380
+"""Width that a narrow screen has for a figure, pixels."""
+
+
 class Picture(NamedTuple):
-    """A figure in a page: its address, which holds it, and the words under it."""
+    """A figure in a page: its address, which holds it, its caption, and its own width in pixels where that binds."""
 
     address: str
     caption: str
+    width: int = 0
+
+    @property
+    def least(self) -> int:
+        """Width below which the figure is scrolled."""
+        return round(LEAST * self.width)
+
+    @property
+    def most(self) -> int:
+        """Width beyond which the figure does not grow."""
+        return round(MOST * self.width)
+
+    @property
+    def scrolls(self) -> bool:
+        """Whether a narrow screen has to scroll it."""
+        return self.least > NARROW
 
 
 def as_address(figure: Figure) -> str:

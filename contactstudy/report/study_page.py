@@ -15,12 +15,12 @@ import xarray as xr
 from contactstudy.analysis.certainty import CARE, NO, UNKNOWN, YES, certainty
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.engineering import with_error
-from contactstudy.report.figures import Picture, as_address
+from contactstudy.report.figures import PIXELS, Picture, as_address
 from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words
+from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words, label
 
 SHOWN = {
     "peak_pressure": "largest pressure",
@@ -30,13 +30,29 @@ SHOWN = {
 }
 """Numbers of a case in the table, with their headings."""
 
+SINGULAR_SHOWN = {
+    "end_intensity_first": "K at end I",
+    "end_intensity_last": "K at end II",
+    "end_load_first": "load on the last a, end I",
+    "end_load_last": "load on the last a, end II",
+}
+"""Numbers that stand for the pressure at a singular end, with their headings: only of such ends."""
+
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
-    "study": "Largest values of the cases over the swept parameters. Bars: stated errors; open marks: no error is "
+    "study": "Largest values of the cases over the swept parameters; where all are singular, the loads on the last "
+    "half-width a at the ends. Bars: stated errors; open marks: no error is "
     "known. An open triangle at the top: singular, there is no largest value.",
 }
 """What figures show, by name."""
+
+
+SIZE = re.compile(r" to ([0-9.]+)%$")
+"""Size of an error at the end of a reason."""
+
+WORST_FIRST = (NO, CARE, UNKNOWN, YES)
+"""Answers."""
 
 
 class Row(NamedTuple):
@@ -65,7 +81,8 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     study = folder.read_study()
     plan = study.plan()
     entries = folder.entries(plan)
-    numbers = [name for name in SHOWN if any(name in entry.scalars for entry in entries)]
+    numbers = [name for name in SHOWN if any(_has_more(entry, name) for entry in entries)]
+    numbers += [name for name in SINGULAR_SHOWN if any(_is_singular(entry, name) for entry in entries)]
     swept = list(dict.fromkeys([*study.sweep, *(name for group in study.zip for name in group), *_explicit(study)]))
     rows = [
         _row(case, entry, _swept_values(plan, case, swept), numbers, number)
@@ -80,11 +97,12 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
         "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
         "headings": [_called(name) for name in swept],
-        "number_headings": [SHOWN[name] for name in numbers],
+        "number_headings": [(SHOWN | SINGULAR_SHOWN)[name] for name in numbers],
+        "intensities": any(name.startswith("end_intensity") for name in numbers),
         "rows": rows,
         "reasons": _reasons(rows),
         "answers": _answers(rows),
-        "doubtful": [row for row in rows if row.real == NO],
+        "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
         "provenance": _provenance(runs),
     }
@@ -118,6 +136,8 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
     for name in swept:
         dim, labels = plan.cube.labels.get(name, ("", ()))
         value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else given.get(name)
+        if isinstance(given.get(name), dict) and value == label(name, given[name]):
+            value = given[name]  # it has no name of its own: say its values
         found.append("" if value is None else in_engineers_words(name, value))
     return found
 
@@ -127,18 +147,47 @@ def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str],
     scalars = entry.scalars
     found = []
     for name in numbers:
-        if name not in scalars:
+        if name not in scalars or (name in SINGULAR_SHOWN and not _is_singular(entry, name)):
             found.append("")
+        elif name.startswith("end_intensity"):
+            found.append(_intensity(scalars, name))
         elif np.isinf(scalars[name]) or (name == "peak_von_mises" and np.isinf(scalars.get("peak_pressure", 0.0))):
             found.append("singular")
         else:
-            error = scalars.get(f"{name}_error")
-            known = error is not None and np.isfinite(error)
-            text = with_error(scalars[name], error if known else None, "Pa")
-            found.append(text if known else f"{text} (error not known)")
+            units = "N" if name.startswith("end_load") else "Pa"
+            found.append(_with_mark(scalars[name], scalars.get(f"{name}_error"), units))
     real, reason = _certainty(entry) if scalars else ("", "")
     note = reason if real == NO else entry.reason
     return Row(f"case-{number}", values, found, entry.status, note, real, reason)
+
+
+def _has_more(entry: Entry, name: str) -> bool:
+    """Whether a case has a number; that a pressure at an end is singular its K says already."""
+    if name not in entry.scalars:
+        return False
+    said = f"end_intensity_{name.rpartition('_')[2]}" in entry.scalars and name.startswith("end_pressure")
+    return not (said and np.isinf(entry.scalars[name]))
+
+
+def _is_singular(entry: Entry, name: str) -> bool:
+    """Whether the end that a number belongs to is singular, and the number is known."""
+    end = name.rpartition("_")[2]
+    return f"end_intensity_{end}" in entry.scalars and np.isfinite(entry.scalars.get(name, np.nan))
+
+
+def _intensity(scalars: Mapping[str, float], name: str) -> str:
+    """K of the law of a singular end; its unit says the exponent."""
+    exponent = scalars[name.replace("intensity", "exponent")]
+    factor = 1e9 * 1e-3**exponent
+    error = scalars.get(f"{name}_error", np.nan)
+    return _with_mark(scalars[name] / factor, error / factor, f"GPa mm^{exponent:.3g}")
+
+
+def _with_mark(value: float, error: float | None, units: str) -> str:
+    """Write a number with its error, or with the mark that it has none."""
+    known = error is not None and np.isfinite(error)
+    text = with_error(value, error if known else None, units)
+    return text if known else f"{text} (error not known)"
 
 
 def _certainty(entry: Entry) -> tuple[str, str]:
@@ -154,10 +203,28 @@ def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     for row in rows:
         if row.real:
             # The size of an error differs from case to case; the sentence before it is the reason.
-            grouped.setdefault((row.real, re.sub(r" to [0-9.]+%$", "", row.reason)), []).append(row)
-    order = (NO, CARE, UNKNOWN, YES)
-    keys = sorted(grouped, key=lambda key: order.index(key[0]))
-    return [(answer, reason, grouped[answer, reason]) for answer, reason in keys]
+            grouped.setdefault((row.real, SIZE.sub("", row.reason)), []).append(row)
+    keys = sorted(grouped, key=lambda key: WORST_FIRST.index(key[0]))
+    return [(answer, _sized(reason, grouped[answer, reason]), grouped[answer, reason]) for answer, reason in keys]
+
+
+def _sized(reason: str, cases: list[Row]) -> str:
+    """Reason of several cases, with the range of the errors that their own reasons end with."""
+    sizes = [float(found[1]) for row in cases if (found := SIZE.search(row.reason))]
+    if not sizes:
+        return reason
+    low, high = min(sizes), max(sizes)
+    return f"{reason} to {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
+
+
+def _verdict(rows: list[Row]) -> tuple[str, str]:
+    """Worst answer of a study's cases, and how many have which; what is not solved needs care."""
+    count = Counter(row.real for row in rows if row.real)
+    worst = next((answer for answer in WORST_FIRST if answer in count), UNKNOWN)
+    if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
+        worst = CARE
+    words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
+    return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
 
 
 def _values(name: str, rows: list[Row], at: int) -> str:
@@ -189,7 +256,9 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
     found = []
     for name, (figure, others) in figures_of_folder(path, selection).items():
         caption = CAPTIONS.get(name, name.replace("_", " "))
-        found.append(Picture(as_address(figure), f"{caption}{_to_choose(others)}"))
+        found.append(
+            Picture(as_address(figure), f"{caption}{_to_choose(others)}", round(PIXELS * figure.get_figwidth()))
+        )
         pyplot.close(figure)
     return found
 

@@ -16,6 +16,7 @@ from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
 from contactstudy.study.parameters import PARAMETERS, completed, counted
 from contactstudy.study.profile_kinds import profile_label
+from contactstudy.study.profile_words import profile_in_words
 from contactstudy.study.setup import Described, check_cells, setup_of
 
 Level = str
@@ -147,7 +148,7 @@ def in_engineers_words(name: str, value: Any) -> str:
     >>> in_engineers_words("radius", 5e-3), in_engineers_words("field_y_over_a", [0.0])
     ('5 mm', '1 value, 0')
     """
-    shown = label(name, value) if isinstance(value, dict) else value
+    shown = profile_in_words(value) if name == "profile" and isinstance(value, dict) else value
     if isinstance(shown, (list, tuple)):
         ends = f"{shown[0]:g}" if len(shown) == 1 else f"{shown[0]:g} to {shown[-1]:g}"
         return f"{len(shown)} value{'s' if len(shown) > 1 else ''}, {ends}"

@@ -74,6 +74,24 @@ def test_two_cases_side_by_side_share_their_colours(page: Page) -> None:
     assert ">1.5 GPa<" in page.table.object
 
 
+def test_two_cases_side_by_side_share_their_axes(page: Page) -> None:
+    page.compare.value = True
+    page.choices[1]["max_pressure"].value = 2
+    for figures in (page.tops, page.planes):
+        spans = [(each.figure.y_range.start, each.figure.y_range.end) for each in figures]
+        drawn = [(each._source.data["y"][0], each._source.data["h"][0]) for each in figures]
+        assert spans[0] == spans[1]
+        assert drawn[0] != drawn[1]
+        for y, height in drawn:
+            assert min(spans[0]) <= y
+            assert y + height <= max(spans[0])
+
+
+def test_one_case_is_not_plural(page: Page, solved: xr.Dataset) -> None:
+    assert ">12 cases<" in page.view()[0].object
+    assert ">1 case<" in Page(of_dataset(solved)).view()[0].object
+
+
 def test_a_case_that_failed_says_why(page: Page) -> None:
     page.choices[0]["friction"].value = 1
     assert ">failed<" in page.table.object
@@ -98,6 +116,11 @@ def test_a_plane_without_stresses_is_said(page: Page) -> None:
     bare = Looked(inner(place).dataset.drop_vars("von_mises"))
     less = Page(Cases(page.cases.scalars, lambda wanted: bare, page.cases.title))
     assert "Its stresses are not computed or not kept." in less.table.object
+    assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
+    assert not less.plane.visible  # there is nothing to choose a plane of
+    assert not less.planes[0].figure.visible
+    assert page.plane.visible
+    less.view()
     assert [pane.visible for pane in less.panes] == [True, True, False, False, False, True]
 
 

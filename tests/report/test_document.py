@@ -11,11 +11,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from matplotlib import pyplot
 
 from contactstudy import InvalidInputError, report
 from contactstudy.cli import main
+from contactstudy.report import study_page
+from contactstudy.report.study_pictures import figures_of_folder
 from contactstudy.study import run_study
-from tests.small_study import small_study
+from contactstudy.study.folder import Entry
+from tests.browser import browser, chromium
+from tests.small_study import BASE, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
 VOID = {"meta", "img", "br", "link", "input"}
@@ -125,6 +130,91 @@ def test_a_study_has_its_cases_its_figures_and_its_failures(folder: Path) -> Non
         assert words in page.text, words
     assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
     assert len(page.fetched) == 2
+
+
+def settled_cases(*parts: float) -> list[study_page.Row]:
+    """Rows of solved cases whose peaks are known to parts of them."""
+    rows = []
+    for part in parts:
+        scalars = {"peak_pressure": 2e9, "peak_pressure_error": part * 2e9, "converged": 1.0}
+        real, reason = study_page._certainty(Entry("ok", scalars=scalars))
+        rows.append(study_page.Row("case-1", [], [], "ok", "", real, reason))
+    return rows
+
+
+def test_a_shared_reason_says_what_is_wrong() -> None:
+    ((answer, reason, cases), (best, _, _)) = study_page._answers(settled_cases(0.1, 0.06, 0.001))
+    assert (answer, len(cases), best) == ("with care", 2, "yes")
+    assert reason == "the peak is known only to 10.0% in the worst case, 6.0% in the best"
+
+
+def test_the_banner_follows_the_worst_answer(folder: Path, tmp_path: Path) -> None:
+    assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
+
+    def coarse(*given, **more) -> xr.Dataset:
+        return solve_fake(*given, **more).assign(peak_pressure=2e9, peak_pressure_error=2e8)
+
+    run_study(small_study(), tmp_path, workers=0, solver=coarse, progress=False)
+    page = report.html(tmp_path)
+    assert 'class="verdict with-care"' in page
+    assert "4 ok; numbers of these: 4 real with care" in Page(page).text
+
+
+def test_inputs_have_the_units_of_engineers_everywhere(tmp_path: Path) -> None:
+    profile = {"kind": "cylinder", "fillet_radius": 1e-4}
+    sweep = {"tilt": [0.0, 3e-4], "profile": ["cylinder", profile | {"fillet_radius": 5e-5}]}
+    study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=sweep)
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    page = Page(report.html(tmp_path))
+    assert "cylinder, fillet radius 50 µm" in page.text
+    assert "0.3 mrad" in page.text
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    assert any("mrad" in ax.get_xlabel() for ax in figure.axes)
+    assert figure.axes[0].lines[0].get_xdata().max() == pytest.approx(0.3)
+    pyplot.close(figure)
+    run_study(
+        small_study(base=BASE | {"profile": profile}), tmp_path / "b", workers=0, solver=solve_fake, progress=False
+    )
+    assert "cylinder, fillet radius 0.1 mm" in Page(report.html(tmp_path / "b")).text
+
+
+def test_singular_ends_have_numbers_and_a_figure(tmp_path: Path) -> None:
+    def sharp(*given, **more) -> xr.Dataset:
+        law = {"end_exponent_first": 0.5, "end_intensity_first": 3.245e6, "end_intensity_first_error": 1.8e4}
+        loads = {"end_load_first": 4.02, "end_load_first_error": 0.02, "end_load_last": 3.0}
+        peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
+        return solve_fake(*given, **more).assign(law | loads | peaks)
+
+    run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
+    page = Page(report.html(tmp_path))
+    for words in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "load on the last a, end I", "4.020 ± 0.020 N"):
+        assert words in page.text, words
+    assert "at end I largest" not in page.text
+    assert "K at end II" not in page.text  # that end is not singular
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert "load on the last" in labels[0]
+    assert not any("largest contact pressure" in label for label in labels)
+    assert [line for line in figure.axes[0].lines if np.isfinite(line.get_ydata()).all()]
+    pyplot.close(figure)
+
+
+@pytest.mark.skipif(chromium() is None, reason="needs Chromium")
+def test_a_study_fits_a_narrow_and_a_wide_screen(folder: Path, tmp_path: Path) -> None:
+    pytest.importorskip("playwright")
+    path = report.write(folder, tmp_path / "study.html")
+    own = {}
+    for width in (420, 1400):
+        with browser(width, 900) as page:
+            page.goto(path.as_uri())
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"
+            own[width] = page.evaluate(widths)
+            hints = page.locator(".hint").evaluate_all("all => all.filter(each => each.offsetParent).length")
+            assert bool(hints) == (width == 420)
+    assert all(shown <= 1.4 * natural + 4 for shown, natural in own[1400])
+    assert all(shown < 400 or shown <= 0.5 * natural + 2 for shown, natural in own[420])
 
 
 def test_the_file_of_a_studys_case_has_its_inputs(folder: Path, tmp_path: Path, capsys) -> None:

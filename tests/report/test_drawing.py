@@ -58,3 +58,11 @@ def test_a_flush_roller_has_no_distance_of_rounding() -> None:
     roller = Roller(radius=4e-3, length=0.9e-3)
     shown = str(draw(Case(body=body, roller=roller, max_pressure=1e9, end_distance=0.3e-3 * (1 + 1e-14))).svg)
     assert "end II: e = 0 " in shown
+
+
+def test_a_tapered_roller_says_that_its_taper_is_not_drawn() -> None:
+    said = draw(case(profile=profiles.Tapered(half_angle=0.05))).caption
+    # The cone's radius across the generatrix: R / cos(beta) -+ tan(beta) L / 2.
+    assert "changes from 3.655 mm to 4.355 mm along it" in said
+    assert "the radius at mid-length all along" in said
+    assert "changes" not in draw(case()).caption
