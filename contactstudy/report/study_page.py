@@ -151,6 +151,8 @@ def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str],
             found.append("")
         elif name.startswith("end_intensity"):
             found.append(_intensity(scalars, name))
+        elif _not_pressed(scalars, name):
+            found.append("not pressed")
         elif np.isinf(scalars[name]) or (name == "peak_von_mises" and np.isinf(scalars.get("peak_pressure", 0.0))):
             found.append("singular")
         else:
@@ -162,11 +164,16 @@ def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str],
 
 
 def _has_more(entry: Entry, name: str) -> bool:
-    """Whether a case has a number; that a pressure at an end is singular its K says already."""
-    if name not in entry.scalars:
+    """Whether a case has a number; that an end is singular its K says already, and one not pressed has no pressure."""
+    if name not in entry.scalars or _not_pressed(entry.scalars, name):
         return False
     said = f"end_intensity_{name.rpartition('_')[2]}" in entry.scalars and name.startswith("end_pressure")
     return not (said and np.isinf(entry.scalars[name]))
+
+
+def _not_pressed(scalars: Mapping[str, float], name: str) -> bool:
+    """Whether a number is the pressure of an end that is not pressed."""
+    return name.startswith("end_pressure") and scalars[name] == 0
 
 
 def _is_singular(entry: Entry, name: str) -> bool:

@@ -148,6 +148,17 @@ def test_a_shared_reason_says_what_is_wrong() -> None:
     assert reason == "the peak is known only to 10.0% in the worst case, 6.0% in the best"
 
 
+def test_ends_that_are_not_pressed_have_no_column(tmp_path: Path) -> None:
+    def rounded(*given, **more) -> xr.Dataset:
+        return solve_fake(*given, **more).assign(end_pressure_first=0.0, end_pressure_last=0.0)
+
+    run_study(small_study(), tmp_path, workers=0, solver=rounded, progress=False)
+    assert "at end" not in Page(report.html(tmp_path)).text
+    entries = [Entry("ok", scalars={"end_pressure_first": value, "end_pressure_last": 0.0}) for value in (0.0, 1e9)]
+    names = [name for name in study_page.SHOWN if any(study_page._has_more(entry, name) for entry in entries)]
+    assert names == ["end_pressure_first"]
+
+
 def test_the_banner_follows_the_worst_answer(folder: Path, tmp_path: Path) -> None:
     assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
     assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
