@@ -1,5 +1,6 @@
 """Files of profilometers, written by SurfaceTopography and read back."""
 
+import logging
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.arrays.instruments import read_heights
+from tests.arrays.test_text_files import FOREIGN
 
 SurfaceTopography = pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")
 
@@ -58,3 +60,18 @@ def test_a_file_without_a_unit_is_refused(tmp_path: Path) -> None:
     SurfaceTopography.Topography(MAP, (1.0, 1.0)).to_matrix(str(tmp_path / "map.asc"))
     with pytest.raises(InvalidInputError, match=r"unit of .*map.asc = None: must be a unit of length"):
         read_heights(tmp_path / "map.asc")
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "message"),
+    [
+        ("a.png", "picture", "a picture"),
+        ("a.prf", "unknown", "none of these knows it: export it as x3p"),
+    ],
+)
+def test_a_file_that_no_reader_knows(tmp_path: Path, capsys, name: str, kind: str, message: str) -> None:
+    (tmp_path / name).write_bytes(10 * FOREIGN[kind][0])
+    with pytest.raises(InvalidInputError, match=rf"columns as text.*SurfaceTopography knows; .*{message}"):
+        read_heights(tmp_path / name)
+    assert logging.getLogger("igor2").hasHandlers()
+    assert capsys.readouterr().err == ""

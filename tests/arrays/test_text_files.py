@@ -1,7 +1,6 @@
 """Text as office programs write it, and files that are no text at all."""
 
 import io
-import logging
 import zipfile
 from pathlib import Path
 
@@ -89,19 +88,3 @@ def test_an_extra_that_would_not_help_is_not_asked_for(tmp_path: Path, monkeypat
     monkeypatch.setattr(instruments, "find_spec", lambda name: None)
     with pytest.raises(InvalidInputError, match=message):
         read_heights(tmp_path / name)
-
-
-@pytest.mark.parametrize(
-    ("name", "kind", "message"),
-    [
-        ("a.png", "picture", "a picture"),
-        ("a.prf", "unknown", "none of these knows it: export it as x3p"),
-    ],
-)
-def test_a_file_that_no_reader_knows(tmp_path: Path, capsys, name: str, kind: str, message: str) -> None:
-    pytest.importorskip("SurfaceTopography", reason="the extra `measured` is not installed")
-    (tmp_path / name).write_bytes(10 * FOREIGN[kind][0])
-    with pytest.raises(InvalidInputError, match=rf"columns as text.*SurfaceTopography knows; .*{message}"):
-        read_heights(tmp_path / name)
-    assert logging.getLogger("igor2").hasHandlers()
-    assert capsys.readouterr().err == ""

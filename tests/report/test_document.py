@@ -211,7 +211,8 @@ def test_singular_ends_have_numbers_and_a_figure(tmp_path: Path) -> None:
     pyplot.close(figure)
 
 
-@pytest.mark.skipif(chromium() is None, reason="needs Chromium")
+@pytest.mark.browser
+@pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
 def test_a_study_fits_a_narrow_and_a_wide_screen(folder: Path, tmp_path: Path) -> None:
     pytest.importorskip("playwright")
     path = report.write(folder, tmp_path / "study.html")
