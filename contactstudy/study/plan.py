@@ -15,8 +15,7 @@ from contactstudy.errors import ContactStudyError
 from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
 from contactstudy.study.identity import fragment, identity_of
 from contactstudy.study.parameters import PARAMETERS, completed, counted
-from contactstudy.study.profile_kinds import profile_label
-from contactstudy.study.profile_words import profile_in_words
+from contactstudy.study.profile_words import profile_in_words, profile_label
 from contactstudy.study.setup import Described, check_cells, setup_of
 
 Level = str

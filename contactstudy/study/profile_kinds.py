@@ -5,8 +5,6 @@ A new profile becomes available to studies by one line, an entry in :data:`PROFI
 
 from __future__ import annotations
 
-import hashlib
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cached_property
@@ -303,33 +301,6 @@ def profile_table(value: object, depth: int = 0) -> Table:
         table["name"] = name
     content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
     return table | KINDS[kind].read(content, depth)
-
-
-def profile_label(table: Mapping[str, Any]) -> str:
-    """Name of a profile on a dimension: its own, or one made from its values.
-
-    Examples
-    --------
-    >>> profile_label({"kind": "cylinder", "fillet_radius": 2e-4})
-    'cylinder fillet_radius=0.0002'
-    >>> profile_label({"kind": "sum", "terms": [{"kind": "cylinder"}, {"kind": "ellipsoid", "crown_radius": 2.0}]})
-    'cylinder + ellipsoid crown_radius=2'
-    """
-    if "name" in table:
-        return str(table["name"])
-    kind = str(table["kind"])
-    if kind == "sum":
-        return " + ".join(profile_label(term) for term in table["terms"])
-    if kind == "halves":
-        return f"{profile_label(table['left'])} | {profile_label(table['right'])}"
-    if kind == "measured":
-        return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
-    if kind == own_profiles.KIND:
-        return f"{table['class']} {table['content'][:8]}"
-    if kind == "effective-length":
-        return f"{profile_label(table['profile'])} over {table['effective_length']:g} m"
-    values = [f"{key}={table[key]:g}" for key in sorted(table) if key != "kind"]
-    return " ".join([kind, *values])
 
 
 def build_profile(table: Mapping[str, Any], around: Surroundings) -> Profile:

@@ -22,7 +22,8 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.motion_kinds import motion_of
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
-from contactstudy.study.profile_kinds import Surroundings, build_profile, profile_label
+from contactstudy.study.profile_kinds import Surroundings, build_profile
+from contactstudy.study.profile_words import profile_label
 
 USUAL_COLUMNS, USUAL_ROWS, USUAL_DEPTHS = 120, 32, 32
 """Cells along x and y of a refined contact, and depths that the solver chooses, roughly; for forecasts only."""

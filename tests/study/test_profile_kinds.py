@@ -13,7 +13,8 @@ from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
 from contactstudy.study.identity import case_id
-from contactstudy.study.profile_kinds import PROFILES, profile_label, profile_table
+from contactstudy.study.profile_kinds import PROFILES, profile_table
+from contactstudy.study.profile_words import profile_label
 from contactstudy.study.setup import build_setup
 from tests.small_study import BASE, as_toml, small_study
 from tests.stand_in_solver import solve_fake
