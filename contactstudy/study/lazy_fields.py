@@ -14,7 +14,7 @@ from contactstudy.arrays.variables import labels
 from contactstudy.checks import FloatArray
 from contactstudy.study.common_cells import OntoCommon, comment_of, common_columns, common_rows, resampled
 from contactstudy.study.cube import Cube
-from contactstudy.study.store import load_variable
+from contactstudy.study.store import Structure, Variables, load_variable
 
 if TYPE_CHECKING:
     import dask.array as da
@@ -27,9 +27,6 @@ CELLS = ("common", "own")
 
 CELL_AXES = ("x", "y")
 """Dimensions of the cells of the contact; stresses at points of their own have others."""
-
-Structure = tuple[dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]], xr.Dataset]
-"""Dimensions, type and attributes of a case's variables, and its coordinates."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,13 +57,12 @@ class Fields:
     ) -> None:
         self._dataset, self._cube, self._paths, self._structures, self._cells = dataset, cube, paths, structures, cells
         self._positions: dict[str, dict[Place, FloatArray]] = {}
-        self._specifications: dict[str, tuple[tuple[str, ...], np.dtype[Any], dict[str, Any]]] = {}
-        for place, (variables, coordinates) in structures.items():
+        self._specifications: Variables = {}
+        for place, (variables, positions) in structures.items():
             for name, specification in variables.items():
                 self._specifications.setdefault(name, specification)
-                for dim in specification[0]:
-                    values = np.asarray(coordinates[dim].values, dtype=np.float64)
-                    self._positions.setdefault(dim, {})[place] = values
+                for dim in specification.dims:
+                    self._positions.setdefault(dim, {})[place] = np.asarray(positions[dim], dtype=np.float64)
         # Over the half-width of the case they are numbers near one.
         self._half_width = dataset["hertz_half_width"].values if "hertz_half_width" in dataset else None
 
@@ -134,9 +130,9 @@ class Fields:
         """Widths of each case's cells along a dimension; empty if none has cells of different widths."""
         name = f"{dim}_width"
         return {
-            place: np.asarray(coordinates[name].values, dtype=np.float64)
-            for place, (_, coordinates) in self._structures.items()
-            if name in coordinates
+            place: np.asarray(structure.positions[name], dtype=np.float64)
+            for place, structure in self._structures.items()
+            if name in structure.positions
         }
 
     def _common(

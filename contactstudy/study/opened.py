@@ -17,7 +17,7 @@ from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lazy_fields import CELLS, Fields, Place
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import Plan, PlannedCase
-from contactstudy.study.store import read_structure, scalar_attributes
+from contactstudy.study.store import Raw, Variables, read_structure, scalar_attributes
 
 
 def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
@@ -84,9 +84,10 @@ def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
         if entry.path and entry.run.get("level") != "summary"
     }
     structures = {}
+    alike: dict[Raw, Variables] = {}
     for position, path in usable.items():
         try:
-            structures[position] = read_structure(path)
+            structures[position] = read_structure(path, alike)
         except StoreError:  # removed or replaced this very moment by a run that goes on
             continue
     if structures:

@@ -12,8 +12,9 @@ from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Folder
 from contactstudy.study.process import process_name
 from contactstudy.study.setup import build_setup
-from contactstudy.study.store import load_case, read_header, remove_dead_parts, write_text
+from contactstudy.study.store import load_case, read_header, read_structure, remove_dead_parts, write_text
 from tests.small_study import BASE, identity, small_study
+from tests.solved_case import solved_case
 from tests.stand_in_solver import solve_fake
 
 
@@ -50,6 +51,29 @@ def test_other_readers_open_it(case_file):
     np.testing.assert_array_equal(values, expected()["pressure"])
     with xr.open_dataset(case_file, engine="h5netcdf") as dataset:
         assert json.loads(dataset.attrs["contactstudy_case"])["e_over_a"] == 1
+
+
+def test_the_structure_of_a_file_is_what_xarray_says(tmp_path):
+    result = solved_case()
+    result = result.assign(pressed=result["pressure"] > 0, counts=("unnamed", np.arange(3)))
+    result = result.assign_coords(x_width=("x", np.gradient(result["x"])))
+    result.rename(traction_y="shear_traction").to_netcdf(tmp_path / "case.nc")
+    structure = read_structure(tmp_path / "case.nc", {})
+    stored = load_case(tmp_path / "case.nc")
+    assert {"pressed", "traction_y", "counts"} <= set(structure.variables)
+    assert set(structure.variables) == {name for name, entry in stored.data_vars.items() if entry.ndim}
+    for name, (dims, dtype, attributes) in structure.variables.items():
+        assert (dims, dtype, attributes) == (stored[name].dims, stored[name].dtype, stored[name].attrs), name
+    for name in ("x", "y", "z", "x_width"):
+        np.testing.assert_array_equal(structure.positions[name], stored[name])
+    np.testing.assert_array_equal(structure.positions["unnamed"], [0, 1, 2])
+
+
+def test_files_alike_share_what_xarray_says_of_the_first(case_file):
+    alike = {}
+    first, second = (read_structure(case_file, alike) for _ in range(2))
+    assert first.variables is second.variables
+    assert len(alike) == 1
 
 
 def test_every_variable_says_what_it_is(case_file):
