@@ -1,8 +1,7 @@
 """``dataset.contact``: the functions of :mod:`contactstudy.analysis` as methods of every Dataset.
 
 ``import contactstudy`` alone does not import xarray, to stay fast. The accessor is registered once xarray is imported
-and any public name of contactstudy has been used. To open a file with xarray alone, import
-``contactstudy.analysis.accessor`` first.
+and any public name of contactstudy has been used, or xarray opens a file (:mod:`contactstudy.study.xarray_backend`).
 """
 
 from __future__ import annotations

@@ -80,3 +80,11 @@ def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:
 def test_it_is_there_whatever_is_imported_first(first: str) -> None:
     code = f"{first}\nimport xarray\nxarray.Dataset().contact"
     subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.system
+def test_it_is_there_for_a_file_that_xarray_opens_alone(solved: xr.Dataset, tmp_path) -> None:
+    solved.to_netcdf(tmp_path / "case.nc")
+    code = "import sys, xarray; print(xarray.open_dataset(sys.argv[1]).contact.short())"
+    run = subprocess.run([sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True)
+    assert "Hertz pressure p0" in run.stdout
