@@ -34,6 +34,7 @@ from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.stress import contact_stresses, end_traction_residual, stress_dataset
+from contactstudy.interrupts import BriefInterrupt
 from contactstudy.kernels.load import Load
 
 LOGGER = logging.getLogger(__name__)
@@ -135,79 +136,78 @@ def solve(
     checks.instance("case", case, Case, "a Case")
     check_balanced(case)
     began = time.perf_counter()
-    known = xr.Dataset()
-    slides = isinstance(case.motion, Sliding)
-    found: FrictionalContact | None = None
-    cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
-    asked = case
-    if cells != "refined" and accuracy is not None:
-        instead = "a grid is solved as it is" if grid is not None else "rough surfaces are solved on uniform cells"
-        raise InvalidInputError("accuracy", accuracy, f"left out here: {instead}", "see error_estimate")
-    if grid is None and roughness is None:
-        accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
-        at = _settled(case, accuracy, checks.positive("tolerance", tolerance))
-        case, settled = at
-        contact, known = _checked(case, settled.contact), settled_values(settled)
-        if not slides:
-            rubbed = settled_tractions(case, settled, accuracy)
-            found, known = rubbed.found, settled_values(rubbed.settled).assign(rubbed.errors().data_vars)
-            found.warn_unless_converged(stacklevel=2)
+    with BriefInterrupt():
+        known = xr.Dataset()
+        slides = isinstance(case.motion, Sliding)
+        found: FrictionalContact | None = None
+        cells = "refined" if grid is None and roughness is None else "chosen" if grid is None else "given"
+        asked = case
+        if cells != "refined" and accuracy is not None:
+            instead = "a grid is solved as it is" if grid is not None else "rough surfaces are solved on uniform cells"
+            raise InvalidInputError("accuracy", accuracy, f"left out here: {instead}", "see error_estimate")
+        if grid is None and roughness is None:
+            accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
+            at = _settled(case, accuracy, checks.positive("tolerance", tolerance))
+            case, settled = at
+            contact, known = _checked(case, settled.contact), settled_values(settled)
+            if not slides:
+                rubbed = settled_tractions(case, settled, accuracy)
+                found, known = rubbed.found, settled_values(rubbed.settled).assign(rubbed.errors().data_vars)
+                found.warn_unless_converged(stacklevel=2)
+                contact = found.contact
+            if asked.approach is not None:
+                known["normal_load_error"] = load_error(at)
+        elif grid is None:
+            # At an approach the cells are those of the smooth roller, though the rough one carries another load.
+            sized = case if case.approach is None else settled_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
+            contact = _contact(case, choose_grid(sized), roughness, tolerance)
+        else:
+            checks.instance("grid", grid, Grid, "a Grid")
+            contact = _contact(case, grid, roughness, tolerance)
+        if not slides and found is None:
+            found = _with_tractions(case, contact)
             contact = found.contact
-        if asked.approach is not None:
-            known["normal_load_error"] = load_error(at)
-    elif grid is None:
-        # At an approach the cells are those of the smooth roller, though the rough one carries another load.
-        sized = case if case.approach is None else settled_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
-        contact = _contact(case, choose_grid(sized), roughness, tolerance)
-    else:
-        checks.instance("grid", grid, Grid, "a Grid")
-        contact = _contact(case, grid, roughness, tolerance)
-    if not slides and found is None:
-        found = _with_tractions(case, contact)
-        contact = found.contact
-    case = _under_its_load(asked, contact)
-    grid = contact.shape.grid
-    result = _labelled(case, contact)
-    loads = sliding(contact.pressure, case.friction_on(grid.x)) if found is None else found.loads
-    if found is not None:
-        result = labelled(result, found)
-    result = result.assign(known.data_vars)
-    if error_estimate and not known:
-        if min(grid.shape) < LEAST_CELLS:
-            raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
-        if roughness is not None:
-            raise InvalidInputError("error_estimate", True, "False with roughness, which other cells would not resolve")
-        coarse = _labelled(case, _contact(asked, grid.coarsened(), None, tolerance))
-        errors = discretisation_error(result.assign(hertz_half_width=case.hertz_half_width), coarse)
-        result = result.assign(errors.data_vars)
-    contact_seconds = time.perf_counter() - began
-    LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
-    half_width = case.hertz_half_width
-    result = result.assign(
-        initial_gap=(("x", "y"), contact.shape.gap.values.copy()),
-        hertz_half_width=half_width,
-        hertz_max_pressure=case.hertz_max_pressure,
-    )
-    looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
-    if stresses:
-        depths = half_width * np.array(DEPTHS) if z is None else z
-        positions = field_positions(case.body, grid, x, y, depths)
-        field, residual, largest = contact_stresses(case.body, loads, grid, positions, *looked_at)
-        if x is not None or y is not None:
-            field = field.rename({"x": "x_field", "y": "y_field"})
-        result = result.assign_coords(field.coords).assign(field.data_vars)
-        result = result.assign(settled_peak(result, *largest).data_vars)
-    else:
-        residual = end_traction_residual(case.body, loads, grid, *looked_at)
-    result["end_traction_residual"] = residual
-    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
-    stages = {"contact": contact_seconds, "stresses": time.perf_counter() - began - contact_seconds}
-    LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
-    described = describe(result, "roller on an elastic body: contact and stresses")
-    settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
-    if accuracy is not None:
-        settings["accuracy"] = float(accuracy)
-    return with_provenance(described, asked, settings, stages)
+        case = _under_its_load(asked, contact)
+        grid = contact.shape.grid
+        result = _labelled(case, contact)
+        loads = sliding(contact.pressure, case.friction_on(grid.x)) if found is None else found.loads
+        if found is not None:
+            result = labelled(result, found)
+        result = result.assign(known.data_vars)
+        if error_estimate and not known:
+            if roughness is not None:
+                raise InvalidInputError(
+                    "error_estimate", True, "False with roughness, which other cells would not resolve"
+                )
+            result = result.assign(_discretisation_errors(case, asked, result, grid, tolerance).data_vars)
+        contact_seconds = time.perf_counter() - began
+        LOGGER.info("contact: %d x %d cells, %.2f s", *grid.shape, contact_seconds)
+        half_width = case.hertz_half_width
+        result = result.assign(
+            initial_gap=(("x", "y"), contact.shape.gap.values.copy()),
+            hertz_half_width=half_width,
+            hertz_max_pressure=case.hertz_max_pressure,
+        )
+        looked_at = [half_width * np.array(places) for places in (RESIDUAL_POSITIONS, RESIDUAL_DEPTHS)]
+        if stresses:
+            depths = half_width * np.array(DEPTHS) if z is None else z
+            positions = field_positions(case.body, grid, x, y, depths)
+            field, residual, largest = contact_stresses(case.body, loads, grid, positions, *looked_at)
+            if x is not None or y is not None:
+                field = field.rename({"x": "x_field", "y": "y_field"})
+            result = result.assign_coords(field.coords).assign(field.data_vars)
+            result = result.assign(settled_peak(result, *largest).data_vars)
+        else:
+            residual = end_traction_residual(case.body, loads, grid, *looked_at)
+        result["end_traction_residual"] = residual
+        result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
+        stages = {"contact": contact_seconds, "stresses": time.perf_counter() - began - contact_seconds}
+        LOGGER.info("%s: %.2f s", "stresses" if stresses else "what is left on the ends", stages["stresses"])
+        described = describe(result, "roller on an elastic body: contact and stresses")
+        settings = {"cells": cells, "tolerance": float(tolerance), "rough": roughness is not None}
+        if accuracy is not None:
+            settings["accuracy"] = float(accuracy)
+        return with_provenance(described, asked, settings, stages)
 
 
 def _settled(case: Case, accuracy: float, tolerance: float) -> AtApproach:
@@ -215,6 +215,14 @@ def _settled(case: Case, accuracy: float, tolerance: float) -> AtApproach:
     if case.approach is None:
         return AtApproach(case, settled_contact(case, accuracy, tolerance))
     return settled_at_approach(case, accuracy, tolerance)
+
+
+def _discretisation_errors(case: Case, asked: Case, result: xr.Dataset, grid: Grid, tolerance: float) -> xr.Dataset:
+    """Errors of a contact on given cells, from that on half of them."""
+    if min(grid.shape) < LEAST_CELLS:
+        raise InvalidInputError("grid", grid.shape, f"at least {LEAST_CELLS} cells each way for an error estimate")
+    coarse = _labelled(case, _contact(asked, grid.coarsened(), None, tolerance))
+    return discretisation_error(result.assign(hertz_half_width=case.hertz_half_width), coarse)
 
 
 def _under_its_load(case: Case, contact: Contact) -> Case:

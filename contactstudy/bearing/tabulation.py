@@ -16,6 +16,7 @@ from contactstudy.bearing.nodes import Presser, discretisation_errors, solved_no
 from contactstudy.case.case import LARGEST_TILT, Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.interrupts import BriefInterrupt
 
 LOADS, DEFAULT_APPROACHES = (0.03, 1.5), 8
 """Loads over the case's whose approaches are the ends of the default table, and how many lines it has."""
@@ -82,16 +83,17 @@ def contact_law(
     if np.abs(turned).max() > LARGEST_TILT:
         raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
     presser = Presser(case, checks.positive("accuracy", accuracy), checks.positive("tolerance", tolerance))
-    if approaches is None:
-        first, last = (presser.loaded(part * case.normal_load, 0.0).approach for part in LOADS)
-        lowered = np.geomspace(first, last, DEFAULT_APPROACHES)
-    else:
-        lowered = _increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
-        checks.positive("approaches", float(lowered[0]), "metres")
-    nodes = solved_nodes(presser, lowered, turned)
-    length = case.contact_length
-    fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
-    return ContactLaw(law_table(presser, nodes, fit.plus(cells)))
+    with BriefInterrupt():
+        if approaches is None:
+            first, last = (presser.loaded(part * case.normal_load, 0.0).approach for part in LOADS)
+            lowered = np.geomspace(first, last, DEFAULT_APPROACHES)
+        else:
+            lowered = _increasing("approaches", numbers_in_si("approaches", approaches, "m"), "metres")
+            checks.positive("approaches", float(lowered[0]), "metres")
+        nodes = solved_nodes(presser, lowered, turned)
+        length = case.contact_length
+        fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
+        return ContactLaw(law_table(presser, nodes, fit.plus(cells)))
 
 
 def _check_case(case: Case) -> None:

@@ -27,6 +27,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.surface import displacement_reference
+from contactstudy.interrupts import BriefInterrupt
 from contactstudy.kernels.load import Load
 
 FULL_SLIDING = Sliding()
@@ -170,16 +171,17 @@ def solve_contact(
     )
     settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
     x, y = gap["x"].values, gap["y"].values
-    if isinstance(motion, Sliding):
-        contact = contact_of(shape, settings)
-        contact.warn_unless_converged(stacklevel=2)
-        return contact_dataset(contact, on_cells, x=x, y=y)
-    before = None if after is None else _before(after, motion, gap, body)
-    facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
-    middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-    found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
-    found.warn_unless_converged(stacklevel=2)
-    return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
+    with BriefInterrupt():
+        if isinstance(motion, Sliding):
+            contact = contact_of(shape, settings)
+            contact.warn_unless_converged(stacklevel=2)
+            return contact_dataset(contact, on_cells, x=x, y=y)
+        before = None if after is None else _before(after, motion, gap, body)
+        facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
+        middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
+        found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
+        found.warn_unless_converged(stacklevel=2)
+        return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
 
 
 def _before(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:

@@ -19,6 +19,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.design.evaluations import Design, Evaluations, Measure, Range
 from contactstudy.design.search import fewest, flat_range, optimum
 from contactstudy.errors import BoundWarning, InvalidInputError
+from contactstudy.interrupts import BriefInterrupt
 from contactstudy.profiles.base import Profile
 
 AT_BOUND = 0.01
@@ -117,8 +118,9 @@ def best_profile(
         check_accuracy(accuracy),
         dict(settings),
     )
-    best = optimum(looked_at, checks.count("evaluations", evaluations, least=fewest(len(ranges))))
-    ends = [flat_range(looked_at, best, index) for index in range(len(ranges))]
+    with BriefInterrupt():
+        best = optimum(looked_at, checks.count("evaluations", evaluations, least=fewest(len(ranges))))
+        ends = [flat_range(looked_at, best, index) for index in range(len(ranges))]
     # While the ends were sought, something may have turned out to be as good, within the errors.
     found = _dataset(looked_at, min(looked_at.known, key=lambda design: design.value), ends)
     _warn_at_bounds(found)

@@ -22,6 +22,7 @@ from contactstudy.fields.part import reference_of
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.fields.search import search_under
+from contactstudy.interrupts import BriefInterrupt
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping.field import Place
@@ -93,7 +94,8 @@ def stress_field(
     grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     positions = field_positions(body, grid, x, y, z, own)
     checks.instance("smooth", smooth, (bool, np.bool_), "True or False")
-    return stress_dataset(body, loads, grid, positions, smooth=bool(smooth))
+    with BriefInterrupt():
+        return stress_dataset(body, loads, grid, positions, smooth=bool(smooth))
 
 
 def stress_dataset(

@@ -26,6 +26,7 @@ from contactstudy.contact.contact import Settings, Shape
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import settled_contact
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.interrupts import BriefInterrupt
 from contactstudy.profiles.base import checked_drop
 from contactstudy.wear.profile import check_same_roller
 from contactstudy.wear.steps import State, Stepper
@@ -149,15 +150,16 @@ def wear_in(
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
     contact = WornContact(case, shape, Settings(max_iterations=MOST_ITERATIONS))
     stepper = Stepper(contact, rate / around, law, tolerance)
-    first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth, error)
-    if not first.slip.any():
-        raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
-    _check_depth(case, stepper, first, float(stops[-1]))
-    states, steps = [first], [stepper.first_step(first) if step is None else step]
-    for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
-        if every or state.distance in stops:
-            states.append(state)
-            steps.append(ahead)
+    with BriefInterrupt():
+        first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth, error)
+        if not first.slip.any():
+            raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
+        _check_depth(case, stepper, first, float(stops[-1]))
+        states, steps = [first], [stepper.first_step(first) if step is None else step]
+        for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
+            if every or state.distance in stops:
+                states.append(state)
+                steps.append(ahead)
     settings = {"coefficient": rate, "law": law, "circumference": float(around), "tolerance": tolerance}
     worn = _labelled(case, stepper, states, steps, around)
     return with_provenance(worn, case, settings, {"wear": time.perf_counter() - began})
