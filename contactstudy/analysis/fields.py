@@ -46,6 +46,22 @@ def fields_on_one_grid(
         fields = {name: dataset[name] for name in inside or wide}
     grids = {tuple(axis_dimensions(array).values()) for array in fields.values()}
     if len(grids) != 1 or grids == {()}:
-        shown = {name: array.dims for name, array in fields.items()}
-        raise InvalidInputError("variables", shown, "fields on the same points along x, y or z", "name some of them")
+        raise InvalidInputError(
+            "variables", variables or "all", "fields on the same points along x, y or z", choice(fields)
+        )
     return fields
+
+
+def choice(arrays: dict[str, xr.DataArray]) -> str:
+    """Return which of the variables lie on the same points, as a hint.
+
+    Examples
+    --------
+    >>> choice({"pressure": xr.DataArray([[1.0]], dims=("x", "y")), "normal_load": xr.DataArray(1.0)})
+    'name some on the same points: pressure (x, y) or normal_load (a single number)'
+    """
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, array in arrays.items():
+        groups.setdefault(tuple(map(str, array.dims)), []).append(name)
+    told = [f"{', '.join(names)} ({', '.join(dims) or 'a single number'})" for dims, names in groups.items()]
+    return f"name some on the same points: {' or '.join(told)}" if told else "there is no such variable in the dataset"

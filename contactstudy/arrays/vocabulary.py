@@ -82,6 +82,7 @@ COORDINATES = {
     "case_load": Variable(("case",), "N", "W", "normal load of the case"),
     "case_tilt": Variable(("case",), "rad", r"\vartheta", "tilt of the case"),
     "parameter": Variable(PARAMETER, "", "", "parameter of the profile"),
+    "parameter_units": Variable(PARAMETER, "", "", "unit of the parameter", "empty where it is not known"),
     "raceway": Variable(("raceway",), "", "", "raceway"),
     "roller": Variable(("roller",), "1", "j", "number of the roller"),
     "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to its reference"),

@@ -20,7 +20,7 @@ from contactstudy.design.evaluations import Design, Evaluations, Measure, Range
 from contactstudy.design.search import fewest, flat_range, optimum
 from contactstudy.errors import BoundWarning, InvalidInputError
 from contactstudy.interrupts import BriefInterrupt
-from contactstudy.profiles.base import Profile
+from contactstudy.profiles.base import Profile, unit_of
 
 AT_BOUND = 0.01
 """Part of a range by which an optimum is away from its bound if it is one of its own. Accuracy."""
@@ -73,9 +73,10 @@ def best_profile(
     Dataset
         Along `parameter`: `optimum`; `flat_from` and `flat_to`, between which that parameter, alone, changes the
         measure by less than the errors of both values; `lower_bound` and `upper_bound`, and whether the optimum lies at
-        one of them, `at_bound`. `measure` of the optimum in its worst case and `measure_error`. Along `evaluation`
-        everything that was looked at: `design` (evaluation, parameter), `design_measure`, `design_measure_error`, and
-        `case_measure` (evaluation, case) with the coordinates `case_load` (N) and `case_tilt` (rad).
+        one of them, `at_bound`; the coordinate `parameter_units`, empty for a function or class of one's own. `measure`
+        of the optimum in its worst case and `measure_error`. Along `evaluation` everything that was looked at: `design`
+        (evaluation, parameter), `design_measure`, `design_measure_error`, and `case_measure` (evaluation, case) with
+        the coordinates `case_load` (N) and `case_tilt` (rad).
         ``profile(**found.optimum.to_series())`` is the profile.
 
     Raises
@@ -209,6 +210,7 @@ def _dataset(looked_at: Evaluations, best: Design, ends: list[tuple[float, float
         arrays,
         coords={
             "parameter": names,
+            "parameter_units": ("parameter", [unit_of(looked_at.profile, name) for name in names]),
             "evaluation": np.arange(1, len(known) + 1),
             "case": np.arange(1, len(looked_at.cases) + 1),
             "case_load": ("case", [each.normal_load for each in looked_at.cases]),

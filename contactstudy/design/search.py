@@ -23,6 +23,12 @@ FAR = 1e3
 CUT = 20.0
 """Errors beyond which a difference from the optimum is not told apart while its end is sought. Speed."""
 
+SHARP = (
+    "a pressure or stress is infinite where an end of the contact is sharp: widen the bounds until the ends drop "
+    "enough, take a profile with rounded ends, or a measure that is finite there, such as 'end_load_last'"
+)
+"""What to do where nothing that is looked at has a finite measure."""
+
 
 def fewest(parameters: int) -> int:
     """Least number of designs of a search: those that are looked at first, and one more."""
@@ -43,7 +49,7 @@ def optimum(evaluations: Evaluations, most: int) -> Design:
         if evaluations.refused is not None:
             raise evaluations.refused
         bounds = {name: (each.low, each.high) for name, each in evaluations.ranges.items()}
-        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them")
+        raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", SHARP)
     ceiling = FAR * max(abs(first.value), np.finfo(np.float64).tiny)
 
     def least(parts: FloatArray) -> float:

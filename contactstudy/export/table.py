@@ -10,6 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
+from contactstudy.analysis.fields import choice
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import UNBOUNDED, variable_of
 from contactstudy.errors import InvalidInputError
@@ -61,9 +62,9 @@ def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | No
     else:
         names = [variables] if isinstance(variables, str) else list(variables)
         chosen = {name: measure(dataset, name) for name in names}
-    shapes = {name: array.dims for name, array in chosen.items()}
-    if len({frozenset(dims) for dims in shapes.values()}) != 1 or not all(shapes.values()):
-        raise InvalidInputError("variables", shapes, "variables on the same points", "name some of them")
+    shapes = [array.dims for array in chosen.values()]
+    if len({frozenset(dims) for dims in shapes}) != 1 or not all(shapes):
+        raise InvalidInputError("variables", variables or "all", "variables on the same points", choice(chosen))
     return xr.Dataset(chosen)
 
 

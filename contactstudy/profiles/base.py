@@ -73,6 +73,19 @@ class Shape:
     __radd__ = __add__
 
 
+def unit_of(profile: object, name: str) -> str:
+    """Return the unit of a number of a profile's class; it is empty for a class or function of one's own.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import FujiwaraKawase
+    >>> [unit_of(FujiwaraKawase, name) for name in ("amplitude", "k1", "other")], unit_of(lambda k1: None, "k1")
+    (['m', '1', ''], '')
+    """
+    own = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
+    return UNITS.get(name, "m") if own and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
+
+
 def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
     """Summands of a profile; itself unless it is a sum."""
     return profile.terms if isinstance(profile, Sum) else (profile,)

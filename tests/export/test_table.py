@@ -47,7 +47,7 @@ def test_a_case_of_a_study(opened: xr.Dataset) -> None:
 @pytest.mark.parametrize(
     ("settings", "message"),
     [
-        ({}, "name some of them"),
+        ({}, r"pressure, .* \(x, y\) or sigma_xx, .* \(x_field, y_field, z\)"),
         ({"variables": ["pressure", "von_mises"]}, "same points"),
         ({"variables": "pressures"}, "did you mean"),
         ({"variables": "normal_load"}, "same points"),
