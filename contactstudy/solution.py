@@ -153,7 +153,7 @@ def solve(
             if not slides:
                 rubbed = settled_tractions(case, settled, accuracy)
                 found, known = rubbed.found, settled_values(rubbed.settled).assign(rubbed.errors().data_vars)
-                found.warn_unless_converged(stacklevel=2)
+                found.warn_unless_converged()
                 contact = found.contact
             if asked.approach is not None:
                 known["normal_load_error"] = load_error(at)
@@ -271,7 +271,7 @@ def _with_tractions(case: Case, contact: Contact) -> FrictionalContact:
     found = frictional_contact(
         contact.shape, contact.settings, case.motion, friction, case.roller_middle, coupled=case.coupled
     )
-    found.warn_unless_converged(stacklevel=3)
+    found.warn_unless_converged()
     return found
 
 
@@ -279,7 +279,7 @@ def _checked(case: Case, contact: Contact) -> Contact:
     """Return a contact that does not stand on the roller's end; warn unless it converged."""
     shape = contact.shape
     check_on_its_length(_under_its_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
-    contact.warn_unless_converged(stacklevel=4)
+    contact.warn_unless_converged()
     return contact
 
 

@@ -71,7 +71,7 @@ class Presser:
         with _refused(load, tilt):
             found = pressed_to(changed(self.case, tilt=tilt), approach, load, self.accuracy, self.tolerance)
         contact = found.settled.contact
-        contact.warn_unless_converged(stacklevel=4)
+        contact.warn_unless_converged()
         return self.node(contact)
 
     def node(self, contact: Contact) -> Node:

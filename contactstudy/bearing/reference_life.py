@@ -83,7 +83,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     part = checks.positive("gamma", gamma)
     if part >= 1:
         raise InvalidInputError("gamma", part, "below 1, roller diameter over pitch diameter")
-    question_values(dynamic_rating=rating, stacklevel=2)
+    question_values(dynamic_rating=rating)
     ratio = 1.038 * ((1 - part) / (1 + part)) ** (143 / 108)
     base = rating / (REDUCTION * count * rows ** (7 / 9))
     inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)

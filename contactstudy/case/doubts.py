@@ -7,7 +7,6 @@ stop makes it an error.
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -18,6 +17,7 @@ import numpy as np
 
 from contactstudy.arrays.engineering import quantity
 from contactstudy.bodies.models import FiniteLengthSpace
+from contactstudy.caller import warn
 from contactstudy.checks import FloatArray
 from contactstudy.errors import MagnitudeWarning
 from contactstudy.profiles.base import Shape, checked_drop
@@ -113,20 +113,20 @@ def doubts(case: Case) -> tuple[str, ...]:
 def question(case: Case) -> None:
     """Warn of doubtful magnitudes of a case, once for all of them; the warning points to where the case is made."""
     if _QUESTIONED.get():
-        _warn(doubts(case), stacklevel=5)
+        _warn(doubts(case))
 
 
-def question_values(*, stacklevel: int, **values: float | FloatArray) -> None:
-    """Warn of doubtful magnitudes by name, of arrays by their smallest and largest; `stacklevel` from the caller on."""
+def question_values(**values: float | FloatArray) -> None:
+    """Warn of doubtful magnitudes by name, of arrays by their smallest and largest."""
     if _QUESTIONED.get():
         ends = ((name, end) for name, value in values.items() for end in np.unique([np.min(value), np.max(value)]))
-        _warn([_doubt(name, name, float(end)) for name, end in ends], stacklevel=stacklevel + 2)
+        _warn([_doubt(name, name, float(end)) for name, end in ends])
 
 
-def _warn(questions: Iterable[str], stacklevel: int) -> None:
+def _warn(questions: Iterable[str]) -> None:
     """Warn of the questions that there are."""
     if found := "; ".join(question for question in questions if question):
-        warnings.warn(f"doubtful, for units are SI: {found}; {SILENCE}", MagnitudeWarning, stacklevel=stacklevel)
+        warn(f"doubtful, for units are SI: {found}; {SILENCE}", MagnitudeWarning)
 
 
 def changed(case: Case, **changes: Any) -> Case:

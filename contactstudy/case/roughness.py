@@ -214,7 +214,7 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
     [[1.5], [2.5]]
     """
     values, own = labelled_cells("roughness", in_si("roughness", heights, "m"))
-    question_values(roughness=float(np.ptp(values)), stacklevel=5)  # where `solve` is called
+    question_values(roughness=float(np.ptp(values)))
     if own.shape == grid.shape and all(
         np.allclose(place, centres, rtol=0.0, atol=SAME_PLACE * step)
         for place, centres, step in ((own.x, grid.x, grid.dx), (own.y, grid.y, grid.dy))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import asdict, dataclass
 from typing import NamedTuple
 
@@ -12,6 +11,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, kept
+from contactstudy.caller import warn
 from contactstudy.checks import FloatArray
 from contactstudy.contact.certificate import Certificate, certify
 from contactstudy.contact.conjugate_gradients import ContactIterate
@@ -117,17 +117,16 @@ class Contact:
         forces = grid.weights * self.pressure
         return float((forces * grid.x[:, None]).sum() / forces.sum())
 
-    def warn_unless_converged(self, stacklevel: int) -> None:
+    def warn_unless_converged(self) -> None:
         """Say by how much the contact misses its conditions, if it did not converge."""
         if self.converged:
             return
         violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(self.certificate).items() if value)
         tolerance, most = self.settings
-        warnings.warn(
+        warn(
             f"the contact iteration stopped after {self.iterations} operator applications without reaching "
             f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {most}) or coarsen the grid",
             ConvergenceWarning,
-            stacklevel=stacklevel + 1,
         )
 
 

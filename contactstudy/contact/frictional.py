@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -11,6 +10,7 @@ import xarray as xr
 
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
+from contactstudy.caller import warn
 from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
@@ -74,9 +74,9 @@ class FrictionalContact:
         """Whether every iteration reached its tolerance."""
         return self.settled and self.tractions.converged and self.contact.converged
 
-    def warn_unless_converged(self, stacklevel: int) -> None:
+    def warn_unless_converged(self) -> None:
         """Say by how much the result misses its conditions, if it did not converge."""
-        self.contact.warn_unless_converged(stacklevel + 1)
+        self.contact.warn_unless_converged()
         found = self.tractions
         if self.settled and found.converged:
             return
@@ -86,10 +86,9 @@ class FrictionalContact:
             if not found.converged
             else f"pressure and tractions still change each other after {ROUNDS} rounds"
         )
-        warnings.warn(
+        warn(
             f"stick and slip did not converge: {reason}; raise max_iterations or change the grid",
             ConvergenceWarning,
-            stacklevel=stacklevel + 1,
         )
 
     def dataset(self) -> xr.Dataset:

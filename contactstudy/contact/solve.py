@@ -174,13 +174,13 @@ def solve_contact(
     with BriefInterrupt():
         if isinstance(motion, Sliding):
             contact = contact_of(shape, settings)
-            contact.warn_unless_converged(stacklevel=2)
+            contact.warn_unless_converged()
             return contact_dataset(contact, on_cells, x=x, y=y)
         before = None if after is None else _before(after, motion, gap, body)
         facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
         middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
         found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
-        found.warn_unless_converged(stacklevel=2)
+        found.warn_unless_converged()
         return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
 
 

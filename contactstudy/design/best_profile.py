@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
@@ -13,6 +12,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
+from contactstudy.caller import warn
 from contactstudy.case.case import Case, small_tilt
 from contactstudy.case.settings import check_accuracy
 from contactstudy.checks import FloatArray
@@ -132,11 +132,10 @@ def _warn_at_bounds(found: xr.Dataset) -> None:
     """Warn of parameters whose best value is a bound."""
     for one in found["parameter"].values[found["at_bound"].values]:
         value, low, high = (float(found[name].sel(parameter=one)) for name in ("optimum", "lower_bound", "upper_bound"))
-        warnings.warn(
+        warn(
             f"the best {one} = {value:.4g} lies at a bound ({low:g} to {high:g}): beyond it may be a better one; "
             "widen the bounds if a roller can be made so",
             BoundWarning,
-            stacklevel=3,
         )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.case.case import Case
+from contactstudy.case.doubts import unquestioned
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError, InvalidInputError, WindowError
 from contactstudy.profiles.base import Profile
@@ -136,9 +138,11 @@ class Evaluations:
         pairs = np.full((len(self.cases), 2), np.inf)
         try:
             profile = self._made(self.parameters(parts))
-            for index, case in enumerate(self.cases):
-                roller = replace(case.roller, profile=profile)
-                pairs[index] = self._measured(replace(case, roller=roller))
+            # The bounds are questioned once, at the first design, and not at each.
+            with unquestioned() if self.known else nullcontext():
+                cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
+            for index, case in enumerate(cases):
+                pairs[index] = self._measured(case)
         except (InvalidInputError, WindowError) as error:
             if isinstance(error, InvalidInputError) and error.parameter in ("measure", "bounds"):
                 raise

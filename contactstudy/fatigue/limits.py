@@ -54,7 +54,7 @@ class FatigueLimits:
             raise InvalidInputError(
                 "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
             )
-        question_values(bending=self.bending, torsion=self.torsion, stacklevel=3)
+        question_values(bending=self.bending, torsion=self.torsion)
 
     @property
     def ratio(self) -> float:

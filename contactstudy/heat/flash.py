@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -16,6 +15,7 @@ from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import describe
+from contactstudy.caller import warn
 from contactstudy.case.case import Case
 from contactstudy.case.motion import Shift
 from contactstudy.checks import FloatArray
@@ -172,10 +172,9 @@ def flash_temperature(
         hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
     mismatch = found.mismatch
     if mismatch > LARGEST_MISMATCH:
-        warnings.warn(
+        warn(
             f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest",
             ConvergenceWarning,
-            stacklevel=2,
         )
     _warn_above(hot, limit)
     return describe(hot, "flash temperature of a contact")
@@ -273,9 +272,8 @@ def _warn_above(hot: xr.Dataset, limit: float | None) -> None:
     if limit is None or largest <= limit:
         return
     x, y = (1e3 * float(hot[f"max_temperature_rise_{axis}"]) for axis in "xy")
-    warnings.warn(
+    warn(
         f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
         f"limit = {limit:g} K",
         TemperatureWarning,
-        stacklevel=3,
     )

@@ -46,7 +46,7 @@ class ThermalProperties:
         """Check the values."""
         units = {"conductivity": "W/(m K)", "density": "kg/m3", "specific_heat": "J/(kg K)"}
         checks.store(self, **{name: checks.positive(name, getattr(self, name), unit) for name, unit in units.items()})
-        question_values(**{name: getattr(self, name) for name in units}, stacklevel=3)
+        question_values(**{name: getattr(self, name) for name in units})
 
     @property
     def heat_capacity(self) -> float:

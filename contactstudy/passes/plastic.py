@@ -70,7 +70,7 @@ class ElasticPlastic:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):
             checks.store(self, **{name: checks.not_negative(name, getattr(self, name), "Pa")})
-        question_values(yield_stress=np.asarray(self.yield_stress), stacklevel=3)
+        question_values(yield_stress=np.asarray(self.yield_stress))
 
     @classmethod
     def from_hardness(cls, vickers: xr.DataArray, **hardening: float) -> ElasticPlastic:

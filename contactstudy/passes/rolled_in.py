@@ -9,7 +9,6 @@ along y is answered for by each column by itself, in plane strain.
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,6 +23,7 @@ from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.units import required_in_si
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body
+from contactstudy.caller import warn
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.eigenstrain.along import LayersAlong
 from contactstudy.eigenstrain.body import EigenstrainBody
@@ -215,10 +215,9 @@ def rolled_in(
         if 3 * body.material.shear_modulus * grown <= STEADY * tolerance * section.yield_stress.min():
             break
     if not state.converged:
-        warnings.warn(
+        warn(
             f"the flow of a pass did not reach tolerance = {tolerance:g}; take more substeps, or lower the load",
             ConvergenceWarning,
-            stacklevel=2,
         )
     joined = xr.concat(kept, "pass_number")
     return describe(joined, "what passes of a contact leave")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-import warnings
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -17,6 +16,7 @@ from contactstudy.arrays.required import require
 from contactstudy.arrays.units import numbers_in_si
 from contactstudy.arrays.variables import describe
 from contactstudy.cache import ArrayKey
+from contactstudy.caller import warn
 from contactstudy.case.case import Case
 from contactstudy.case.gap import onto_ends
 from contactstudy.case.gridding import choose_grid
@@ -227,18 +227,16 @@ def _limited(
             state, step = reached, ahead
             yield state, step
             if taken >= max_steps and state.distance < stops[-1]:
-                warnings.warn(
+                warn(
                     f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
                     "with after=, or raise max_steps or tolerance",
                     ConvergenceWarning,
-                    stacklevel=3,
                 )
                 return
         if not state.converged:
-            warnings.warn(
+            warn(
                 "a contact of a wear step did not converge; take a smaller tolerance or other cells",
                 ConvergenceWarning,
-                stacklevel=3,
             )
 
 

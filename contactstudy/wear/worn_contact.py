@@ -126,7 +126,7 @@ class WornContact:
         middle = case.roller_middle
         shape = self.shape._replace(gap=ArrayKey(self.shape.gap.values + depth[:, None]))
         found = frictional_contact(shape, self.settings, case.motion, friction[:, None], middle, coupled=False)
-        found.warn_unless_converged(stacklevel=4)
+        found.warn_unless_converged()
         slip, traction = found.tractions.slip, found.tractions.traction
         pressure = found.contact.pressure
         if law == "slip":

@@ -122,7 +122,7 @@ def test_the_operator_is_applied_a_few_times_only(name: str) -> None:
 def test_a_warning_points_at_who_asked() -> None:
     found = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
     with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as said:
-        found.warn_unless_converged(1)
+        found.warn_unless_converged()
     assert said[0].filename == __file__
 
 

@@ -152,7 +152,7 @@ def test_a_warning_points_at_who_asked() -> None:
     unpressed = replace(found, contact=replace(found.contact, converged=False))
     for each, reason in ((unsettled, "stick and slip did not converge"), (unpressed, "the contact iteration stopped")):
         with pytest.warns(ConvergenceWarning, match=reason) as said:
-            each.warn_unless_converged(1)
+            each.warn_unless_converged()
         assert said[0].filename == __file__
 
 
