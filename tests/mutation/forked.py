@@ -26,7 +26,7 @@ from tests.mutation.mutants import PACKAGES, ROOT, Mutant
 TESTS = (
     *(f"contactstudy/{package}" for package in (*PACKAGES, "fields")),
     *(f"tests/{package}" for package in (*PACKAGES, "fields", "verification")),
-    "tests/test_solution.py",
+    "tests/solution",
 )
 """Tests that may notice a change: those of the packages and of what is nearest to them."""
 
