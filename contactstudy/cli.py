@@ -13,6 +13,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from contactstudy.commands import MANY_CASES, command_parser
 from contactstudy.errors import ContactStudyError, Terminated
 
 if TYPE_CHECKING:
@@ -20,75 +21,6 @@ if TYPE_CHECKING:
     from contactstudy.study.work import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
-
-# Combinations from which on a study is planned only after a question, or with --yes.
-MANY_CASES = 100_000
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="contactstudy",
-        description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
-        epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
-        "130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
-    )
-    parser.add_argument("--version", action="store_true", help="show the version and end")
-    parser.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
-    parser.add_argument("--verbose", action="store_true", help="say on the error output what is being done")
-    commands = parser.add_subparsers(dest="command", metavar="COMMAND")
-
-    def command(name: str, text: str, *, takes_study: bool) -> argparse.ArgumentParser:
-        added = commands.add_parser(name, help=text, description=text)
-        if takes_study:
-            added.add_argument("study", metavar="STUDY", type=Path, help="study file (TOML)")
-            added.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
-        else:
-            added.add_argument("folder", metavar="FOLDER", type=Path, help="results of a study")
-        return added
-
-    def parallel(added: argparse.ArgumentParser) -> None:
-        added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
-        added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
-        added.add_argument(
-            "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
-        )
-        added.add_argument("--no-figure", action="store_true", help="draw no figure")
-
-    run = command("run", "Solve the cases of a study that are not solved yet.", takes_study=True)
-    parallel(run)
-    plan = command("plan", "Say what a run would do; solve nothing.", takes_study=True)
-    for added in (run, plan):
-        added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
-    status = command("status", "Say what is done, failed, stale or missing.", takes_study=False)
-    for added in (plan, status):
-        added.add_argument("--all", action="store_true", help="list every case")
-    added = command("collect", "Merge the summaries of all cases into one netCDF file.", takes_study=False)
-    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
-    parallel(command("rerun", "Solve failed, stale and missing cases again.", takes_study=False))
-    text = "Check the solver against closed forms, finite elements and published numbers."
-    added = commands.add_parser("verify", help=text, description=text)
-    added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
-    added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
-    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
-    added = commands.add_parser("export", help=text, description=text)
-    added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
-    added.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
-    added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
-    added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
-    added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
-    explore = command("explore", "Serve a page to look through a study, on this machine.", takes_study=False)
-    explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
-    explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
-    text = "Write one HTML page of a case or of a study, for a reader without Python."
-    added = commands.add_parser("report", help=text, description=text)
-    added.add_argument("path", metavar="FILE_OR_FOLDER", type=Path, help="netCDF file of a case, or a study's folder")
-    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
-    text = "value of a swept parameter that a study's figures keep to; repeatable"
-    added.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
-    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
-    return parser
 
 
 def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None) -> int:
@@ -106,7 +38,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     >>> main(["plan", "no_such_study.toml"])
     2
     """
-    parser = _parser()
+    parser = command_parser()
     options = parser.parse_args(arguments)
     options.whole_process = arguments is None
     actions = {

@@ -12,7 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, solve_coulomb
+from contactstudy.contact.coulomb import Guess, solve_coulomb
+from contactstudy.contact.coulomb_law import CoulombProblem, CoulombSolution
 
 PATIENCE = 40
 """Steps of Newton's method after which the resultants are raised step by step. Speed."""

@@ -11,7 +11,8 @@ from contactstudy.case.motion import Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.compliance import contact_cells, tangential_inverse
 from contactstudy.contact.continuation import solve_continued
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation
+from contactstudy.contact.coulomb import Guess
+from contactstudy.contact.coulomb_law import CoulombProblem, CoulombSolution, law_violation
 from contactstudy.contact.leading_edge import RollingCells, taken_together
 from contactstudy.contact.nested import Coarser, guess_from, guess_of, joined
 from contactstudy.contact.rubbed import RelativeOperator, Surfaces, amplitude, check_forces, motions_of, resultant

@@ -24,9 +24,11 @@ from mkdocs.config.defaults import MkDocsConfig
 from mkdocs.structure.files import File, Files
 
 import contactstudy
-from contactstudy import cli, materials
+from contactstudy import materials
 from contactstudy.analysis.measures import MEASURES
 from contactstudy.arrays import vocabulary
+from contactstudy.arrays.vocabulary import derived, solved
+from contactstudy.commands import command_parser
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.study.parameters import documented
 from contactstudy.study.profile_kinds import DESIGN, PROFILES, MeasuredPoints, Numbers
@@ -158,13 +160,11 @@ def dataset_variables() -> str:
 
 def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
     """Name, variables and meaning of each dictionary that ``VARIABLES`` is made of."""
-    body = ast.parse(inspect.getsource(vocabulary)).body
-    (whole,) = (node.value for node in body if isinstance(node, ast.Assign) and _target(node) == "VARIABLES")
-    wanted = {node.id for node in ast.walk(whole) if isinstance(node, ast.Name)}
-    for node, after in itertools.pairwise(body):
-        if isinstance(node, ast.Assign) and _target(node) in wanted:
-            name = _target(node)
-            yield name, getattr(vocabulary, name), first_sentence(_text(after))
+    for module in (solved, derived):
+        for node, after in itertools.pairwise(ast.parse(inspect.getsource(module)).body):
+            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict) and _target(node) != "COORDINATES":
+                name = _target(node)
+                yield name, getattr(module, name), first_sentence(_text(after))
 
 
 def _target(node: ast.Assign) -> str:
@@ -188,7 +188,7 @@ def naming_rules() -> str:
 
 def command_line() -> str:
     """Return every command with its arguments, from the parser."""
-    parser = cli._parser()
+    parser = command_parser()
     commands = next(action for action in parser._actions if isinstance(action, argparse._SubParsersAction))
     parts = [_arguments(parser)]
     for name, command in commands.choices.items():

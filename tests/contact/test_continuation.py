@@ -9,7 +9,8 @@ import pytest
 
 from contactstudy.contact import continuation
 from contactstudy.contact.continuation import solve_continued
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, solve_coulomb
+from contactstudy.contact.coulomb import Guess, solve_coulomb
+from contactstudy.contact.coulomb_law import CoulombProblem, CoulombSolution
 from tests.contact.test_coulomb import holds, problem
 
 

@@ -9,16 +9,8 @@ import pytest
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact import coulomb
-from contactstudy.contact.coulomb import (
-    CoulombProblem,
-    CoulombSolution,
-    Guess,
-    _foremost,
-    _some,
-    _within,
-    law_violation,
-    solve_coulomb,
-)
+from contactstudy.contact.coulomb import Guess, _foremost, _some, _within, solve_coulomb
+from contactstudy.contact.coulomb_law import CoulombProblem, CoulombSolution, law_violation
 
 
 def problem(

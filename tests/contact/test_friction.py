@@ -14,7 +14,8 @@ from contactstudy.cache import ArrayKey
 from contactstudy.contact import friction
 from contactstudy.contact.contact import Settings, Shape
 from contactstudy.contact.continuation import solve_continued
-from contactstudy.contact.coulomb import CoulombProblem, CoulombSolution, Guess, law_violation
+from contactstudy.contact.coulomb import Guess
+from contactstudy.contact.coulomb_law import CoulombProblem, CoulombSolution, law_violation
 from contactstudy.contact.frictional import FrictionalContact, frictional_contact
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.fields.surface import SurfaceOperator

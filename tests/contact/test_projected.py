@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from contactstudy.contact import coulomb, projected
-from contactstudy.contact.coulomb import CoulombProblem, solve_coulomb
+from contactstudy.contact.coulomb import solve_coulomb
+from contactstudy.contact.coulomb_law import CoulombProblem
 from contactstudy.contact.projected import balanced_tractions, projected_tractions
 from tests.contact.test_coulomb import holds, problem
 
