@@ -52,6 +52,7 @@ def roller_stress(
 
     Examples
     --------
+    >>> import numpy as np
     >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, solve
     >>> steel = Material(210e9, 0.3)
     >>> body = FiniteLengthSpace(length=0.5e-3, material=steel)
