@@ -30,7 +30,9 @@ CALLS: dict[str, tuple[type[Warning], Callable[[], Any]]] = {
     ),
     "best_profile": (
         cs.design.BoundWarning,
-        lambda: cs.design.best_profile(CASE, cs.profiles.FullCrown, {"crown_radius": (0.05, 0.1)}, "end_load_last"),
+        lambda: cs.design.best_profile(
+            CASE, cs.profiles.FullCrown, {"crown_radius": (0.05, 0.1)}, "end_load_last", accuracy=0.1, evaluations=8
+        ),
     ),
 }
 
@@ -47,6 +49,11 @@ def test_bounds_in_millimetres_are_questioned_once() -> None:
     case = replace(CASE, roller=replace(CASE.roller, profile=cs.profiles.Cylinder()))
     with pytest.warns(cs.MagnitudeWarning, match="crown_radius = 50 m") as caught:
         cs.design.best_profile(
-            case, cs.profiles.FullCrown, {"crown_radius": (50.0, 200.0)}, lambda result: float(result["pressure"].max())
+            case,
+            cs.profiles.FullCrown,
+            {"crown_radius": (50.0, 200.0)},
+            lambda result: float(result["pressure"].max()),
+            accuracy=0.1,
+            evaluations=8,
         )
     assert [warning.filename for warning in caught if warning.category is cs.MagnitudeWarning] == [__file__]
