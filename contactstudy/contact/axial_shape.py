@@ -51,8 +51,9 @@ class AxialShape:
         Height along the axis over the plane that the shape touches, metres.
     room : tuple of float
         How far the face of the body goes on beyond either end, metres; 0 or less where it does not.
-    stiff : bool
-        Whether it has no free ends of its own: rigid, or a half-space.
+    exponents : tuple of float
+        Exponent ``m`` of the pressure ``K d**-m`` at either end, if that is a sharp one on a face that goes on; NaN
+        where theory knows none.
     fades : bool
         Whether the pressure falls towards a common end like a small power of the distance, which no columns settle.
     """
@@ -63,12 +64,12 @@ class AxialShape:
     depth: float
     height: Callable[[FloatArray], FloatArray]
     room: tuple[float, float]
-    stiff: bool = True
+    exponents: tuple[float, float] = (np.nan, np.nan)
     fades: bool = False
 
     def sharp(self, side: int) -> bool:
-        """Whether an end is singular with the exponent 0.5 if it is pressed: a stiff one on a face that goes on."""
-        return self.stiff and self.room[side] > 0
+        """Whether an end is singular if it is pressed."""
+        return self.exponents[side] > 0
 
 
 def first_edges(shape: AxialShape) -> FloatArray:

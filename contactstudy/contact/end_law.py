@@ -1,8 +1,8 @@
 """The law of a singular end: how the pressure grows towards it, and its intensity.
 
 A sharp rigid end inside the face of a body is pressed like a flat punch: at the distance d from it ``p = K / sqrt(d)``.
-At a sharp elastic end the pressure grows with a smaller power, which depends on the two materials and is fitted here.
-The pressure has no peak, only an intensity K. An edge of small radius ``r0`` bounds it to
+At a sharp elastic end the pressure grows with a smaller power, which follows from the two materials; where theory knows
+none, it is fitted here. The pressure has no peak, only an intensity K. An edge of small radius ``r0`` bounds it to
 
     p_max = 1.0734 (K**2 E* / r0)**(1/3),
 
@@ -19,6 +19,9 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.checks import FloatArray
+
+RIGID = 0.5
+"""Exponent at a sharp rigid end."""
 
 LEAST_GROWTH = 0.12
 """Exponent of the growth between two halvings from which on an end counts as a power law. Accuracy."""
@@ -38,6 +41,10 @@ measured as 5 % where it reaches 2.5 times the room, 0.8 % where it reaches 0.6 
 
 STEP_ERROR = 3e-3
 """Part of the intensity that steps of pressure leave. Accuracy: measured as the residual of every fit."""
+
+ELASTIC_SHARE = 1.5
+"""What the intensity of an elastic end may move by nearer to it, over what it moves by when both limits of the fit
+double. Accuracy: its next power is not a whole number, as it is at a rigid end."""
 
 EDGE_FACTOR = 1.0734
 """Factor of the peak at an edge of small radius, computed for a half-space."""
@@ -59,7 +66,7 @@ class EndLaw:
     kind : str
         "power" or "logarithm".
     exponent : float
-        ``m`` of ``p = K d**-m``: 0.5 at a stiff end inside a face, else fitted (NaN until then), 0 for a logarithm.
+        ``m`` of ``p = K d**-m``: that of theory, else fitted (NaN until then); 0 for a logarithm.
     intensity, intensity_error : float
         ``K`` and its estimated error, Pa m**m; NaN for a logarithm.
     """
@@ -86,21 +93,54 @@ class EndLaw:
         if np.isnan(exponent):
             from scipy.optimize import minimize_scalar
 
-            bounds = (LEAST_GROWTH, 0.5)
+            bounds = (LEAST_GROWTH, RIGID)
             found = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
             exponent = float(found.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # pressed on too few columns
             outermost = (1 - exponent) * row[0] * width**exponent
             return replace(self, exponent=exponent, intensity=float(outermost), intensity_error=np.inf)
-        error = abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
+        share = 1.0 if exponent == RIGID else ELASTIC_SHARE
+        error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if FARTHEST * width > LEAST_ROOM * room:
             error += NARROW_ERROR * fits[0]
         return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error)
 
 
-def law_of(samples: list[Sample], *, stiff: bool) -> EndLaw | None:
-    """Decide on the law of an end from its outermost column between splittings; None if it settles."""
+def elastic_exponent(edge: float, face: float) -> float:
+    """Exponent ``m`` of the pressure at a sharp edge of 90 degrees on a face that goes on, without friction.
+
+    Under the pressure ``r**(s - 1)`` with ``s = 1 - m`` the slopes of a quarter-plane and of a half-plane follow from
+    Airy's stress function of a wedge (Williams, J. Appl. Mech. 19 (1952) 526). They cancel where
+
+        k_e sin(pi s) / (2 (sin(pi s / 2)**2 - s**2)) + k_f cot(pi s) = 0,
+
+    as in Dundurs and Lee, J. Elasticity 2 (1972) 109.
+
+    Parameters
+    ----------
+    edge, face : float
+        Compliances ``(1 - poisson**2) / young`` of the body with the edge, 0 if it is rigid, and of that with the face.
+
+    Examples
+    --------
+    >>> elastic_exponent(0.0, 1.0), round(elastic_exponent(1.0, 1.0), 4)
+    (0.5, 0.226)
+    """
+    from scipy.optimize import brentq
+
+    def slopes(s: float) -> float:
+        quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
+        return float(edge * quarter + face / np.tan(np.pi * s))
+
+    return 1 - float(brentq(slopes, 0.5, 1 - 1e-9)) if edge > 0 else RIGID
+
+
+def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
+    """Decide on the law of an end from its outermost column between splittings; None if it settles.
+
+    Where theory knows the exponent, whatever grows is a power. Else `exponent` is NaN.
+    """
     if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
         return None
     if min(sample.pressure for sample in samples[-3:]) <= 0:
@@ -110,12 +150,12 @@ def law_of(samples: list[Sample], *, stiff: bool) -> EndLaw | None:
         for before, after in pairwise(samples[-3:])
     ]
     if min(growth) > LEAST_GROWTH:
-        return EndLaw("power", 0.5 if stiff else np.nan)
+        return EndLaw("power", exponent)
     steps = [
         (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
     ]
     if len(steps) >= 4 and sum(steps[-2:]) > LASTING_STEPS * sum(steps[-4:-2]) > 0:
-        return EndLaw("logarithm", 0.0)
+        return EndLaw("logarithm", 0.0) if np.isnan(exponent) else EndLaw("power", exponent)
     return None
 
 

@@ -23,7 +23,8 @@ def read_ends(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair
         distances, row = from_end(side, edges, top)
         end = _extrapolated(distances, row)
         own = row[centres_of(distances) < half]
-        largest = float(own.max())
+        # Where the pressure rises through the middle, the largest of a half lies there.
+        largest = max(float(own.max()), float(np.interp(half, centres_of(distances), row)))
         # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
         peaks.append(np.inf if laws[side] else max(largest, end) if own.argmax() == 0 else largest)
         ends.append(np.inf if laws[side] else end)

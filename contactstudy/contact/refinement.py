@@ -19,15 +19,10 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, AxialShape, centres_of, first_edges, overlooked, split
 from contactstudy.contact.end_law import EndLaw, Sample, law_of
 from contactstudy.contact.end_values import Laws, end_loads, from_end, read_ends
+from contactstudy.contact.jumps import pressure_jumps
 from contactstudy.contact.problem import between_columns
 
 LOGGER = logging.getLogger(__name__)
-
-POWERS = (2.0, 16.0)
-"""Powers of the pressure whose jumps are marked. Accuracy."""
-
-LESSER_HALF = 0.1
-"""Least pressure of a half, over the largest, that jumps in this half are measured by. Accuracy."""
 
 FIRST_THETA, SHRINK, LOOSEST = 0.5, 0.7, 0.26
 """Threshold of the jumps at first, its reduction, and the largest at which the refinement may end. Accuracy."""
@@ -96,6 +91,8 @@ class Refined:
         Whether every error that is stated is within the accuracy.
     first : array
         Edges of the columns of the first threshold, metres.
+    least_error : float
+        Least error that is stated on these columns, over the value.
     """
 
     edges: FloatArray
@@ -109,6 +106,7 @@ class Refined:
     laws: tuple[EndLaw | None, EndLaw | None]
     settled: bool
     first: FloatArray
+    least_error: float
 
     @property
     def peak(self) -> float:
@@ -213,19 +211,19 @@ class _State:
             if not samples or width < 0.99 * samples[-1].width:
                 samples.append(Sample(width, float(pressure[0].max())))
                 if self.laws[side] is None and width <= SHARPEST * self.shape.half_width:
-                    self.laws[side] = law_of(samples, stiff=self.shape.sharp(side))
+                    self.laws[side] = law_of(samples, self.shape.exponents[side])
 
     def _marks(self, theta: float) -> BoolArray:
         """Columns to split."""
         edges, pressure, a = self.edges, self.pressure, self.shape.half_width
         widths, largest = np.diff(edges), pressure.max()
-        jumps = np.max([_jumps(edges, pressure, power) for power in POWERS], axis=0)
+        jumps = pressure_jumps(edges, pressure)
         for side, (i, j) in enumerate(((0, 1), (-1, -2))):
             if self.laws[side] is None and pressure[i].max() > 0:
                 step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / largest
                 jumps[i] = max(jumps[i], END_STEP * step)
                 rises = pressure[i].max() >= self._half(side).max()
-                sharp = self.shape.room[side] > 0 or rises
+                sharp = self.shape.sharp(side) or self.shape.room[side] > 0 or rises
                 if widths[i] > (SHARPEST if sharp else END_COLUMN) * a:
                     jumps[i] = np.inf
         touched = np.flatnonzero(pressure.any(axis=1))
@@ -258,7 +256,7 @@ class _State:
     def _unknown_law(self, side: int) -> bool:
         """Whether an end is pressed whose pressure does not settle, and its law did not show.
 
-        A stiff one inside the face, which is always singular, or one that fades at the end of the face.
+        A sharp one, which is always singular, or one that fades at the end of the face.
         """
         fades = self.shape.fades and self.shape.room[side] == 0
         unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
@@ -297,6 +295,7 @@ class _State:
             (laws[0], laws[1]),
             settled,
             self.edges if self.first is None else self.first,
+            floor / scale,
         )
 
 
@@ -338,12 +337,3 @@ def _moved(values: list[float], floor: float) -> float:
     back = [abs(last - value) for value in values[-3:-1] if np.isfinite(value)]
     half = 0.5 * max(back, default=np.inf)
     return max(half, floor)
-
-
-def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
-    """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
-    left = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
-    top = np.where(left, pressure[left].max(), pressure[~left].max())
-    top = np.maximum(top, LESSER_HALF * pressure.max())
-    steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
-    return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (top / pressure.max()) ** power)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
-from contactstudy.bodies.models import EndedBody, HalfSpace
+from contactstudy.bodies.models import EndedBody
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
 from contactstudy.case.doubts import changed
@@ -20,6 +20,7 @@ from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.axial_shape import AxialShape
 from contactstudy.contact.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
+from contactstudy.contact.end_law import elastic_exponent
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement import Pressed, Refined, read_again, refined_contact, rough_contact
@@ -255,22 +256,34 @@ def _room(distance: float, near: float) -> float:
     return distance if distance > near else 0.0
 
 
+def _exponent(case: Case, distance: float, near: float) -> float:
+    """Exponent of the pressure at an end that is this far from that of the face; NaN where theory knows none."""
+    body, roller = case.body, case.roller.body
+    of_body = 1 / body.material.plane_strain_modulus
+    of_roller = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
+    has_ends = isinstance(roller, EndedBody)
+    if distance > near:
+        return elastic_exponent(of_roller if has_ends else 0.0, of_body)
+    # The body's own edge is pressed where the roller overhangs, or is a half-space.
+    pressed = of_roller > 0 and (distance < -near or not has_ends)
+    return elastic_exponent(of_body, of_roller) if pressed and getattr(body, "model", "") == "exact" else np.nan
+
+
 def _axial_shape(case: Case) -> AxialShape:
     """Return what the refinement knows of a case."""
     start, stop = case.contact_range
     low, high = case.body.extent
     half_width = case.hertz_half_width
     near = 1e-9 * (stop - start)
-    end = case.roller_start + case.roller.length
-
+    distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
     return AxialShape(
         start,
         stop,
         half_width,
         half_width**2 / (2 * case.roller.radius),
         case.lowest,
-        (_room(case.roller_start - low, near), _room(high - end, near)),
-        stiff=case.roller.body is None or isinstance(case.roller.body, HalfSpace),
+        (_room(distances[0], near), _room(distances[1], near)),
+        exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
         # The factor of the body's image is not that of the roller's.
         fades=case.roller.body is not None and isinstance(case.body, EndedBody) and case.body.model == "mirror-factor",
     )

@@ -12,15 +12,14 @@ from hypothesis import strategies as st
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.axial_shape import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
-from contactstudy.contact.end_law import EndLaw
+from contactstudy.contact.end_law import RIGID, EndLaw
+from contactstudy.contact.jumps import LESSER_HALF, _at_crests, _jumps
 from contactstudy.contact.refinement import (
     END_COLUMN,
     LAST_COLUMNS,
-    LESSER_HALF,
     SHARPEST,
     Pressed,
     Rough,
-    _jumps,
     _moved,
     _State,
     read_again,
@@ -32,8 +31,9 @@ HALF_WIDTH, LENGTH = 1.0, 20.0
 Y = (np.arange(16) - 7.5) / 8
 
 
-def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), stiff: bool = True) -> AxialShape:
-    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, stiff)
+def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), elastic: bool = False) -> AxialShape:
+    known = [np.nan if elastic or each == 0 else RIGID for each in room]
+    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, (known[0], known[1]))
 
 
 def pressed(pressure: FloatArray) -> Pressed:
@@ -88,9 +88,7 @@ def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> N
 
 def test_first_columns_are_split_where_the_shape_bends() -> None:
     fillet, kink = 3.0, 17.0
-    bent = AxialShape(
-        0.0, LENGTH, HALF_WIDTH, 0.05, lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet, (False, False)
-    )
+    bent = AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet, (0.0, 0.0))
     widths = np.diff(first_edges(bent))
     plain = np.diff(first_edges(shape()))
     assert widths.size > plain.size
@@ -146,7 +144,7 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
         means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
         return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
 
-    found = refined_contact(exact, shape(room=(np.inf, 0.0), stiff=exponent == 0.5), 0.01)
+    found = refined_contact(exact, shape(room=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
     law, other = found.laws
     assert law is not None
     assert other is None
@@ -204,10 +202,11 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
         back = slice(None, None, 1 - 2 * side)
         return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
 
-    room = (3.0, 0.0)
-    plain = refined_contact(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room), 0.02)
+    room, known = (3.0, 0.0), (RIGID, np.nan)
+    plain = refined_contact(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room, known), 0.02)
     limits, beyond = unit * (place + np.array([0.0, LENGTH])), (unit * room[side], unit * room[1 - side])
-    elsewhere = AxialShape(*limits, unit * HALF_WIDTH, unit * 0.05, lambda x: unit * height(own(x)), beyond)
+    sharp = known[:: 1 - 2 * side]
+    elsewhere = AxialShape(*limits, unit * HALF_WIDTH, unit * 0.05, lambda x: unit * height(own(x)), beyond, sharp)
     other = refined_contact(solve, elsewhere, 0.02)
     assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
     assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
@@ -252,6 +251,17 @@ def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
         assert near.sum() > 4
         assert widths[near].max() <= LAST_COLUMNS * HALF_WIDTH
     assert widths.max() > 2 * LAST_COLUMNS * HALF_WIDTH
+
+
+def test_a_crest_that_is_lower_than_the_peak_is_split_by_its_own_pressure() -> None:
+    """Beside the contact's end, seen by one column: 1.4 of a peak of 3."""
+    top = np.array([0.0, 0.0, 0.8, 1.4, 1.2, 2.0, 2.8, 3.0, 3.0, 2.8])
+    steps = _at_crests(top[:, None])
+    assert steps[3] == pytest.approx(1 - (0.8 / 1.4) ** 2)
+    assert np.count_nonzero(steps) == 1
+    # One below a tenth of the peak is not worth a column, and noise on a plateau is no crest.
+    assert not _at_crests(np.array([0.0, 0.1, 0.29, 0.2, 3.0, 3.0])[:, None]).any()
+    assert _at_crests(np.array([3.0, 3.001, 3.0])[:, None]).max() < 1e-2
 
 
 @pytest.mark.parametrize("lesser", [0.5, 0.02])
@@ -389,7 +399,7 @@ def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(s
     sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
     assert rough.singular(shape(room=sharp))
     assert rough.singular(shape(room=blunt)) == (law is not None)
-    assert rough.singular(shape(room=sharp, stiff=False)) == (law is not None)
+    assert rough.singular(shape(room=sharp, elastic=True)) == (law is not None)
 
 
 def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:

@@ -15,7 +15,7 @@ from contactstudy.contact.contact import Contact, Settings, Shape
 from contactstudy.contact.frictional import FrictionalContact
 from contactstudy.contact.prescribed import Prescribed
 from contactstudy.contact.settled import CELLS_Y, SettledContact, settled_contact
-from contactstudy.contact.settled_tractions import _scales, settled_tractions
+from contactstudy.contact.settled_tractions import COLUMNS_SHARE, _scales, settled_tractions
 from contactstudy.contact.tractions import Tractions
 
 STEEL = Material(210e9, 0.3)
@@ -148,7 +148,9 @@ def test_changes_are_related_to_full_sliding_and_to_the_slip_of_a_line_contact()
 def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
     changes: list[float], accuracy: float, tried: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change."""
+    """Of full sliding's force; what is prescribed may change, and the error that is stated is the last change
+    and what the columns leave.
+    """
     case = replace(LIKE, motion=Rolling(longitudinal_creepage=1e-3))
     contact = made_up(case, 1e9, x=0.0, y=1e-3, spin=0.0)
     full, forces, rows = 0.1 * 1e9 * 4e-8, np.cumsum([3.0, *changes]), []
@@ -168,5 +170,6 @@ def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
     found = settled_tractions(case, settled, accuracy)
     assert rows == [cells // 2 * 2**number for number in range(min(tried, most))]
     assert found.is_settled == (tried < 9)
-    assert found.changes["force_x"] == pytest.approx(full * changes[len(rows) - 2])
-    assert "longitudinal_creepage" not in found.changes
+    of_columns = COLUMNS_SHARE * settled.refined.least_error
+    assert found.stated["force_x"] == pytest.approx(full * (changes[len(rows) - 2] + of_columns))
+    assert "longitudinal_creepage" not in found.stated
