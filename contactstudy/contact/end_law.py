@@ -69,12 +69,15 @@ class EndLaw:
         ``m`` of ``p = K d**-m``: that of theory, else fitted (NaN until then); 0 for a logarithm.
     intensity, intensity_error : float
         ``K`` and its estimated error, Pa m**m; NaN for a logarithm.
+    fitted : bool
+        Whether the exponent is fitted.
     """
 
     kind: str
     exponent: float
     intensity: float = np.nan
     intensity_error: float = np.nan
+    fitted: bool = False
 
     def with_intensity(self, edges: FloatArray, pressure: FloatArray, room: float) -> EndLaw:
         """Return the law with the intensity fitted to the pressure (column, y), at distances from the end.
@@ -89,8 +92,8 @@ class EndLaw:
         row = pressure[:, int(pressure[0].argmax())]
         if row[0] <= 0:
             return replace(self, intensity=0.0, intensity_error=np.inf)
-        width, exponent = edges[1], self.exponent
-        if np.isnan(exponent):
+        width, exponent, fitted = edges[1], self.exponent, bool(np.isnan(self.exponent))
+        if fitted:
             from scipy.optimize import minimize_scalar
 
             bounds = (LEAST_GROWTH, RIGID)
@@ -99,12 +102,12 @@ class EndLaw:
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # pressed on too few columns
             outermost = (1 - exponent) * row[0] * width**exponent
-            return replace(self, exponent=exponent, intensity=float(outermost), intensity_error=np.inf)
+            return EndLaw(self.kind, exponent, float(outermost), np.inf, fitted)
         share = 1.0 if exponent == RIGID else ELASTIC_SHARE
         error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if FARTHEST * width > LEAST_ROOM * room:
             error += NARROW_ERROR * fits[0]
-        return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error)
+        return EndLaw(self.kind, exponent, fits[0], error, fitted)
 
 
 def elastic_exponent(edge: float, face: float) -> float:

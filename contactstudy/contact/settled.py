@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, without_error
 from contactstudy.bodies.models import EndedBody
 from contactstudy.cache import ArrayKey, kept
 from contactstudy.case.case import Case
@@ -177,6 +177,8 @@ def settled_values(settled: SettledContact) -> xr.Dataset:
             "end_intensity_error": sharper.intensity_error,
         }
     result = xr.Dataset(values)
+    if any(law and law.fitted for law in refined.laws):
+        result = without_error(result, *(str(name) for name in result if str(name).startswith("end_exponent")))
     for key, intensity in result.items():
         if str(key).startswith("end_intensity"):
             exponent = float(result[str(key).replace("intensity", "exponent").removesuffix("_error")])
