@@ -58,7 +58,8 @@ def largest(dataset: xr.Dataset, variable: str = "von_mises") -> xr.Dataset:
         by, the relative error of `peak_pressure` where that is settled, and on the top 2 %, what cells make of stresses
         there. It is infinite, with a `comment` that says why, where the largest sample lies at the edge of the points,
         beyond which the measure may be larger, where the points are too far apart for the pressure above them, or
-        where the pressure is singular. Along an axis with one point the place is that point.
+        where the pressure is singular. Without `pressure` only the points are counted, and where they are as far apart
+        as the stress changes the error is too small. Along an axis with one point the place is that point.
 
     Raises
     ------

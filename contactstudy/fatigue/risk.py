@@ -34,6 +34,9 @@ FEWEST = 3
 Given = TypeVar("Given", xr.Dataset, xr.DataArray)
 """What a risk is taken from."""
 
+ALONG_X_AND_Z = (
+    "of the positions along x and z alone: not of those along y, over which the measure is taken, or the pressure"
+)
 POSITIONS_ALONE = "from the distance of the positions alone: the result states no error of its pressure"
 
 
@@ -130,9 +133,11 @@ def _error(given: Given, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable
     return error
 
 
-def _with_error(result: xr.Dataset, error: Array, pressure: xr.DataArray | None = None) -> xr.Dataset:
+def _with_error(
+    result: xr.Dataset, error: Array, pressure: xr.DataArray | None = None, comment: str = POSITIONS_ALONE
+) -> xr.Dataset:
     """Return a result with the error of its risk: of the positions, and of the pressure if that is known."""
-    risk, comment = result["risk"], POSITIONS_ALONE
+    risk = result["risk"]
     stated = risk.copy(data=error)
     if pressure is not None:
         comment = "from the distance of the positions, and of the pressure"
@@ -288,7 +293,9 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     Dataset
         `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`) and
         `risk_error`, and `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit. The error counts the
-        positions along x and z, and what lies above the first and below the last depth.
+        positions along x and z, and what lies above the first and below the last depth; not the positions along y, over
+        which the measure was taken, nor the pressure. Halve the distance along y to see what it changes: the risk grows
+        with the stress to the power of some 10.
 
     Raises
     ------
@@ -334,4 +341,4 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     of = partial(_beyond, limit=threshold, exponents=chosen)
     beyond, _ = reduced(of, [(stress, [dim]), (depths, [dim])], 2)
     error = error + _over_x(density * beyond).values
-    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error)
+    return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, comment=ALONG_X_AND_Z)
