@@ -35,7 +35,7 @@ def test_run_names_what_it_wrote(study_file, tmp_path, capsys):
     output = capsys.readouterr().out
     folder = tmp_path / "results" / "small"
     assert "4 cases: 4 ok; 4 solved now" in output
-    assert "wrote 4 netCDF files" in output
+    assert "4 netCDF files" in output
     for name in ("summary.nc", "edge_effect.png"):
         assert f"wrote results/small/{name}" in output
         assert (folder / name).stat().st_size > 1000

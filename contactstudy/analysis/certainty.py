@@ -102,7 +102,11 @@ def certainty_of(one: xr.Dataset, view: ShortView) -> Certainty:
 
 
 def _answers(one: xr.Dataset, view: ShortView) -> Iterator[Answer]:
-    """Every answer."""
+    """Every answer; of a case of a study without a result, why there is none."""
+    if "status" in one and (status := str(one["status"].item())) != "ok":
+        message = str(one["message"].item()) if "message" in one else ""
+        yield Answer("Is there a result?", NO, f"the case is {status}" + (f": {message}" if message else ""))
+        return
     yield _converged(one)
     yield _load(one)
     yield _conditions(one)

@@ -218,7 +218,7 @@ class Page:
             up = (min(lows), max(highs))
             for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
-                beyond = ", more beside the singular end" if one is not None and one.ends else ""
+                beyond = ", more beside the singular end" if one is not None and one.has_pressure and one.ends else ""
                 each.show(image, most, f"{name}{what}{units}{beyond}", up)
 
     def _reasons(self, loaded: list[Looked | None], sides: list[int]) -> str:

@@ -188,12 +188,19 @@ def _settled(top: _Top, search: Search, shallowest: float, stress: Callable[[Pla
         change = abs(next_top.found.value - top.found.value)
         if next_top.found.value < top.found.value and not inside:
             # Beyond the edge it falls.
-            known = top.found.error if np.isfinite(top.found.error) else 0.0
-            return top.found._replace(error=max(known, change))
+            return _confirmed(top, change, stress)
         top = next_top
     if top.found.place[2] <= shallowest * (1 + 1e-9):
         return top.found._replace(error=max(top.found.error, ON_TOP * top.found.value))
     return top.found
+
+
+def _confirmed(top: _Top, change: float, stress: Callable[[Place], FloatArray]) -> Largest:
+    """Return what the stress itself is where polynomials are largest: beside the last points they may overshoot."""
+    sampled = [axis[number] for axis, number in zip(top.points, top.at, strict=True)]
+    points = Place(*(np.unique(pair) for pair in zip(top.found.place, sampled, strict=True)))
+    found = _sampled(points, stress(points)).found
+    return found._replace(error=max(change, abs(top.found.value - found.value)))
 
 
 def _sampled(points: Place, stresses: FloatArray, known: BoolArray | None = None) -> _Top:

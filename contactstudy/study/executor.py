@@ -19,6 +19,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.crew import Crew
 from contactstudy.study.dispatch import Dispatcher
 from contactstudy.study.errors import StudyFileError
+from contactstudy.study.guard import UNGUARDED
 from contactstudy.study.work import Job, Record, Solver, perform
 
 if TYPE_CHECKING:
@@ -175,10 +176,12 @@ def _started(workers: int, loop: IOLoop) -> LocalCluster:
             # A dying worker is a failed case with a reason of its own; pages of log would bury it.
             silence_logs=logging.CRITICAL,
         )
-    except BaseException:
+    except BaseException as error:
         # At the end of the process dask would close the cluster that has only begun to start, and fail.
         for cluster in set(_clusters()) - older:
             cluster.shutdown_on_close = False
+        if isinstance(error, RuntimeError):
+            raise StudyFileError(f"the worker processes did not start: {error} {UNGUARDED}") from None
         raise
 
 

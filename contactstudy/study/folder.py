@@ -251,7 +251,8 @@ class Folder:
         """Files among the cases that are no case of this package, each with what is wrong."""
         wrong = []
         for path in sorted(self.cases.glob("*")):
-            if path.suffix == ".failed" or ".part-" in path.name or (path.is_dir() and path.suffix != ".nc"):
+            # What a user keeps beside the cases, such as a report of one, is left alone.
+            if path.suffix != ".nc" or ".part-" in path.name:
                 continue
             try:
                 identity = self._checked(path)["id"]

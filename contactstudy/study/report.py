@@ -54,7 +54,8 @@ def run_lines(report: RunReport) -> Iterator[str]:
     files = report.files
     if files:
         size = sum(path.stat().st_size for path in files)
-        yield f"wrote {len(files)} netCDF files, {in_bytes(size)}, in {shown(files[0].parent)}"
+        kind = "netCDF files" if len(files) > 1 else "netCDF file"
+        yield f"{len(files)} {kind}, {in_bytes(size)}, in {shown(files[0].parent)}"
 
 
 def stale_lines(report: RunReport) -> Iterator[str]:

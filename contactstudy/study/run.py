@@ -18,6 +18,7 @@ from contactstudy.study.definition import Study
 from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.executor import WAIT_SECONDS, execute
 from contactstudy.study.folder import Entry, Folder
+from contactstudy.study.guard import refuse_in_a_worker
 from contactstudy.study.lock import locked
 from contactstudy.study.own_profiles import pickles_of
 from contactstudy.study.plan import Plan, PlannedCase
@@ -189,6 +190,7 @@ def run_study(
     >>> run_study(study, tempfile.mkdtemp(), workers=0, progress=False).counts
     {'ok': 2}
     """
+    refuse_in_a_worker()
     checks.instance("study", study, Study, "a Study, as from Study.from_toml(path)")
     plan = study.plan()
     if not plan.unique:

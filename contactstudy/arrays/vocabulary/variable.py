@@ -25,7 +25,7 @@ class Variable(NamedTuple):
 
     Examples
     --------
-    >>> VARIABLES["normal_load"].attrs
+    >>> Variable((), "N", "W", "normal load").attrs
     {'units': 'N', 'long_name': 'normal load'}
     """
 

@@ -1,0 +1,31 @@
+"""A script that runs a study without a guard is told what it lacks."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SCRIPT = """
+from contactstudy.study import run_study
+from tests.small_study import small_study
+
+run_study(small_study(), {folder!r}, workers=1, progress=False)
+"""
+
+
+@pytest.mark.system
+def test_a_script_without_a_guard_ends_with_what_to_do(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(SCRIPT.format(folder=str(tmp_path / "results")))
+    root = Path(__file__).parents[2]
+    ended = subprocess.run(
+        [sys.executable, script], cwd=root, env={"PYTHONPATH": str(root), "PATH": ""}, capture_output=True, text=True
+    )
+    assert ended.returncode == 1
+    last = ended.stderr.strip().splitlines()[-1]
+    assert "if __name__ == '__main__':" in last
+    assert "workers=0" in last
+    assert ended.stderr.count("Traceback") == 1
