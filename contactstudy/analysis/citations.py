@@ -36,6 +36,8 @@ PROFILES = {
 }
 """Sources of profiles by their class."""
 
+STUDY_ATTRIBUTE = "contactstudy_study"
+
 FILTER = ("filter of the measured profile", "ISO 16610-21, ends by the moment criterion of ISO 16610-28")
 
 
@@ -64,12 +66,13 @@ def citations(dataset: xr.Dataset) -> Citations:
     Parameters
     ----------
     dataset : Dataset
-        A result of :func:`contactstudy.solve`, or a file of it.
+        A result of :func:`contactstudy.solve`, a file of it, or a study.
 
     Returns
     -------
     Citations
-        This package first. Of a Dataset that does not say what was solved, only what its variables show.
+        This package first. Of a study, or of a case selected from it, what its cases used. Of a Dataset that does not
+        say what was solved, only what its variables show.
 
     Examples
     --------
@@ -77,15 +80,13 @@ def citations(dataset: xr.Dataset) -> Citations:
     ('line contact', 'K. L. Johnson, Contact Mechanics, Cambridge University Press (1985)')
     """
     require(dataset)
-    case: dict[str, Any] = attribute(dataset, INPUTS_ATTRIBUTE).get("case", {})
-    body = case.get("body", {})
+    study = attribute(dataset, STUDY_ATTRIBUTE)
+    models, profile = _of_study(study) if study else _of_case(attribute(dataset, INPUTS_ATTRIBUTE).get("case", {}))
     program = str(dataset.attrs.get("source", "contactstudy"))
     found: list[tuple[str, str]] = [("program", program), HERTZ]
-    model = body.get("model")
-    roller_has_ends = "material" in case.get("roller", {}) and case.get("roller", {}).get("ends") == "free"
-    if (model in ("exact", "single-mirror") and body.get("kind") != "HalfSpace") or roller_has_ends:
+    if not models.isdisjoint({"exact", "single-mirror"}):
         found += ENDS
-    if model == "mirror-factor":
+    if "mirror-factor" in models:
         found.append(GUILBAULT)
     if "pressure" in dataset:
         found += CONTACT
@@ -93,18 +94,46 @@ def citations(dataset: xr.Dataset) -> Citations:
         found.append(ROLLING)
     if any(name in dataset for name in STRESSES):
         found.append(("stresses", "A. E. H. Love, Phil. Trans. R. Soc. Lond. A 228 (1929) 377, and K. L. Johnson"))
-    for kind in sorted(_kinds(case.get("roller", {}).get("profile", {}))):
-        if kind in PROFILES:
-            found.append((f"profile {kind}", PROFILES[kind]))
-    if _filtered(case.get("roller", {}).get("profile", {})):
+    kinds = {_plain(kind) for kind in _kinds(profile)}
+    found += [(f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _plain(kind) in kinds]
+    if _filtered(profile):
         found.append(FILTER)
     return Citations(tuple(dict.fromkeys(found)))
+
+
+def _of_case(case: dict[str, Any]) -> tuple[set[str], Any]:
+    """How free ends are treated, and the profile, in the inputs of a case."""
+    body, roller = case.get("body", {}), case.get("roller", {})
+    models = {str(body["model"])} if "model" in body and body.get("kind") != "HalfSpace" else set()
+    if "material" in roller and roller.get("ends") == "free":
+        models.add("exact")
+    return models, roller.get("profile", {})
+
+
+def _of_study(study: dict[str, Any]) -> tuple[set[str], Any]:
+    """How free ends are treated, and the profiles, in all cases of a study."""
+
+    def taken(name: str, default: str) -> list[Any]:
+        single = [table[name] for table in (study.get("base", {}), *study.get("cases", [])) if name in table]
+        several = [table.get(name, []) for table in (study.get("sweep", {}), *study.get("zip", []))]
+        return [*single, *(value for values in several for value in values)] or [default]
+
+    with_ends = any(body != "half-space" for body in taken("body", "finite-length"))
+    models = {str(model) for model in taken("model", "exact")} if with_ends else set()
+    if "finite-length" in taken("roller_body", "rigid"):
+        models.add("exact")
+    return models, [{"kind": each} if isinstance(each, str) else each for each in taken("profile", "cylinder")]
+
+
+def _plain(kind: str) -> str:
+    """Name of a profile without what studies and classes write differently."""
+    return kind.replace("-", "").lower()
 
 
 def _filtered(entry: Any) -> bool:
     """Whether a profile, or one within it, is measured and filtered."""
     if isinstance(entry, dict):
-        own = entry.get("kind") == "Measured" and "cutoff" in entry
+        own = _plain(str(entry.get("kind", ""))) == "measured" and "cutoff" in entry
         return own or any(_filtered(value) for value in entry.values())
     return isinstance(entry, list) and any(_filtered(value) for value in entry)
 

@@ -83,8 +83,8 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     content["about"] = {
         str(name): str(value) for name, value in dataset.attrs.items() if NAME.fullmatch(str(name))
     } or {"source": ""}
-    with checks.writing(target):
-        savemat(target, content, appendmat=False, long_field_names=True, do_compression=True, oned_as="column")
+    with checks.writing(target), target.open("wb") as file:
+        savemat(file, content, long_field_names=True, do_compression=True, oned_as="column")
     return target
 
 

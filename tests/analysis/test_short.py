@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -156,6 +158,29 @@ def test_only_methods_that_were_used_are_cited(singular: xr.Dataset) -> None:
     used = {what for what, _ in citations(solve(case, stresses=False)).entries}
     assert "profile Lundberg" in used
     assert not {"free ends", "stresses"} & used
+
+
+def test_a_study_cites_what_its_cases_used() -> None:
+    base = {"model": "mirror-factor", "profile": {"kind": "measured", "cutoff": 1e-4}}
+    study = {"base": base, "sweep": {"body": ["half-space", "quarter-space"]}, "zip": [{"model": ["exact"]}]}
+    used = {what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(study)})).entries}
+    assert {"free ends", "mirror factor", "profile Measured", "filter of the measured profile"} <= used
+    plain = {"base": {"body": "half-space"}, "cases": [{"profile": "lundberg"}], "sweep": {}}
+    used = {what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(plain)})).entries}
+    assert "profile Lundberg" in used
+    assert "free ends" not in used
+    rolling = plain | {"sweep": {"roller_body": ["rigid", "finite-length"]}}
+    assert "free ends" in {
+        what for what, _ in citations(xr.Dataset(attrs={"contactstudy_study": json.dumps(rolling)})).entries
+    }
+
+
+def test_a_case_that_failed_is_not_certain_and_says_why() -> None:
+    failed = xr.Dataset({"status": "failed", "message": "WindowError: too wide", "converged": np.nan})
+    told = certainty(failed.assign(iterations=np.nan))
+    assert told.overall == "no"
+    assert "the case is failed: WindowError: too wide" in repr(told)
+    assert len(told.answers) == 1
 
 
 def test_what_was_found_without_an_error_says_so_and_what_was_prescribed_does_not(solved: xr.Dataset) -> None:

@@ -23,6 +23,9 @@ from contactstudy.explorer.looked import Looked
 from contactstudy.explorer.numbers import ORDER, SUBJECTS
 from contactstudy.explorer.page import Page, _marked
 from contactstudy.explorer.pixels import between, pixels
+from contactstudy.study import run_study
+from tests.small_study import small_study
+from tests.stand_in_solver import solve_fake
 
 SOURCES: dict[str, Callable[[Path], Cases]] = {
     "files": of_folder,
@@ -109,6 +112,13 @@ def test_a_case_that_failed_says_why(page: Page) -> None:
     assert len(page.tops[0]._source.data["image"]) == 1
     assert "class=why" not in page.table.object
     assert [pane.visible for pane in page.panes] == [True, True, False, True, False, True]
+
+
+def test_a_study_of_numbers_alone_shows_them(tmp_path: Path) -> None:
+    run_study(small_study(level="summary"), tmp_path, workers=0, solver=solve_fake, progress=False)
+    page = Page(of_folder(tmp_path))
+    assert "keeps no surfaces of this case, only its numbers" in page.table.object
+    assert [pane.visible for pane in page.panes] == [False, False, False, False, False, True]
 
 
 def test_a_plane_without_stresses_is_said(page: Page) -> None:

@@ -126,7 +126,10 @@ def test_foreign_and_misplaced_files_are_set_aside(study, tmp_path):
     good = Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1))
     shutil.copy(good, cases / "copy.nc")
     (cases / "notes.nc").write_text("mine")
+    report = good.with_suffix(".html")
+    report.write_text("a report of the case")
     assert run(study, tmp_path).solved == 0
+    assert report.exists()
     assert {path.name for path in (tmp_path / "set-aside").iterdir()} == {"copy.nc", "notes.nc"}
 
 
