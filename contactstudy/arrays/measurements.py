@@ -149,6 +149,7 @@ def _fields(number: int, line: str, separator: str) -> list[str]:
 def _named_unit(entry: str) -> tuple[str, str]:
     """Name and unit of a header's entry."""
     match = re.fullmatch(r"\s*([^\[(]*?)\s*[\[(]\s*(.*?)\s*[\])]\s*", entry)
+    match = match or re.fullmatch(r"\s*(\w+)\s*/\s*(\S+)\s*", entry)  # as DIN 1313 has it
     return (match[1].lower(), match[2]) if match else (entry.strip().lower(), "")
 
 

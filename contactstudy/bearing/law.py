@@ -13,7 +13,7 @@ from contactstudy import checks
 from contactstudy.arrays.html_table import html_table
 from contactstudy.arrays.required import require
 from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
-from contactstudy.bearing.motions import Values, broadcast, dataset, each_pair, with_position_errors
+from contactstudy.bearing.motions import UNITS, Values, broadcast, dataset, each_pair, with_position_errors
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -135,7 +135,9 @@ class ContactLaw:
             room = EDGE * (high - low)
             outside = values.values[(values.values < low - room) | (values.values > high + room)]
             if outside.size:
-                raise InvalidInputError(name, float(outside[0]), f"in the table, from {low:g} to {high:g}")
+                raise InvalidInputError(
+                    name, float(outside[0]), f"in the table, from {low:g} to {high:g} {UNITS[name]}"
+                )
         pairs = delta.values, theta.values
         return dataset(delta, theta, self.motion(*pairs), self.errors(*pairs))
 

@@ -40,13 +40,14 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Picture of a field: its values, what it shows along both axes, the largest value to draw, its axes' names."""
+    """Picture of a field: values, what it shows along both axes, largest value to draw, names of its axes, its place."""
 
     values: FloatArray
     across: Span
     up: Span
     most: float
     names: tuple[str, str]
+    place: str = ""
 
 
 def scale_of(one: Looked, *, relative: bool) -> Scale:
@@ -107,11 +108,13 @@ def plane(one: Looked, scale: Scale, shown: Span, kind: str, part: float) -> Ima
     if min(axes[across].size, axes[up].size) < 2 or (at == "y" and not axes["y"][0] <= 0 <= axes["y"][-1]):
         return None
     first, last = shown if at == "x" else (float(axes[at][0]), float(axes[at][-1]))
-    values = between(one.stress, axes[at], 0.0 if at == "y" else first + part * (last - first), "xyz".index(at))
+    position = 0.0 if at == "y" else first + part * (last - first)
+    values = between(one.stress, axes[at], position, "xyz".index(at))
     spans = [(float(axes[axis][0]), float(axes[axis][-1])) for axis in (across, up)]
     if across == "x":
         spans[0] = (max(spans[0][0], shown[0]), min(spans[0][1], shown[1]))
-    return _image(values, (axes[across], axes[up]), (spans[0], spans[1]), one.most_stress, scale, (across, up))
+    image = _image(values, (axes[across], axes[up]), (spans[0], spans[1]), one.most_stress, scale, (across, up))
+    return image._replace(place=f" at {at} = {position / scale.length:.3g} {scale.length_name.strip(' ()/')}")
 
 
 def _image(

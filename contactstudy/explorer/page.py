@@ -55,7 +55,7 @@ class Page:
         self.units = pn.widgets.RadioButtonGroup(options={"mm, MPa": False, "over a, p0": True}, value=False)
         self.plane = pn.widgets.Select(label="von Mises in the plane", options=list(PLANES))
         self.where = pn.widgets.FloatSlider(
-            label="where the plane is", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
+            label="where the plane is, from first to last", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
         )
         groups = by_subject(cases.scalars)
         first = next((name for names in groups.values() for name in names.values()), None)
@@ -219,7 +219,8 @@ class Page:
             for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
                 beyond = ", more beside the singular end" if one is not None and one.has_pressure and one.ends else ""
-                each.show(image, most, f"{name}{what}{units}{beyond}", up)
+                place = image.place if image is not None else ""
+                each.show(image, most, f"{name}{what}{units}{place}{beyond}", up)
 
     def _reasons(self, loaded: list[Looked | None], sides: list[int]) -> str:
         """Return in words why figures are missing, and hide their empty axes."""

@@ -71,6 +71,8 @@ class Dimensions:
             found = cls._for(values, radius, modulus, half_width)
             length = min(found.body_length, found.roller_length)
             if length <= 0:
+                if not half_width:  # whatever the load is
+                    found._check()
                 break
             pressure = hertz.line_max_pressure(load / length, radius, modulus)
             previous, half_width = half_width, hertz.line_half_width(pressure, radius, modulus)
@@ -94,7 +96,7 @@ class Dimensions:
         """Raise if a length is not positive."""
         for name, length in (("roller length", self.roller_length), ("body length", self.body_length)):
             if length <= 0:
-                hint = f"e = {self.end_distance:g} m, a = {self.half_width:g} m"
+                hint = f"e = {self.end_distance:g} m" + (f", a = {self.half_width:g} m" if self.half_width > 0 else "")
                 raise InvalidInputError(name, length, "positive (metres)", hint)
 
 

@@ -49,6 +49,15 @@ def test_commas_that_may_mean_something_else_are_refused(tmp_path: Path, rows: s
         read_columns(tmp_path / "a.csv", *COLUMNS)
 
 
+@pytest.mark.parametrize("header", ["x / mm;drop / um", "x/mm; drop/um", "x (mm);drop [um]"])
+def test_units_are_read_however_a_header_sets_them_off(tmp_path: Path, header: str) -> None:
+    (tmp_path / "a.csv").write_text(f"{header}\n1;2\n2;3\n")
+    found = read_columns(tmp_path / "a.csv", *COLUMNS)
+    x, drop = found["x"], found["drop"]
+    assert x.tolist() == pytest.approx([1e-3, 2e-3])
+    assert drop.tolist() == pytest.approx([2e-6, 3e-6])
+
+
 def workbook() -> bytes:
     with zipfile.ZipFile(content := io.BytesIO(), "w") as archive:
         archive.writestr("xl/workbook.xml", "<workbook/>")

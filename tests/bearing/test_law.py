@@ -125,7 +125,7 @@ def test_default_approaches_are_those_of_the_cases_load(short_case: Case, monkey
     ("call", "message"),
     [
         (lambda law: law.at(0.5e-6), "approach = 5e-07: must be in the table, from 1e-06"),
-        (lambda law: law.at(2e-6, 2e-3), r"tilt = 0.002: must be in the table, from -0.0015 to 0.0015"),
+        (lambda law: law.at(2e-6, 2e-3), r"tilt = 0.002: must be in the table, from -0.0015 to 0.0015 rad"),
         (lambda law: law.at("deep"), "approach = 'deep'"),
         (lambda law: law.under(1e4), "normal_load, moment = .*larger approaches or tilts"),
         (lambda law: law.under(100.0, 0.05), "normal_load, moment = "),

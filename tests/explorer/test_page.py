@@ -174,6 +174,7 @@ def test_planes_are_those_of_the_analysis(folder: Path) -> None:
     assert image is not None
     expected = in_plane(one.dataset[["von_mises"]], y=0.0, variables="von_mises")["von_mises"]
     assert float(image.values.max()) == pytest.approx(float(expected.max()) / 1e6, rel=0.02)
+    assert image.place == " at y = 0 mm"
     for kind in PLANES[1:]:
         found = plane(one, scale, whole, kind, 0.0)
         assert found is not None
