@@ -40,7 +40,7 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Picture of a field: values, what it shows along both axes, largest value to draw, names of its axes, its place."""
+    """Picture of a field: values, what it shows along both axes, largest value to draw, names of axes, its place."""
 
     values: FloatArray
     across: Span
