@@ -7,7 +7,7 @@ from typing import Any
 
 import xarray as xr
 
-from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import STRESSES
 
@@ -35,8 +35,6 @@ PROFILES = {
     "Measured": "F. N. Fritsch, J. Butland, SIAM J. Sci. Stat. Comput. 5 (1984) 300, its interpolation",
 }
 """Sources of profiles by their class."""
-
-STUDY_ATTRIBUTE = "contactstudy_study"
 
 FILTER = ("filter of the measured profile", "ISO 16610-21, ends by the moment criterion of ISO 16610-28")
 

@@ -47,17 +47,17 @@ def fields_on_one_grid(
     grids = {tuple(axis_dimensions(array).values()) for array in fields.values()}
     if len(grids) != 1 or grids == {()}:
         raise InvalidInputError(
-            "variables", variables or "all", "fields on the same points along x, y or z", choice(fields)
+            "variables", variables or "all", "fields on the same points along x, y or z", points_in_words(fields)
         )
     return fields
 
 
-def choice(arrays: dict[str, xr.DataArray]) -> str:
+def points_in_words(arrays: dict[str, xr.DataArray]) -> str:
     """Return which of the variables lie on the same points, as a hint.
 
     Examples
     --------
-    >>> choice({"pressure": xr.DataArray([[1.0]], dims=("x", "y")), "normal_load": xr.DataArray(1.0)})
+    >>> points_in_words({"pressure": xr.DataArray([[1.0]], dims=("x", "y")), "normal_load": xr.DataArray(1.0)})
     'name some on the same points: pressure (x, y) or normal_load (a single number)'
     """
     groups: dict[tuple[str, ...], list[str]] = {}

@@ -23,6 +23,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.versions import versions
 
 INPUTS_ATTRIBUTE, RUN_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run"
+STUDY_ATTRIBUTE = "contactstudy_study"
 """What was solved; and by what, when and how long. The files of a study have the second one, too."""
 
 SAME, NOTHING = 1e-6, 1e-15

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
@@ -13,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import single_case
+from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.required import require
 from contactstudy.errors import InvalidInputError
@@ -167,6 +167,6 @@ def of_dataset(opened: xr.Dataset) -> Cases:
 
 def _title(dataset: xr.Dataset, name: str) -> str:
     """Name of a study, from what its Dataset says of it."""
-    study = json.loads(dataset.attrs.get("contactstudy_study", "{}"))
+    study = attribute(dataset, STUDY_ATTRIBUTE)
     said = str(study.get("name", name))
     return f"{said}: {study['description']}" if study.get("description") else said

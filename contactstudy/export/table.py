@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
-from contactstudy.analysis.fields import choice
+from contactstudy.analysis.fields import points_in_words
 from contactstudy.arrays.required import require
 from contactstudy.arrays.variables import UNBOUNDED, variable_of
 from contactstudy.errors import InvalidInputError
@@ -64,7 +64,9 @@ def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | No
         chosen = {name: measure(dataset, name) for name in names}
     shapes = [array.dims for array in chosen.values()]
     if len({frozenset(dims) for dims in shapes}) != 1 or not all(shapes):
-        raise InvalidInputError("variables", variables or "all", "variables on the same points", choice(chosen))
+        raise InvalidInputError(
+            "variables", variables or "all", "variables on the same points", points_in_words(chosen)
+        )
     return xr.Dataset(chosen)
 
 

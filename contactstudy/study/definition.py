@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.html_table import html_table
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.cube import Axis
@@ -286,7 +287,7 @@ class Study:
         said = {"name": name, "level": level, "description": description}
         given = {key: value for key, value in said.items() if value is not None}
         if is_opened(table):
-            study = cls.from_mapping(json.loads(table.attrs["contactstudy_study"]))
+            study = cls.from_mapping(attribute(table, STUDY_ATTRIBUTE))
             content = part_of_study(study, table, base or {})
         else:
             content = content_of_table(table, base or {})

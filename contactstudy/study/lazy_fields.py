@@ -14,7 +14,7 @@ from contactstudy.arrays.variables import labels
 from contactstudy.checks import FloatArray
 from contactstudy.study.common_cells import OntoCommon, comment_of, common_columns, common_rows, resampled
 from contactstudy.study.cube import Cube
-from contactstudy.study.store import Structure, Variables, load_variable
+from contactstudy.study.store import Specifications, Structure, load_variable
 
 if TYPE_CHECKING:
     import dask.array as da
@@ -38,7 +38,7 @@ class _Source:
 
 
 class Fields:
-    """Variables that are not scalars, lazily, and their coordinates.
+    """Specifications that are not scalars, lazily, and their coordinates.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ class Fields:
     ) -> None:
         self._dataset, self._cube, self._paths, self._structures, self._cells = dataset, cube, paths, structures, cells
         self._positions: dict[str, dict[Place, FloatArray]] = {}
-        self._specifications: Variables = {}
+        self._specifications: Specifications = {}
         for place, (variables, positions) in structures.items():
             for name, specification in variables.items():
                 self._specifications.setdefault(name, specification)

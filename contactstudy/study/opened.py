@@ -11,13 +11,14 @@ import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.arrays.variables import DERIVED, describe, labels
 from contactstudy.study.errors import StoreError
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.lazy_fields import CELLS, Fields, Place
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import Plan, PlannedCase
-from contactstudy.study.store import Raw, Variables, read_structure, scalar_attributes
+from contactstudy.study.store import Raw, Specifications, read_structure, scalar_attributes
 
 
 def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
@@ -84,7 +85,7 @@ def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
         if entry.path and entry.run.get("level") != "summary"
     }
     structures = {}
-    alike: dict[Raw, Variables] = {}
+    alike: dict[Raw, Specifications] = {}
     for position, path in usable.items():
         try:
             structures[position] = read_structure(path, alike)
@@ -92,7 +93,7 @@ def open_study(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
             continue
     if structures:
         dataset = Fields(dataset, plan.cube, usable, structures, cells).added()
-    dataset.attrs = {"contactstudy_study": study.to_json()}
+    dataset.attrs = {STUDY_ATTRIBUTE: study.to_json()}
     return describe(dataset, study.description or f"study {study.name}")
 
 
@@ -189,7 +190,7 @@ def summaries(folder: str | Path) -> tuple[xr.Dataset, dict[Place, Path]]:
     plan = study.plan()
     entries = place.entries(plan)
     dataset = _summaries(plan, entries, place)
-    dataset.attrs = {"contactstudy_study": study.to_json()}
+    dataset.attrs = {STUDY_ATTRIBUTE: study.to_json()}
     pairs = zip(plan.cases, entries, strict=True)
     files = {case.position: place.path / entry.path for case, entry in pairs if entry.path}
     return describe(dataset, study.description or f"study {study.name}"), files

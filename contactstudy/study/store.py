@@ -47,7 +47,7 @@ class Header(NamedTuple):
     scalars: dict[str, float]
 
 
-class Variable(NamedTuple):
+class Specification(NamedTuple):
     """Dimensions, type and attributes of a variable."""
 
     dims: tuple[str, ...]
@@ -55,7 +55,7 @@ class Variable(NamedTuple):
     attributes: dict[str, Any]
 
 
-Variables = dict[str, Variable]
+Specifications = dict[str, Specification]
 
 Raw = tuple[tuple[str, tuple[str, ...], str], ...]
 """Names, dimensions and types of all variables in a file, as they are stored."""
@@ -64,7 +64,7 @@ Raw = tuple[tuple[str, tuple[str, ...], str], ...]
 class Structure(NamedTuple):
     """Variables of a file that are not scalars, and positions and widths along their dimensions."""
 
-    variables: Variables
+    variables: Specifications
     positions: dict[str, npt.NDArray[Any]]
 
 
@@ -278,7 +278,7 @@ def load_variable(path: Path, name: str) -> npt.NDArray[Any]:
         return np.asarray(dataset[name].values)
 
 
-def read_structure(path: Path, alike: dict[Raw, Variables]) -> Structure:
+def read_structure(path: Path, alike: dict[Raw, Specifications]) -> Structure:
     """Return what the variables of a case's file are, and where their values lie.
 
     Parameters
@@ -286,8 +286,8 @@ def read_structure(path: Path, alike: dict[Raw, Variables]) -> Structure:
     path : Path
         The file.
     alike : dict
-        Variables of files that were read before, by what is stored of them; what is new is entered. To ask xarray for
-        them takes ten times longer than to read positions.
+        Variables of files that were read before, by what is stored of them; what is new is entered. To ask xarray
+        for them takes ten times longer than to read positions.
 
     Raises
     ------
@@ -305,7 +305,7 @@ def read_structure(path: Path, alike: dict[Raw, Variables]) -> Structure:
     if raw not in alike:
         with _opened(path) as dataset:
             alike[raw] = {
-                str(name): Variable(tuple(map(str, entry.dims)), entry.dtype, dict(entry.attrs))
+                str(name): Specification(tuple(map(str, entry.dims)), entry.dtype, dict(entry.attrs))
                 for name, entry in dataset.data_vars.items()
                 if entry.ndim
             }

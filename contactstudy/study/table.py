@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.parameter import points
 from contactstudy.study.parameters import PARAMETERS
@@ -17,8 +18,6 @@ from contactstudy.unit_sizes import factor_to
 
 if TYPE_CHECKING:
     from contactstudy.study.definition import Study
-
-STUDY_ATTRIBUTE = "contactstudy_study"
 
 
 def is_opened(table: xr.Dataset) -> bool:

@@ -205,3 +205,16 @@ def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
     assert [at(one)[2] for one in found] == [0.0, 0.0]
     first, second = (float(one.peak_von_mises) for one in found)
     assert second / first == pytest.approx(5 / 3, rel=0.05)
+
+
+def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
+    """At this accuracy they said 1.094 GPa beside their last points, where the body has 1.067."""
+    profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
+    body, roller = FiniteLengthSpace(length=2e-3, material=STEEL), Roller(radius=5e-3, length=2e-3, profile=profile)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
+    found = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
+    x, y, z = (float(found[f"peak_von_mises_{axis}"]) for axis in "xyz")
+    there = float(solve(case, accuracy=0.005, x=[x], y=[y], z=[z])["von_mises"].squeeze())
+    assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
+    fine = solve(case, accuracy=0.001, y=[0.0], z=[1e-5])
+    assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])
