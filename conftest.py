@@ -13,6 +13,9 @@ for library in ("OMP", "OPENBLAS", "MKL", "PYFFTW"):
     os.environ.setdefault(f"{library}_NUM_THREADS", "1")
 # Figures are drawn to files, with and without a screen.
 os.environ.setdefault("MPLBACKEND", "Agg")
+# Processes of a busy machine start and answer late: no test depends on its load.
+for name in ("COMM__TIMEOUTS__CONNECT", "COMM__TIMEOUTS__TCP", "DEPLOY__LOST_WORKER_TIMEOUT"):
+    os.environ.setdefault(f"DASK_DISTRIBUTED__{name}", "300s")
 # dask silences numpy's warnings about empty slices with `warnings.catch_warnings`, which threads undo for one another.
 os.environ.setdefault("DASK_SCHEDULER", "synchronous")
 

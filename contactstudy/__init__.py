@@ -12,8 +12,6 @@ from importlib import import_module
 
 import lazy_loader
 
-from contactstudy.near_names import missing
-
 # By default the package logs nothing; logging.basicConfig(level="INFO") shows its stages.
 logging.getLogger(__name__).addHandler(logging.NullHandler())
 
@@ -21,21 +19,16 @@ _public_name, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)
 
 
 def __getattr__(name: str) -> object:
-    """Import a public name on first use, and register ``Dataset.contact`` as soon as xarray is there."""
+    """Import a public name on first use; register ``Dataset.contact`` once xarray is imported."""
     if name == "__version__":
         from contactstudy.versions import version_of
 
         return version_of(__name__)
-    try:
-        value: object = _public_name(name)
-    except AttributeError:
-        if name in __all__:
-            raise
-        raise missing(name, f"module {__name__!r}", __all__) from None
+    value: object = _public_name(name)
     if "xarray" in sys.modules:
-        import_module("contactstudy.analysis.accessor")
+        import_module("contactstudy.accessor")
     return value
 
 
 if "xarray" in sys.modules:
-    import_module("contactstudy.analysis.accessor")
+    import_module("contactstudy.accessor")

@@ -1,13 +1,13 @@
-"""What is expensive to make and worth keeping: one store, bounded in bytes, for the whole process.
+"""One cache for the process, bounded in bytes.
 
-The cases of a sweep share operators, kernels and fields through it. What is kept depends on nothing but its request,
-the one argument that its maker is called with, so results are the same to the last bit with and without the store.
+The cases of a sweep share operators, kernels and fields through it. A value depends only on its request, the
+single argument of its function, so results are bit for bit the same with and without the cache.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from threading import RLock
@@ -19,57 +19,36 @@ from cachetools import LRUCache
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 
-LIMIT = 3 * 2**29
-"""Bytes that all kept values together take at most, unless `limit` says otherwise. Speed only."""
-
+LIMIT = 3 * 2**29  # Default bound of all cached values, bytes. Speed
 Request = TypeVar("Request", bound=Hashable)
 Value = TypeVar("Value")
 
 
 @dataclass(frozen=True)
-class Kept:
-    """What is kept of one kind.
-
-    Attributes
-    ----------
-    values : int
-        Number of values kept now.
-    nbytes : int
-        Memory that they take, bytes.
-    reused, made : int
-        How often a value was found and how often it was made, in this process.
-    """
+class KindInfo:
+    """Cached values of one kind: their number and bytes, and how many were reused and computed in this process."""
 
     values: int = 0
     nbytes: int = 0
     reused: int = 0
-    made: int = 0
+    computed: int = 0
 
 
 @dataclass(frozen=True)
 class CacheInfo:
-    """State of the store.
-
-    Attributes
-    ----------
-    limit : int
-        Bytes that all values together may take.
-    nbytes : int
-        Bytes that they take.
-    kinds : dict of str to Kept
-        The same by kind.
-    """
+    """State of the store: its limit and its values in bytes, also by kind."""
 
     limit: int
     nbytes: int
-    kinds: dict[str, Kept]
+    kinds: dict[str, KindInfo]
 
     def __str__(self) -> str:
         """Return a table."""
         rows = [f"{self.nbytes / 2**20:.1f} of {self.limit / 2**20:.0f} MiB"]
         rows += [
-            f"  {kind}: {kept.values} in {kept.nbytes / 2**20:.1f} MiB, made {kept.made}, reused {kept.reused}"
-            for kind, kept in self.kinds.items()
+            f"  {kind}: {values.values} in {values.nbytes / 2**20:.1f} MiB, "
+            f"computed {values.computed}, reused {values.reused}"
+            for kind, values in self.kinds.items()
         ]
         return "\n".join(rows)
 
@@ -86,7 +65,7 @@ _store: LRUCache[tuple[str, Hashable], _Entry] = LRUCache(LIMIT, getsizeof=lambd
 
 
 def info() -> CacheInfo:
-    """Return what is kept, by kind.
+    """Return the state of the cache, by kind.
 
     Examples
     --------
@@ -97,19 +76,19 @@ def info() -> CacheInfo:
     """
     with _lock:
         kinds = {
-            kind: Kept(
+            kind: KindInfo(
                 values=sum(1 for owner, _ in _store if owner == kind),
                 nbytes=sum(entry.nbytes for (owner, _), entry in _store.items() if owner == kind),
                 reused=reused,
-                made=made,
+                computed=computed,
             )
-            for kind, (reused, made) in sorted(_counts.items())
+            for kind, (reused, computed) in sorted(_counts.items())
         }
         return CacheInfo(int(_store.maxsize), int(_store.currsize), kinds)
 
 
 def clear() -> None:
-    """Drop all that is kept, and start counting anew."""
+    """Drop all values and reset the counts."""
     with _lock:
         _store.clear()
         for counts in _counts.values():
@@ -117,12 +96,12 @@ def clear() -> None:
 
 
 def limit(nbytes: int) -> None:
-    """Bound what is kept; the least recently used values are dropped first.
+    """Bound the cache; the least recently used values are dropped first.
 
     Parameters
     ----------
     nbytes : int
-        Bytes that all kept values together may take; 0 keeps nothing. A single value larger than this is not kept.
+        Largest total size of the values; 0 for an empty cache. A single larger value is not cached.
 
     Raises
     ------
@@ -142,82 +121,68 @@ def limit(nbytes: int) -> None:
     with _lock:
         smaller: LRUCache[tuple[str, Hashable], _Entry] = LRUCache(bound, getsizeof=lambda entry: entry.nbytes)
         while _store:
-            key, entry = _store.popitem()  # the least recently used first, so that the others stay the more recent
+            key, entry = _store.popitem()  # the least recently used first: the order is preserved
             if entry.nbytes <= bound:
                 smaller[key] = entry
         _store = smaller
 
 
-def kept(kind: str, nbytes: Callable[[Any], int]) -> Callable[[Callable[[Request], Value]], Callable[[Request], Value]]:
-    """Make a function of one hashable request keep what it returns.
+def cached(
+    kind: str, nbytes: Callable[[Any], int]
+) -> Callable[[Callable[[Request], Value]], Callable[[Request], Value]]:
+    """Cache the values of a function of one hashable request, the complete key; `nbytes` is the size of a value.
 
-    The request is all that the function sees, so nothing that decides the value can be missing from its key. Values are
-    shared by all threads and must not be changed.
-
-    Parameters
-    ----------
-    kind : str
-        Name of these values in `info`.
-    nbytes : callable
-        Bytes that a value takes.
-
-    Examples
-    --------
-    >>> made = []
-    >>> @kept("squares", lambda value: 8)
-    ... def square(number: int) -> int:
-    ...     made.append(number)
-    ...     return number**2
-    >>> square(3), square(3), made
-    (9, 9, [3])
+    Values are shared by all threads; their arrays become read-only.
     """
 
-    def decorated(make: Callable[[Request], Value]) -> Callable[[Request], Value]:
+    def decorator(compute: Callable[[Request], Value]) -> Callable[[Request], Value]:
         counts = _counts.setdefault(kind, [0, 0])
 
-        @wraps(make)
+        @wraps(compute)
         def look_up(request: Request) -> Value:
             key = (kind, request)
             with _lock:
-                found = _store.get(key)
-                counts[0 if found else 1] += 1
-            if found:
-                value: Value = found.value
+                entry = _store.get(key)
+                counts[0 if entry else 1] += 1
+            if entry:
+                value: Value = entry.value
                 return value
-            value = make(request)
+            value = compute(request)
+            _protect(value)
             entry = _Entry(value, nbytes(value))
             with _lock:
                 if entry.nbytes <= _store.maxsize:
-                    # Of two threads that made the same value, the first one's is kept.
+                    # Two threads may compute equal values: the first remains.
                     value = _store.setdefault(key, entry).value
             return value
 
         return look_up
 
-    return decorated
+    return decorator
+
+
+def _protect(value: object) -> None:
+    """Make the arrays of a value read-only: those in mappings, sequences and objects of this package as well."""
+    if isinstance(value, np.ndarray):
+        value.flags.writeable = False
+    elif isinstance(value, (list, tuple)):
+        for item in value:
+            _protect(item)
+    elif isinstance(value, Mapping) or type(value).__module__.startswith("contactstudy."):
+        for item in (value if isinstance(value, Mapping) else vars(value)).values():
+            _protect(item)
 
 
 class ArrayKey:
-    """An array compared by its values, as a part of a request.
-
-    Attributes
-    ----------
-    values : array
-        The array; a copy that cannot be changed.
-
-    Examples
-    --------
-    >>> ArrayKey(np.zeros(3)) == ArrayKey(np.zeros(3)), ArrayKey(np.zeros(3)) == ArrayKey(np.ones(3))
-    (True, False)
-    """
+    """An array compared by its values, as a part of a request; `values` is a read-only copy."""
 
     def __init__(self, values: FloatArray) -> None:
         self.values: FloatArray = np.array(values)
         self.values.flags.writeable = False
-        found = hashlib.blake2b(digest_size=16)
-        found.update(f"{self.values.dtype} {self.values.shape}".encode())
-        found.update(np.ascontiguousarray(self.values).tobytes())
-        self._digest = found.digest()
+        digest = hashlib.blake2b(digest_size=16)
+        digest.update(f"{self.values.dtype} {self.values.shape}".encode())
+        digest.update(np.ascontiguousarray(self.values).tobytes())
+        self._digest = digest.digest()
 
     def __eq__(self, other: object) -> bool:
         """Whether the other is an array of the same values."""

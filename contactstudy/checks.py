@@ -2,26 +2,65 @@
 
 from __future__ import annotations
 
+import math
+import os
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from difflib import get_close_matches
 from numbers import Integral, Real
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from contactstudy.errors import InvalidInputError
-from contactstudy.near_names import nearest
-from contactstudy.unit_sizes import factor_to
+
+UNIT_SIZES: dict[str, dict[str, float]] = {
+    "m": {
+        "m": 1.0,
+        "mm": 1e-3,
+        "um": 1e-6,
+        "µm": 1e-6,
+        "μm": 1e-6,
+        "micrometer": 1e-6,
+        "micron": 1e-6,
+        "nm": 1e-9,
+        "km": 1e3,
+        "metre": 1.0,
+        "meter": 1.0,
+        "metres": 1.0,
+        "meters": 1.0,
+    },
+    "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "N/mm2": 1e6, "N/mm^2": 1e6, "N mm-2": 1e6, "bar": 1e5},
+    "N": {"N": 1.0, "kN": 1e3},
+    "N m": {"N m": 1.0, "Nm": 1.0, "N*m": 1.0, "N.m": 1.0, "N mm": 1e-3, "Nmm": 1e-3},
+    "rad": {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "degree": math.pi / 180, "degrees": math.pi / 180},
+    "Pa s": {"Pa s": 1.0, "mPa s": 1e-3},
+    "1/Pa": {"1/Pa": 1.0, "1/GPa": 1e-9, "mm2/N": 1e-6},
+    "kg/m3": {"kg/m3": 1.0, "g/cm3": 1e3},
+    "J/(kg K)": {"J/(kg K)": 1.0, "J/(g K)": 1e3},
+    "rad/m": {"rad/m": 1.0, "1/m": 1.0, "rad/mm": 1e3, "1/mm": 1e3},
+    "1": {"1": 1.0, "%": 0.01, "percent": 0.01},
+}
+"""Units that input may have, by the one in SI, and their sizes in it."""
+
+
+def factor_to(unit: str, name: str, input_unit: object) -> float:
+    """Return the factor that converts values in `input_unit` to `unit`, an SI unit."""
+    sizes = UNIT_SIZES.get(unit, {})
+    if not isinstance(input_unit, str) or input_unit.strip() not in sizes:
+        allowed = f"one of {', '.join(sizes)}" if sizes else "left out"
+        raise InvalidInputError(name, input_unit, allowed, f"without it {unit} is meant" if sizes else "")
+    return sizes[input_unit.strip()]
+
 
 Array = npt.NDArray[Any]
 FloatArray = npt.NDArray[np.float64]
 ComplexArray = npt.NDArray[np.complex128]
 IntArray = npt.NDArray[np.int64]
 BoolArray = npt.NDArray[np.bool_]
-
-REAL = "biufO"
-"""Kinds of arrays whose values can be real numbers: not complex ones, dates or texts."""
+REAL = "biufO"  # Kinds of arrays whose values can be real numbers: not complex ones, dates or texts
 
 
 def store(checked: object, **values: object) -> None:
@@ -43,40 +82,19 @@ def _float(value: Real) -> float:
         return np.inf
 
 
-SI_WORDS = {"": "1", "metres": "m", "radians": "rad"}
-"""What messages call units, where that is not the unit itself."""
+SI_WORDS = {"": "1", "metres": "m", "radians": "rad"}  # Units by their words in messages
 
 
 def scalar(name: str, value: Any, unit: str = "") -> Any:
-    """Return the number in an array without dimensions, in SI if an attribute ``units`` says what it is in.
-
-    Parameters
-    ----------
-    name : str
-        Name of the argument.
-    value : object
-        A 0-d array of numpy, or a DataArray such as a scalar of a result. All else is returned as it is.
-    unit : str
-        Unit in SI, as messages call it.
-
-    Raises
-    ------
-    InvalidInputError
-        If the array says a unit that is not known for this quantity.
-
-    Examples
-    --------
-    >>> scalar("young", np.array(210e9), "Pa")
-    210000000000.0
-    """
+    """Return the number in an array without dimensions, in SI by its attribute ``units``; all else unchanged."""
     if isinstance(value, np.generic) or getattr(value, "ndim", None) != 0 or not hasattr(value, "item"):
         return value
-    # By way of numpy: a lazy array has no item().
-    number, said = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
-    known = SI_WORDS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
-    if said is None or said == known or isinstance(number, bool) or not isinstance(number, Real):
+    # Through numpy: a lazy array lacks item().
+    number, unit_attribute = np.asarray(value).item(), getattr(value, "attrs", {}).get("units")
+    symbol = SI_WORDS.get(unit, unit.partition(",")[0])  # "m/s, of rolling" is in m/s
+    if unit_attribute is None or unit_attribute == symbol or isinstance(number, bool) or not isinstance(number, Real):
         return number
-    return factor_to(known, f"{name}.attrs['units']", said) * _float(number)
+    return factor_to(symbol, f"{name}.attrs['units']", unit_attribute) * _float(number)
 
 
 def finite(name: str, value: object, unit: str = "") -> float:
@@ -103,10 +121,10 @@ def _within(name: str, value: object, unit: str, least: float, allowed: str) -> 
     """Return a real number from `least` to `LARGEST`, or raise."""
     number = scalar(name, value, unit)
     if not isinstance(number, bool) and isinstance(number, Real):
-        found = _float(number)
-        if least <= found <= LARGEST:
-            return found
-        if np.isfinite(found) and (found > 0 or least < 0):
+        real = _float(number)
+        if least <= real <= LARGEST:
+            return real
+        if np.isfinite(real) and (real > 0 or least < 0):
             sizes = f"{1 / LARGEST:g} to {LARGEST:g}"
             raise InvalidInputError(name, value, f"{allowed}, of a size from {sizes}", "units are SI")
     raise InvalidInputError(name, value, allowed)
@@ -126,21 +144,35 @@ def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: s
         raise InvalidInputError(name, value, f"{allowed}, not {type(value).__name__}")
 
 
-def known_name(name: str, value: str, known: Iterable[str]) -> str:
-    """Return `value` if it is one of `known`, or raise with the nearest known name."""
-    names = sorted(known)
+def known_name(name: str, value: str, names: Iterable[str]) -> str:
+    """Return `value` if it is one of `names`, or raise with the nearest names; up to twenty are listed all."""
+    names = sorted(names)
     if value in names:
         return value
-    near = nearest(value, names, likeness=0.5)
-    hint = f"did you mean {near!r}?" if near else ""
-    raise InvalidInputError(name, value, f"one of {', '.join(names)}", hint)
+    near = get_close_matches(value, names, n=1, cutoff=0.5)
+    hint = f"did you mean {near[0]!r}?" if near else ""
+    listed = names if len(names) <= 20 else get_close_matches(value, names, n=3, cutoff=0.0)
+    more = "" if listed is names else f", or one of {len(names) - 3} further names"
+    raise InvalidInputError(name, value, f"one of {', '.join(listed)}{more}", hint)
 
 
 @contextmanager
-def writing(path: object) -> Iterator[None]:
-    """Turn what the system says against writing a file into an error that names the path."""
+def writing(path: str | Path) -> Iterator[Path]:
+    """Yield the path of a new file in the same folder; it replaces the file or link `path` when it is complete.
+
+    The previous file stays if writing fails, with an InvalidInputError. A device or pipe is written to directly.
+    """
+    target = Path(path)
+    part = target.with_name(f".{target.stem}.part-{os.getpid()}{target.suffix}")
     try:
-        yield
+        if target.exists() and not target.is_file():
+            yield target
+            return
+        try:
+            yield part
+            os.replace(part, target)
+        finally:
+            part.unlink(missing_ok=True)
     except OSError as error:
         reason = error.strerror or str(error)
         raise InvalidInputError("path", str(path), "a file that can be written", reason.lower()) from None

@@ -10,6 +10,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,26 +19,13 @@ from contactstudy.errors import ContactStudyError, Terminated
 
 if TYPE_CHECKING:
     from contactstudy.study import RunReport, Study
-    from contactstudy.study.work import Solver
+    from contactstudy.study.worker import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
 
 
 def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None) -> int:
-    """Run the command line and return the exit code.
-
-    Parameters
-    ----------
-    arguments : sequence of str, optional
-        Default: those of the process.
-    solver : callable, optional
-        Called instead of :func:`contactstudy.solve`.
-
-    Examples
-    --------
-    >>> main(["plan", "no_such_study.toml"])
-    2
-    """
+    """Run the command line and return the exit code; `solver` is called instead of :func:`contactstudy.solve`."""
     parser = command_parser()
     options = parser.parse_args(arguments)
     options.whole_process = arguments is None
@@ -79,7 +67,7 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
             signal.signal(signal.SIGINT, signal.SIG_IGN)  # the process ends: more of them would break off the ending
         words = str(interrupt) or "interrupted; finished cases are kept, the same command goes on"
         print(f"contactstudy: {words}", file=sys.stderr)
-        return 128 + (signal.SIGTERM if isinstance(interrupt, Terminated) else signal.SIGINT)
+        return 128 + (interrupt.number if isinstance(interrupt, Terminated) else signal.SIGINT)
     except BrokenPipeError:
         # Python flushes the output once more at its end, and would complain.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -87,13 +75,13 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     return code
 
 
-def _say(lines: Iterable[str]) -> None:
+def _print(lines: Iterable[str]) -> None:
     for line in lines:
         print(line)
 
 
 def _study(options: argparse.Namespace) -> Study:
-    """Read a study, say how many cases it has, and make sure that so many are meant."""
+    """Read a study; a very large one needs a confirmation."""
     from contactstudy.errors import InvalidInputError
     from contactstudy.study import Study
 
@@ -103,22 +91,40 @@ def _study(options: argparse.Namespace) -> Study:
     print(f"study {study.name}: {study.size} combinations", flush=True)
     if not sys.stdin.isatty():
         raise InvalidInputError("study", f"{study.size} combinations", f"fewer than {MANY_CASES}", "or say --yes")
-    if input("That many files will be made. Go on? [y/N] ").strip().lower() not in ("y", "yes"):
+    if input("Go on? [y/N] ").strip().lower() not in ("y", "yes"):
         raise ContactStudyError("nothing done")
     return study
 
 
 def _parallel(options: argparse.Namespace) -> dict[str, Any]:
-    """Where cases are to be solved, as arguments of `run_study`."""
-    given = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
-    return {name: value for name, value in given.items() if value is not None}
+    """Arguments of `run_study` that choose the workers."""
+    values = {"workers": options.workers, "scheduler": options.scheduler, "wait": options.wait}
+    return {name: value for name, value in values.items() if value is not None}
 
 
 def _run(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import run_study
 
-    report = run_study(_study(options), options.out, solver=solver, **_parallel(options))
-    return _report(report, figure=not options.no_figure)
+    share = _share(options.share)
+    report = run_study(_study(options), options.out, solver=solver, share=share, **_parallel(options))
+    if share is None:
+        return _report(report, figure=not options.no_figure)
+    from contactstudy.study.report import run_lines
+
+    _print(run_lines(report))
+    return ALL_OK if not report.failures else SOME_FAILED
+
+
+def _share(text: str | None) -> tuple[int, int] | None:
+    """Read a share, written as ``3/40``."""
+    if text is None:
+        return None
+    from contactstudy.errors import InvalidInputError
+
+    number, slash, count = text.partition("/")
+    if not (slash and number.isdecimal() and count.isdecimal()):
+        raise InvalidInputError("share", text, "two numbers with a slash, such as 3/40 for the third of forty shares")
+    return int(number), int(count)
 
 
 def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
@@ -129,7 +135,7 @@ def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _report(report: RunReport, *, figure: bool) -> int:
-    """Write summary and figures, and say what a run did; all is written even if nobody reads what is said."""
+    """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
     from contactstudy.study.report import run_lines, shown, stale_lines
 
     written: list[str] = []
@@ -139,13 +145,13 @@ def _report(report: RunReport, *, figure: bool) -> int:
             written += [f"wrote {shown(drawn)}" for drawn in (_draw(report.folder) if figure else [])]
         except ContactStudyError as error:
             written.append(f"  no figure: {error}")
-    _say([*run_lines(report), *written, *stale_lines(report)])
+    _print([*run_lines(report), *written, *stale_lines(report)])
     return ALL_OK if not report.failures else SOME_FAILED
 
 
 def _write_summary(folder: Path, target: Path | None = None) -> Path:
     from contactstudy.study import collect
-    from contactstudy.study.store import write_dataset
+    from contactstudy.study.files import write_dataset
 
     path = target if target is not None else folder / "summary.nc"
     write_dataset(path, collect(folder))
@@ -161,12 +167,13 @@ def _draw(folder: Path) -> list[Path]:
     try:
         from matplotlib import pyplot
 
-        from contactstudy.report.study_pictures import figures_of_folder
+        from contactstudy.report.study_page import figures_of_folder
+        from contactstudy.study.files import write_atomically
 
         paths = []
         for name, (figure, _) in figures_of_folder(folder).items():
-            paths.append(folder / f"{name}.png")
-            figure.savefig(paths[-1], dpi=150)
+            save = partial(figure.savefig, dpi=150, format="png")
+            paths.append(write_atomically(folder / f"{name}.png", save))
             pyplot.close(figure)
         return paths
     finally:
@@ -174,37 +181,38 @@ def _draw(folder: Path) -> list[Path]:
 
 
 def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
+    from contactstudy.study import run_study
     from contactstudy.study.folder import Folder
     from contactstudy.study.report import forecast_lines, shown, state_lines
 
     study = _study(options)
     folder = Folder(options.out if options.out is not None else Path("results") / study.name)
     print(f"study {study.name}: {study.size} combinations, results in {shown(folder.path)}", flush=True)
-    plan = study.plan()
+    if options.sample is not None:
+        states = run_study(study, folder.path, sample=options.sample, solver=solver, workers=options.workers).states
+    else:
+        states = folder.states(study.plan())
+    plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
-    print(f"{len(plan.cases)} cases ({shape})")
-    entries = folder.entries(plan)
-    _say(state_lines(plan, entries, everything=options.all))
-    _say(forecast_lines(plan, entries))
+    print(f"{len(plan)} cases ({shape})")
+    _print(state_lines(states, everything=options.all))
+    _print(forecast_lines(states))
     return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
 
 
 def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.folder import Folder
-    from contactstudy.study.lock import read_lock
     from contactstudy.study.report import forecast_lines, shown, state_lines
 
     folder = Folder(options.folder)
     study = folder.read_study()
-    plan = study.plan()
-    entries = folder.entries(plan)
-    print(f"study {study.name}: {len(plan.cases)} cases, results in {shown(folder.path)}")
-    holder = read_lock(folder.path)
-    if holder is not None:
-        print(f"locked by process {holder.get('process')} on {holder.get('host')} since {holder.get('time')}")
-    _say(state_lines(plan, entries, everything=options.all))
-    _say(forecast_lines(plan, entries))
-    return ALL_OK if all(entry.status in ("ok", "skipped") for entry in entries) else SOME_FAILED
+    states = folder.states(study.plan())
+    print(f"study {study.name}: {len(states.plan)} cases, results in {shown(folder.path)}")
+    for holder in folder.holders:
+        print(f"locked: {holder}")
+    _print(state_lines(states, everything=options.all))
+    _print(forecast_lines(states))
+    return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 
 def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
@@ -236,14 +244,14 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _collect_rarely(options: argparse.Namespace) -> None:
-    """By default a tenth of the time of a page or report goes into looking for garbage in what was imported."""
+    """Collect garbage rarely: with Python's default it takes a tenth of the time of a page or report."""
     if options.whole_process:
         gc.set_threshold(50_000)
 
 
 def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
     _collect_rarely(options)
-    from contactstudy.arrays.named_places import selection_of
+    from contactstudy.arrays.selections import selection_of
     from contactstudy.report import write
     from contactstudy.study.report import shown
 
@@ -258,33 +266,30 @@ def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.explorer import serve
 
     if options.whole_process and "dask" not in sys.modules:
-        # The page computes nothing with dask, but xarray imports it where it is found, and that takes longer than
-        # xarray itself. None says that there is none; this process ends with the page.
+        # xarray would import dask, which takes longer than xarray itself and is not used; None prevents the import.
         sys.modules["dask"] = None  # type: ignore[assignment]
-    serve(options.folder, port=options.port, show=not options.no_browser)
+    serve(options.folder, port=options.port, hosts=options.host, show=not options.no_browser)
     return ALL_OK
 
 
 def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import report as words
-    from contactstudy.verification import report, run
+    from contactstudy.verification import suite
     from contactstudy.verification.check import Check
 
     folder = options.out if options.out is not None else Path("results/verification")
-    report.make_folder(folder)  # before the work, not after
+    suite.make_folder(folder)  # before the work, not after
     shown: set[str] = set()
 
     def show(group: str, check: Check) -> None:
         if group not in shown:
-            print(f"\n{group}\n{report.HEADING}")
+            print(f"\n{group}\n{suite.HEADING}")
         shown.add(group)
-        print(report.line(check), flush=True)
+        print(suite.line(check), flush=True)
 
-    verification = run(options.level, show)
-    for table in verification.tables:
-        print(f"\n{report.convergence_table(table)}")
-    print(f"\n{report.summary(verification)}")
-    for path in report.write(verification, folder):
+    verification = suite.run(options.level, show)
+    print(f"\n{suite.summary(verification)}")
+    for path in suite.write(verification, folder):
         print(f"wrote {words.shown(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-MANY_CASES = 100_000
-"""Combinations from which on a study is planned only after a question, or with --yes."""
+MANY_CASES = 100_000  # Combinations of a study that needs a confirmation, or --yes
 
 
 def command_parser() -> argparse.ArgumentParser:
@@ -15,11 +14,11 @@ def command_parser() -> argparse.ArgumentParser:
         prog="contactstudy",
         description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
         epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
-        "130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
+        "129 after SIGHUP, 130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
     )
     parsed.add_argument("--version", action="store_true", help="show the version and end")
     parsed.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
-    parsed.add_argument("--verbose", action="store_true", help="say on the error output what is being done")
+    parsed.add_argument("--verbose", action="store_true", help="log to the error output")
     commands = parsed.add_subparsers(dest="command", metavar="COMMAND")
 
     def command(name: str, text: str, *, takes_study: bool) -> argparse.ArgumentParser:
@@ -41,10 +40,14 @@ def command_parser() -> argparse.ArgumentParser:
 
     run = command("run", "Solve the cases of a study that are not solved yet.", takes_study=True)
     parallel(run)
-    plan = command("plan", "Say what a run would do; solve nothing.", takes_study=True)
+    run.add_argument("--share", metavar="K/N", help="solve share K of N, such as 3/40: for job arrays")
+    text = "State of every case, errors in the study, and bytes and time of a run; solves nothing without --sample."
+    plan = command("plan", text, takes_study=True)
+    plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
+    plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
     for added in (run, plan):
         added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
-    status = command("status", "Say what is done, failed, stale or missing.", takes_study=False)
+    status = command("status", "State of every case: done, failed, stale or missing.", takes_study=False)
     for added in (plan, status):
         added.add_argument("--all", action="store_true", help="list every case")
     added = command("collect", "Merge the summaries of all cases into one netCDF file.", takes_study=False)
@@ -65,6 +68,8 @@ def command_parser() -> argparse.ArgumentParser:
     added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
     explore = command("explore", "Serve a page to look through a study, on this machine.", takes_study=False)
     explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
+    text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
+    explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
     explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
     text = "Write one HTML page of a case or of a study, for a reader without Python."
     added = commands.add_parser("report", help=text, description=text)

@@ -13,6 +13,10 @@ class ContactStudyError(Exception):
     """Base class of all errors raised by contactstudy."""
 
 
+class FilmError(ContactStudyError):
+    """No film separates the surfaces, or the iteration for it does not converge."""
+
+
 class InvalidInputError(ContactStudyError, ValueError):
     """A parameter has a value that the calculation does not allow.
 
@@ -25,7 +29,7 @@ class InvalidInputError(ContactStudyError, ValueError):
     allowed : str
         What is allowed, as the end of the sentence "must be ...".
     hint : str, optional
-        What to do about it.
+        Advice.
 
     Examples
     --------
@@ -39,7 +43,7 @@ class InvalidInputError(ContactStudyError, ValueError):
         self.value = value
         self.allowed = allowed
         self.hint = hint
-        message = f"{parameter} = {_shown(value)}: must be {allowed}"
+        message = f"{parameter} = {_format_value(value)}: must be {allowed}"
         super().__init__(f"{message}; {hint}" if hint else message)
 
     def __reduce__(self) -> tuple[type, tuple[str, object, str, str]]:
@@ -47,29 +51,26 @@ class InvalidInputError(ContactStudyError, ValueError):
         return type(self), (self.parameter, self.value, self.allowed, self.hint)
 
 
-def _shown(value: Any) -> str:
-    """Return a value on one short line: of an array its kind and shape, of one without dimensions the number.
-
-    A lazy array is not computed for it.
-    """
+def _format_value(value: Any) -> str:
+    """Return a value on one short line: of an array its kind and shape; a lazy array is not computed."""
     try:
         shape, dtype = getattr(value, "shape", None), getattr(value, "dtype", None)
-        if isinstance(value, type):  # its attributes are those of its instances
-            shown = repr(value)
+        if isinstance(value, type):  # a class has the attributes of its instances
+            text = repr(value)
         elif hasattr(value, "data_vars"):
-            shown = f"{type(value).__name__} of {len(value.data_vars)} variables"
+            text = f"{type(value).__name__} of {len(value.data_vars)} variables"
         elif dtype is None or not isinstance(shape, tuple):
-            shown = " ".join(line.strip() for line in repr(value).splitlines())
+            text = " ".join(line.strip() for line in repr(value).splitlines())
         elif getattr(value, "chunks", None) is not None:
-            shown = f"lazy {type(value).__name__} of {f'shape {shape} and ' if shape else ''}type {dtype}"
+            text = f"lazy {type(value).__name__} of {f'shape {shape} and ' if shape else ''}type {dtype}"
         elif shape:
-            shown = f"{type(value).__name__} of shape {shape} and type {dtype}"
+            text = f"{type(value).__name__} of shape {shape} and type {dtype}"
         else:
             unit = getattr(value, "attrs", {}).get("units")
-            shown = repr(value.item()) + (f" {unit}" if isinstance(unit, str) else "")
+            text = repr(value.item()) + (f" {unit}" if isinstance(unit, str) else "")
     except (ValueError, RecursionError):  # a whole number of thousands of digits, tables within tables
-        shown = f"a {type(value).__name__} that is too large to show"
-    return shown if len(shown) <= 120 else shown[:117] + "..."
+        text = f"a {type(value).__name__} that is too large to show"
+    return text if len(text) <= 120 else text[:117] + "..."
 
 
 class WindowError(ContactStudyError):
@@ -77,11 +78,13 @@ class WindowError(ContactStudyError):
 
 
 class Terminated(KeyboardInterrupt):
-    """A run was asked to end by SIGTERM; everything that Ctrl-C does happens as well."""
+    """A signal with this number, SIGTERM or SIGHUP, ended a run, with all that Ctrl-C does as well."""
+
+    number = 15
 
 
 class ConvergenceWarning(UserWarning):
-    """The contact iteration stopped before its tolerance; the result says ``converged = False``."""
+    """The contact iteration stopped before its tolerance; ``converged`` is False in the result."""
 
 
 class MagnitudeWarning(UserWarning):

@@ -1,4 +1,4 @@
-"""Versions of the package and of what it stands on, for files, reports and questions about a number."""
+"""Versions of the package and of its dependencies, for files and reports."""
 
 from __future__ import annotations
 
@@ -6,22 +6,14 @@ import platform
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
-PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")
-"""What a number depends on."""
-
-OTHERS = ("dask", "matplotlib", "pandas", "panel", "clarabel")
-"""What is worth knowing besides; the last two come with the extras `explore` and `shakedown`."""
+PACKAGES = ("numpy", "scipy", "xarray", "netCDF4", "pyfftw")  # Packages on which results depend
+FURTHER = ("dask", "matplotlib", "pandas", "panel", "clarabel")
+"""Further packages; the last two come with the extras `explore` and `shakedown`."""
 
 
 @cache
 def version_of(package: str) -> str:
-    """Version of an installed package; "unknown" if there is none. It is looked up once: a study asks for each case.
-
-    Examples
-    --------
-    >>> version_of("no-such-package")
-    'unknown'
-    """
+    """Version of an installed package; "unknown" without one. The result is cached."""
     try:
         return version(package)
     except PackageNotFoundError:
@@ -30,15 +22,9 @@ def version_of(package: str) -> str:
 
 @cache
 def versions() -> dict[str, str]:
-    """Versions of this package, of Python, and of the packages that a number depends on.
-
-    Examples
-    --------
-    >>> list(versions())[:3]
-    ['contactstudy', 'python', 'numpy']
-    """
-    own = {"contactstudy": version_of("contactstudy"), "python": platform.python_version()}
-    return own | {package: version_of(package) for package in PACKAGES}
+    """Versions of this package, of Python, and of the packages that a number depends on."""
+    base = {"contactstudy": version_of("contactstudy"), "python": platform.python_version()}
+    return base | {package: version_of(package) for package in PACKAGES}
 
 
 def show_versions() -> None:
@@ -49,7 +35,7 @@ def show_versions() -> None:
     >>> show_versions()  # doctest: +ELLIPSIS
     contactstudy ...
     """
-    others = {name: found for name in OTHERS if (found := version_of(name)) != "unknown"}
-    rows = versions() | others | {"system": platform.platform()}
+    further = {name: release for name in FURTHER if (release := version_of(name)) != "unknown"}
+    rows = versions() | further | {"system": platform.platform()}
     width = max(map(len, rows))
-    print("\n".join(f"{name:{width}} {found}" for name, found in rows.items()))
+    print("\n".join(f"{name:{width}} {release}" for name, release in rows.items()))

@@ -1,4 +1,4 @@
-"""The best crown for a roller between free ends, and what the half-space's design costs there.
+"""The best crown of a roller between free ends, and the cost of the half-space's design there.
 
 Usage: ``python studies/best_profile.py [--out FOLDER]``; about four minutes on one core. Writes ``best_profile.nc``
 and ``best_profile.png`` and prints a table.
@@ -6,9 +6,9 @@ and ``best_profile.png`` and prints a table.
 Lundberg's profile is scaled by its modification factor delta so that the largest pressure, over its own Hertz pressure,
 is least in the worst of several loads and misalignments: once on a half-space, once on the body of finite length that
 the roller really runs on. Both designs are then judged on that body. `contactstudy.design.best_profile` does the search
-and tells how flat the optimum is.
+and computes the flat range of the optimum.
 
-Over 1 to 2 GPa and tilts up to 0.2 mrad the half-space asks for twice the crown that Lundberg's formula gives, to keep
+Over 1 to 2 GPa and tilts up to 0.2 mrad the half-space needs twice the crown of Lundberg's formula, to keep
 its singular ends from touching; free ends yield, and three quarters of that crown are best. On the real body the
 half-space's design carries 8 % more pressure and lives 0.77 ± 0.15 times as long: the crown that guards against an edge
 peak which is not there costs length.
@@ -25,11 +25,12 @@ import numpy as np
 import xarray as xr
 
 import contactstudy as cs
+from contactstudy.bodies import Body
 
 
 @dataclass(frozen=True)
 class Task:
-    """What is designed: SI units."""
+    """Roller and loads of the design: SI units."""
 
     material: cs.Material = field(default_factory=lambda: cs.Material(210e9, 0.3))
     radius: float = 5e-3
@@ -57,22 +58,22 @@ class Task:
             self.design_pressure, radius=self.radius, modulus=self.material.plane_strain_modulus, delta=delta
         )
 
-    def case(self, delta: float, body: cs.Body, pressure: float, tilt: float) -> cs.Case:
+    def case(self, delta: float, body: Body, pressure: float, tilt: float) -> cs.Case:
         """One load and tilt of a design."""
         roller = cs.Roller(radius=self.radius, length=self.length, profile=self.profile(delta))
         return cs.Case(body=body, roller=roller, max_pressure=pressure, end_distance=self.end_distance, tilt=tilt)
 
-    def worst(self, delta: float, body: cs.Body) -> tuple[float, float]:
+    def worst(self, delta: float, body: Body) -> tuple[float, float]:
         """Largest pressure over p0 of a design and its error, in the worst of its loads and tilts."""
         cases = [self.case(delta, body, pressure, tilt) for pressure in self.pressures for tilt in self.tilts]
         peaks = [over_p0(cs.solve(case, accuracy=self.accuracy, stresses=False)) for case in cases]
         highest, error = max((float(peak), float(error)) for peak, error in peaks)
         # Another case may be the worst within its error.
-        return highest, max(error, *(float(peak) + float(own) - highest for peak, own in peaks))
+        return highest, max(error, *(float(peak) + float(error) - highest for peak, error in peaks))
 
 
 AXIS = 801
-"""Points along the axis on which the pressures of the designs are drawn together."""
+"""Common points along the axis of the designs' pressures."""
 
 
 def over_p0(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
@@ -81,9 +82,9 @@ def over_p0(result: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
     return result["peak_pressure"] / p0, result["peak_pressure_error"] / p0
 
 
-def best(task: Task, body: cs.Body) -> xr.Dataset:
+def find_best(task: Task, body: Body) -> xr.Dataset:
     """Modification factor with the least worst pressure, and all that were looked at."""
-    found = cs.design.best_profile(
+    designs_of_models = cs.design.best_profile(
         task.case(1.0, body, task.design_pressure, 0.0),
         task.profile,
         {"delta": task.bounds},
@@ -93,10 +94,10 @@ def best(task: Task, body: cs.Body) -> xr.Dataset:
         accuracy=task.accuracy,
     ).isel(parameter=0, drop=True)
     names = {"optimum": "delta", "design": "looked_at", "design_measure": "looked_at_pressure"}
-    return found[[*names, "flat_from", "flat_to"]].rename(names)
+    return designs_of_models[[*names, "flat_from", "flat_to"]].rename(names)
 
 
-def judged(task: Task, delta: float) -> xr.Dataset:
+def judge_design(task: Task, delta: float) -> xr.Dataset:
     """One design on the real body: worst pressure; and at the design load with the largest tilt the field of stress."""
     case = task.case(delta, task.body, task.design_pressure, task.tilts[-1])
     a = task.half_width
@@ -126,13 +127,13 @@ def judged(task: Task, delta: float) -> xr.Dataset:
 def designs(task: Task) -> xr.Dataset:
     """Optimal factor for either model of the body, and both designs on the real body."""
     bodies = {"half-space": cs.HalfSpace(material=task.material), "free ends": task.body}
-    found = {name: best(task, body) for name, body in bodies.items()}
-    each = [xr.merge([judged(task, float(one["delta"])), one]) for one in found.values()]
-    result = xr.concat(each, xr.Variable("design", list(found)), join="outer")
+    designs_of_models = {name: find_best(task, body) for name, body in bodies.items()}
+    parts = [xr.merge([judge_design(task, float(row["delta"])), row]) for row in designs_of_models.values()]
+    result = xr.concat(parts, xr.Variable("design", list(designs_of_models)), join="outer")
     for name in ("delta", "looked_at", "flat_from", "flat_to", "looked_at_pressure"):
         result[name].attrs["units"] = "1"
-    own = result.sel(design="free ends")
-    life = cs.fatigue.relative_life(result, own.drop_vars("design"))
+    error = result.sel(design="free ends")
+    life = cs.fatigue.relative_life(result, error.drop_vars("design"))
     result = result.assign(life.to_dataset().reset_coords("relative_life_error").data_vars)
     # A life over itself is 1.
     result["relative_life_error"] = result["relative_life_error"].where(result["design"] != "free ends", 0.0)
@@ -141,34 +142,34 @@ def designs(task: Task) -> xr.Dataset:
     return result
 
 
-def draw(task: Task, found: xr.Dataset) -> plt.Figure:
+def draw(task: Task, designs_of_models: xr.Dataset) -> plt.Figure:
     """Worst pressure against the factor for both models, and pressure along the axis for both designs."""
     figure, (left, right) = plt.subplots(1, 2, figsize=(10.5, 4.0), layout="constrained")
     singular = False
     for label, dashes in (("half-space", "--"), ("free ends", "-")):
-        one = found.sel(design=label)
-        line = one.dropna("evaluation", subset=["looked_at"]).sortby("looked_at")
+        row = designs_of_models.sel(design=label)
+        line = row.dropna("evaluation", subset=["looked_at"]).sortby("looked_at")
         factors, worst = line["looked_at"].values, line["looked_at_pressure"].values
         left.semilogx(factors, np.where(np.isfinite(worst), worst, np.nan), dashes, color="black", label=label)
-        endless = factors[np.isinf(worst)]
-        singular |= bool(endless.size)
-        height, axes = np.full(endless.size, 0.97), left.get_xaxis_transform()
-        left.plot(endless, height, "^", transform=axes, color="black", markerfacecolor="none")
-        left.plot(float(one["delta"]), np.nanmin(worst), "o", color="black")
-        left.axvspan(float(one["flat_from"]), float(one["flat_to"]), color="0.9")
+        singular_factors = factors[np.isinf(worst)]
+        singular |= bool(singular_factors.size)
+        height, axes = np.full(singular_factors.size, 0.97), left.get_xaxis_transform()
+        left.plot(singular_factors, height, "^", transform=axes, color="black", markerfacecolor="none")
+        left.plot(float(row["delta"]), np.nanmin(worst), "o", color="black")
+        left.axvspan(float(row["flat_from"]), float(row["flat_to"]), color="0.9")
     left.set_xticks([0.3, 0.5, 1.0, 2.0, 4.0], ["0.3", "0.5", "1", "2", "4"])
     left.minorticks_off()
     left.set(xlabel=r"modification factor $\delta$", ylabel="worst pressure over $p_0$")
     title = "largest of all loads and tilts"
     left.legend(frameon=False, title=f"{title}\n($\\triangle$ singular)" if singular else title)
     for design, dashes in (("half-space", "--"), ("free ends", "-")):
-        one = found.sel(design=design)
+        row = designs_of_models.sel(design=design)
         right.plot(
-            1e3 * found["x"],
-            one["axial_pressure"] / 1e9,
+            1e3 * designs_of_models["x"],
+            row["axial_pressure"] / 1e9,
             dashes,
             color="black",
-            label=rf"$\delta$ = {float(one['delta']):.2f}, for {design}",
+            label=rf"$\delta$ = {float(row['delta']):.2f}, for {design}",
         )
     right.set(xlabel="position along the axis, $x$ (mm)", ylabel="largest pressure across y (GPa)", ylim=(0, None))
     right.legend(
@@ -177,23 +178,23 @@ def draw(task: Task, found: xr.Dataset) -> plt.Figure:
     return figure
 
 
-def said(one: xr.Dataset, name: str, digits: int, unit: float = 1.0) -> str:
-    """Value with its error; one that is exact by itself."""
-    if not float(one[f"{name}_error"]):
-        return f"{float(one[name]) / unit:g}"
-    return f"{float(one[name]) / unit:.{digits}f} ± {float(one[f'{name}_error']) / unit:.{digits}f}"
+def format_value(row: xr.Dataset, name: str, digits: int, unit: float = 1.0) -> str:
+    """Value with its error; without it where the error is 0."""
+    if not float(row[f"{name}_error"]):
+        return f"{float(row[name]) / unit:g}"
+    return f"{float(row[name]) / unit:.{digits}f} ± {float(row[f'{name}_error']) / unit:.{digits}f}"
 
 
-def table(found: xr.Dataset) -> str:
+def table(designs_of_models: xr.Dataset) -> str:
     """Markdown: both designs on the real body."""
-    lines = ["| designed for | delta | as good | worst pressure | von Mises, tilted | relative life |"]
+    lines = ["| designed for | delta | equivalent | worst pressure | von Mises, tilted | relative life |"]
     lines.append("|---|---|---|---|---|---|")
-    for design in found["design"].values:
-        one = found.sel(design=design)
+    for design in designs_of_models["design"].values:
+        row = designs_of_models.sel(design=design)
         lines.append(
-            f"| {design} | {float(one['delta']):.2f} | {float(one['flat_from']):.2f} to {float(one['flat_to']):.2f} | "
-            f"{said(one, 'worst_pressure', 3)} p0 | {said(one, 'largest_von_mises', 3, 1e9)} GPa | "
-            f"{said(one, 'relative_life', 2)} |"
+            f"| {design} | {float(row['delta']):.2f} | {float(row['flat_from']):.2f} to {float(row['flat_to']):.2f} | "
+            f"{format_value(row, 'worst_pressure', 3)} p0 | {format_value(row, 'largest_von_mises', 3, 1e9)} GPa | "
+            f"{format_value(row, 'relative_life', 2)} |"
         )
     return "\n".join(lines)
 
@@ -204,11 +205,11 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/best_profile"))
     options = parser.parse_args()
     task = Task()
-    found = designs(task)
+    designs_of_models = designs(task)
     options.out.mkdir(parents=True, exist_ok=True)
-    found.to_netcdf(options.out / "best_profile.nc")
-    draw(task, found).savefig(options.out / "best_profile.png", dpi=110)
-    print(table(found))
+    designs_of_models.to_netcdf(options.out / "best_profile.nc")
+    draw(task, designs_of_models).savefig(options.out / "best_profile.png", dpi=110)
+    print(table(designs_of_models))
 
 
 if __name__ == "__main__":

@@ -33,15 +33,16 @@ from scipy.optimize import brentq, minimize
 from threadpoolctl import threadpool_limits
 
 import contactstudy as cs
-from contactstudy.verification.closed_forms.circle import hertz_circle_axis
-from contactstudy.verification.quarter_space import EXTRA_DEFLECTION
+from contactstudy.bodies import Body
+from contactstudy.verification.closed_forms import hertz_circle_axis
+from contactstudy.verification.free_ends import EXTRA_DEFLECTION
 
 YOUNG, RADIUS, PRESSURE = 210e9, 5e-3, 1.5e9
 DISTANCES = (0.0, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 8.0)
 HALF_SPACE = np.inf
 """Distance that stands for the half-space."""
 
-HELD = ("depth", "load")
+CONDITIONS = ("depth", "load")
 QUANTITIES = {
     "load": "load",
     "approach": "depth",
@@ -56,7 +57,7 @@ RELATIVE = ("load", "approach", "contact_area")
 
 @dataclass(frozen=True)
 class Indenter:
-    """A rigid shape and what it is pressed with: SI units.
+    """A rigid shape and its load: SI units.
 
     Attributes
     ----------
@@ -90,7 +91,7 @@ class Indenter:
 
     def case(self, distance: float, model: str = "exact") -> cs.Case:
         """Pressed with its load at a distance over ``a``."""
-        body: cs.Body = cs.QuarterSpace(material=self.material, model=model)
+        body: Body = cs.QuarterSpace(material=self.material, model=model)
         if np.isinf(distance):
             body, distance = cs.HalfSpace(material=self.material), 0.0
         start = distance * self.half_width - self.before
@@ -119,7 +120,7 @@ def cylinder(length: float = 16.0, edge_radius: float = 1.5, accuracy: float = 0
 
 
 class Cells(NamedTuple):
-    """Cells that are refined for a case, the same halved both ways, and what is known of the former."""
+    """Refined cells of a case, the same cells halved both ways, and errors of the former."""
 
     coarse: cs.Grid
     fine: cs.Grid
@@ -128,24 +129,25 @@ class Cells(NamedTuple):
 
 
 def cells_of(case: cs.Case, accuracy: float) -> Cells:
-    """Cells on which the peak of a case is settled; its error is over the peak."""
-    settled = cs.solve(case, accuracy=accuracy, stresses=False)
-    edges = np.append(settled["x_bounds"].values[:, 0], settled["x_bounds"].values[-1, 1])
-    y, step = settled["y"].values, float(settled["y"][1] - settled["y"][0])
+    """Cells with a settled peak; the error is relative to the peak."""
+    # The residual on the ends comes with stresses: at one point.
+    refined = cs.solve(case, accuracy=accuracy, x=[0.0], y=[0.0], z=[case.hertz_half_width])
+    edges = np.append(refined["x_bounds"].values[:, 0], refined["x_bounds"].values[-1, 1])
+    y, step = refined["y"].values, float(refined["y"][1] - refined["y"][0])
     y_range = (float(y[0] - 0.5 * step), float(y[-1] + 0.5 * step))
     between = 0.5 * (edges[1:] + edges[:-1])
     return Cells(
         cs.Grid.between(edges, y_range, y.size),
         cs.Grid.between(np.sort(np.append(edges, between)), y_range, 2 * y.size),
-        float(settled["peak_pressure_error"] / settled["peak_pressure"]),
-        float(settled["end_traction_residual"]),
+        float(refined["peak_pressure_error"] / refined["peak_pressure"]),
+        float(refined["end_traction_residual"]),
     )
 
 
-def pressed(case: cs.Case, grid: cs.Grid, approach: float | None = None) -> xr.Dataset:
+def press_indenter(case: cs.Case, grid: cs.Grid, approach: float | None = None) -> xr.Dataset:
     """Contact of a case on given cells, with its load or to a given depth."""
-    places = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
-    gap = xr.DataArray(case.gap(grid), coords=places, dims=("x", "y"))
+    positions = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
+    gap = xr.DataArray(case.gap(grid), coords=positions, dims=("x", "y"))
     if approach is None:
         return cs.solve_contact(case.body, gap, load=case.normal_load)
     return cs.solve_contact(case.body, gap, approach=approach)
@@ -156,17 +158,20 @@ def largest_von_mises(indenter: Indenter, case: cs.Case, contact: xr.Dataset) ->
     a, first = indenter.half_width, case.body.extent[0]
     x = np.unique(np.maximum(case.roller_start + indenter.before + a * np.array(indenter.x), first))
     z = a * np.array(indenter.z)
-    stress = cs.stress_field(case.body, contact["pressure"], x=x, y=[0.0], z=z)["von_mises"].isel(y=0).values
+    pressure = contact["pressure"]
+    stress = (
+        cs.stress_field(case.body, pressure, x=x, y=[0.0], z=z, inside_cells=pressure)["von_mises"].isel(y=0).values
+    )
     i, j = divmod(int(stress.argmax()), z.size)
     if i == x.size - 1 or j in (0, z.size - 1) or (i == 0 and x[0] > first):
         raise ValueError(f"largest stress on the border of the points, x = {x[i] / a:g} a, z = {z[j] / a:g} a")
     spline = RectBivariateSpline(x / a, z / a, stress / PRESSURE)
-    around = [(axis[max(at - 1, 0)] / a, axis[at + 1] / a) for axis, at in ((x, i), (z, j))]
-    found = minimize(lambda at: -spline(*at)[0, 0], (x[i] / a, z[j] / a), bounds=around)
-    return float(-found.fun * PRESSURE), float(found.x[1] * a)
+    bounds = [(axis[max(index - 1, 0)] / a, axis[index + 1] / a) for axis, index in ((x, i), (z, j))]
+    solutions = minimize(lambda index: -spline(*index)[0, 0], (x[i] / a, z[j] / a), bounds=bounds)
+    return float(-solutions.fun * PRESSURE), float(solutions.x[1] * a)
 
 
-def measured(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str, float]:
+def evaluate_contact(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str, float]:
     """Every quantity of one contact, SI units."""
     last = case.roller_start + indenter.before + indenter.reach
     pressure = contact["pressure"].sel(x=slice(None, last))
@@ -174,14 +179,16 @@ def measured(indenter: Indenter, case: cs.Case, contact: xr.Dataset) -> dict[str
     return {
         "load": float(contact["normal_load"]),
         "approach": float(contact["approach"]),
-        "contact_area": float(contact.contact.contact_edges()["contact_area"]),
+        "contact_area": float(cs.analysis.contact_edges(contact)["contact_area"]),
         "peak_pressure": float(pressure.max()),
         "von_mises": stress,
         "von_mises_depth": depth,
     }
 
 
-def both(indenter: Indenter, distance: float, depth: float | None, held: Sequence[str]) -> dict[str, dict[str, float]]:
+def solve_with_errors(
+    indenter: Indenter, distance: float, depth: float | None, condition: Sequence[str]
+) -> dict[str, dict[str, float]]:
     """Every quantity with its error, pressed to a depth and with the load: the change from cells twice the size.
 
     The peak's error is at least half of that which the refinement states for the cells before they are halved.
@@ -189,18 +196,20 @@ def both(indenter: Indenter, distance: float, depth: float | None, held: Sequenc
     with threadpool_limits(1):
         case = indenter.case(distance)
         cells = cells_of(case, indenter.accuracy)
-        found = {}
-        for way in held:
-            approach = depth if way == "depth" else None
-            coarse, fine = (measured(indenter, case, pressed(case, grid, approach)) for grid in cells[:2])
+        solutions = {}
+        for condition_name in condition:
+            approach = depth if condition_name == "depth" else None
+            coarse, fine = (
+                evaluate_contact(indenter, case, press_indenter(case, grid, approach)) for grid in cells[:2]
+            )
             errors = {f"{name}_error": abs(fine[name] - coarse[name]) for name in fine}
             least = 0.5 * cells.peak_error * fine["peak_pressure"]
             errors["peak_pressure_error"] = max(errors["peak_pressure_error"], least)
-            found[way] = fine | errors | {"end_traction_residual": cells.end_traction_residual}
-        return found
+            solutions[condition_name] = fine | errors | {"end_traction_residual": cells.end_traction_residual}
+        return solutions
 
 
-def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dataset:
+def solve_all(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dataset:
     """Every quantity (indenter, held, e_over_a), the half-space last."""
     names = list(indenters)
     with ProcessPoolExecutor() as workers:
@@ -208,14 +217,22 @@ def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dat
         tasks = list(itertools.product(names, distances))
         depths = [half_space[name]["approach"] for name, _ in tasks]
         columns = zip(*((indenters[name], distance) for name, distance in tasks), strict=True)
-        found = dict(zip(tasks, workers.map(both, *columns, depths, itertools.repeat(HELD)), strict=True))
+        solutions = dict(
+            zip(tasks, workers.map(solve_with_errors, *columns, depths, itertools.repeat(CONDITIONS)), strict=True)
+        )
     for name in names:
-        found[name, HALF_SPACE] = dict.fromkeys(HELD, half_space[name])
-    dims = ("indenter", "held", "e_over_a")
-    places = [*distances, HALF_SPACE]
+        solutions[name, HALF_SPACE] = dict.fromkeys(CONDITIONS, half_space[name])
+    dims = ("indenter", "condition", "e_over_a")
+    positions = [*distances, HALF_SPACE]
 
     def table(key: str, quantity: str) -> list[list[list[float]]]:
-        return [[[found[name, e][way][key] / scale(name, quantity) for e in places] for way in HELD] for name in names]
+        return [
+            [
+                [solutions[name, e][condition_name][key] / scale(name, quantity) for e in positions]
+                for condition_name in CONDITIONS
+            ]
+            for name in names
+        ]
 
     def scale(name: str, quantity: str) -> float:
         if quantity in RELATIVE:
@@ -223,12 +240,12 @@ def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dat
         return indenters[name].half_width if quantity == "von_mises_depth" else PRESSURE
 
     values: dict[str, tuple[object, ...]] = {}
-    for quantity, words in QUANTITIES.items():
-        over = "that on the half-space" if quantity in RELATIVE else "a" if quantity == "von_mises_depth" else "p0"
-        values[quantity] = (dims, table(quantity, quantity), {"units": "1", "long_name": f"{words} over {over}"})
+    for quantity, meaning in QUANTITIES.items():
+        ratio = "that on the half-space" if quantity in RELATIVE else "a" if quantity == "von_mises_depth" else "p0"
+        values[quantity] = (dims, table(quantity, quantity), {"units": "1", "long_name": f"{meaning} over {ratio}"})
         key = f"{quantity}_error"
-        values[key] = (dims, table(key, quantity), {"units": "1", "long_name": f"error of {words} over {over}"})
-    residual = [[found[name, e]["load"]["end_traction_residual"] for e in places] for name in names]
+        values[key] = (dims, table(key, quantity), {"units": "1", "long_name": f"error of {meaning} over {ratio}"})
+    residual = [[solutions[name, e]["load"]["end_traction_residual"] for e in positions] for name in names]
     values["end_traction_residual"] = (
         ("indenter", "e_over_a"),
         residual,
@@ -238,8 +255,8 @@ def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dat
         values,
         coords={
             "indenter": names,
-            "held": list(HELD),
-            "e_over_a": ("e_over_a", places, {"units": "1", "long_name": "distance from the edge over a"}),
+            "condition": list(CONDITIONS),
+            "e_over_a": ("e_over_a", positions, {"units": "1", "long_name": "distance from the edge over a"}),
             "a": ("indenter", [indenters[name].half_width for name in names], {"units": "m"}),
             "poisson": ("indenter", [indenters[name].material.poisson for name in names], {"units": "1"}),
         },
@@ -249,14 +266,14 @@ def solved(indenters: dict[str, Indenter], distances: Sequence[float]) -> xr.Dat
 
 def _on_half_space(indenter: Indenter) -> dict[str, float]:
     """Every quantity on the half-space."""
-    return both(indenter, HALF_SPACE, None, ("load",))["load"]
+    return solve_with_errors(indenter, HALF_SPACE, None, ("load",))["load"]
 
 
 class Check(NamedTuple):
     """A number that is known otherwise."""
 
     name: str
-    found: float
+    value: float
     expected: float
 
 
@@ -264,7 +281,7 @@ def far_from_edge(poisson: float, distance: float) -> float:
     """Load over the half-space's that presses a sphere equally deep at a distance over ``a``, which is large.
 
     There the contact is a point load P for the edge, whose reflection lowers the surface under it by
-    ``kappa P / (2 pi E* e)``; the rest of the depth is Hertz'. With s the load over that of the half-space,
+    ``kappa P / (2 pi E* e)``; the difference to the depth is Hertz'. With s the load over the half-space's,
     ``s**(2/3) + 2 kappa s / (3 pi e / a) = 1``.
     """
     lowered = 2 * EXTRA_DEFLECTION[poisson] / (3 * np.pi * distance)
@@ -281,23 +298,25 @@ def _hertz_checks(ball: Indenter) -> list[Check]:
     """Half-space and a frictionless rigid wall at the edge, which mirrors: both are Hertz' contact."""
     a, poisson = ball.half_width, ball.material.poisson
     depth = a**2 / RADIUS
-    found = both(ball, HALF_SPACE, depth, ("depth",))["depth"]
+    solutions = solve_with_errors(ball, HALF_SPACE, depth, ("depth",))["depth"]
     z = np.linspace(0.2, 0.8, 2001) * a
     axial, radial = hertz_circle_axis(z, a, PRESSURE, poisson)
     largest = int(np.abs(axial - radial).argmax())
     wall = ball.case(0.0, model="mirror")
-    halved = pressed(wall, cells_of(wall, ball.accuracy).fine, depth)
-    area = float(halved.contact.contact_edges()["contact_area"])
+    halved = press_indenter(wall, cells_of(wall, ball.accuracy).fine, depth)
+    area = float(cs.analysis.contact_edges(halved)["contact_area"])
     far = max(DISTANCES)
-    load = both(ball, far, depth, ("depth",))["depth"]["load"] / ball.load
+    load = solve_with_errors(ball, far, depth, ("depth",))["depth"]["load"] / ball.load
     return [
-        Check("sphere, half-space: load / Hertz", found["load"] / ball.load, 1.0),
-        Check("sphere, half-space: area / (pi a^2)", found["contact_area"] / (np.pi * a**2), 1.0),
-        Check("sphere, half-space: peak / p0", found["peak_pressure"] / PRESSURE, 1.0),
+        Check("sphere, half-space: load / Hertz", solutions["load"] / ball.load, 1.0),
+        Check("sphere, half-space: area / (pi a^2)", solutions["contact_area"] / (np.pi * a**2), 1.0),
+        Check("sphere, half-space: peak / p0", solutions["peak_pressure"] / PRESSURE, 1.0),
         Check(
-            "sphere, half-space: von Mises / p0", found["von_mises"] / PRESSURE, abs(axial - radial)[largest] / PRESSURE
+            "sphere, half-space: von Mises / p0",
+            solutions["von_mises"] / PRESSURE,
+            abs(axial - radial)[largest] / PRESSURE,
         ),
-        Check("sphere, half-space: its depth / a", found["von_mises_depth"] / a, z[largest] / a),
+        Check("sphere, half-space: its depth / a", solutions["von_mises_depth"] / a, z[largest] / a),
         Check("sphere, e = 0, end held by a smooth wall: load / Hertz", float(halved["normal_load"]) / ball.load, 0.5),
         Check("sphere, e = 0, end held by a smooth wall: area / (pi a^2)", area / (np.pi * a**2), 0.5),
         Check(f"sphere, e = {far:g} a: load at equal depth, from a point load", load, far_from_edge(poisson, far)),
@@ -305,38 +324,47 @@ def _hertz_checks(ball: Indenter) -> list[Check]:
 
 
 def _edge_checks(ball: Indenter) -> list[Check]:
-    """Sphere over the edge itself: it has no length but its depth, its load is carried, and it is symmetric."""
+    """Sphere over the edge: its only length is the depth; balance of its load; symmetry."""
     a = ball.half_width
     case = ball.case(0.0)
     cells = cells_of(case, ball.accuracy)
-    loaded = pressed(case, cells.fine)
+    loaded = press_indenter(case, cells.fine)
     pressure = loaded["pressure"]
     sunk = float(loaded["approach"])
-    lowered = pressed(case, cells.fine, a**2 / RADIUS)
-    # Gauss points of distances that grow: what lies beyond 40 a carries 1e-4 of the load.
+    lowered = press_indenter(case, cells.fine, a**2 / RADIUS)
+    # Gauss points of distances that grow: the part beyond 40 a carries 1e-4 of the load.
     nodes, weights = np.polynomial.legendre.leggauss(8)
     edges = a * np.array([0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 9.0, 18.0, 40.0])
-    places = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (nodes + 1)).ravel()
+    positions = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (nodes + 1)).ravel()
     shares = (0.5 * np.diff(edges)[:, None] * weights).ravel()
-    below = cs.stress_field(case.body, pressure, x=places, y=places, z=[a])["sigma_zz"].isel(z=0).values
-    carried = -2 * float(shares @ below @ shares)
-    beside = cs.stress_field(
-        case.body, pressure, x=a * np.array(ball.x[6:]), y=a * np.array([0, 0.1, 0.3]), z=a * np.array(ball.z)
+    below = (
+        cs.stress_field(case.body, pressure, x=positions, y=positions, z=[a], inside_cells=pressure)["sigma_zz"]
+        .isel(z=0)
+        .values
     )
-    by_y = beside["von_mises"].max(("x", "z")).values
+    resultant = -2 * float(shares @ below @ shares)
+    profile = cs.stress_field(
+        case.body,
+        pressure,
+        x=a * np.array(ball.x[6:]),
+        y=a * np.array([0, 0.1, 0.3]),
+        z=a * np.array(ball.z),
+        inside_cells=pressure,
+    )
+    by_y = profile["von_mises"].max(("x", "z")).values
     return [
         Check(
             "sphere, e = 0: load at equal depth, from the depth at equal load",
             float(lowered["normal_load"]) / ball.load,
             (sunk * RADIUS / a**2) ** -1.5,
         ),
-        Check("sphere, e = 0: load carried by the plane z = a", carried / ball.load, 1.0),
+        Check("sphere, e = 0: load carried by the plane z = a", resultant / ball.load, 1.0),
         Check(
             "sphere, e = 0: pressure at -y less that at y, over p0",
             float(np.abs(pressure.values - pressure.values[:, ::-1]).max()) / PRESSURE,
             0.0,
         ),
-        Check("sphere, e = 0: y / a of the largest von Mises stress", float(beside["y"][int(by_y.argmax())]) / a, 0.0),
+        Check("sphere, e = 0: y / a of the largest von Mises stress", float(profile["y"][int(by_y.argmax())]) / a, 0.0),
         Check("sphere, e = 0: traction left on the end, over the peak", cells.end_traction_residual, 0.0),
     ]
 
@@ -344,19 +372,21 @@ def _edge_checks(ball: Indenter) -> list[Check]:
 def _roller_checks(roller: Indenter) -> list[Check]:
     """Middle of the roller far from the edge: Hertz' line contact of the pressure there."""
     case = roller.case(max(DISTANCES))
-    contact = pressed(case, cells_of(case, roller.accuracy).fine)
+    contact = press_indenter(case, cells_of(case, roller.accuracy).fine)
     middle = case.roller_start + 0.5 * case.roller.length
-    half_width = float(contact.contact.contact_edges()["half_width"].sel(x=middle, method="nearest"))
+    half_width = float(cs.analysis.contact_edges(contact)["half_width"].sel(x=middle, method="nearest"))
     pressure = float(contact["pressure"].sel(x=middle, method="nearest").max())
     hertz = case.modulus * half_width / (2 * case.roller.radius)
     name = f"cylinder, e = {max(DISTANCES):g} a, mid-length: pressure over that of Hertz' line contact as wide"
     return [Check(name, pressure / hertz, 1.0)]
 
 
-def check_table(found: Sequence[Check]) -> str:
+def check_table(solutions: Sequence[Check]) -> str:
     """Markdown: every check."""
     lines = ["| check | found | expected | difference |", "|---|---|---|---|"]
-    lines += [f"| {name} | {value:.4f} | {known:.4f} | {value - known:.1e} |" for name, value, known in found]
+    lines += [
+        f"| {name} | {value:.4f} | {expected:.4f} | {value - expected:.1e} |" for name, value, expected in solutions
+    ]
     return "\n".join(lines)
 
 
@@ -365,32 +395,36 @@ def with_error(value: float, error: float) -> str:
     return f"{value:.3f} ± {np.ceil(max(1e3 * error, 1.0)) / 1e3:.3f}"
 
 
-def table(found: xr.Dataset, indenter: str, held: str) -> str:
+def table(solutions: xr.Dataset, indenter: str, condition: str) -> str:
     """Markdown: a row for each distance."""
-    answer = "approach" if held == "load" else "load"
-    one = found.sel(indenter=indenter, held=held)
+    answer = "approach" if condition == "load" else "load"
+    part = solutions.sel(indenter=indenter, condition=condition)
     names = (answer, "contact_area", "peak_pressure", "von_mises", "von_mises_depth")
     lines = [f"| e / a | {QUANTITIES[answer]} | area | peak / p0 | von Mises / p0 | its depth / a |", "|---" * 6 + "|"]
-    for row in range(one.sizes["e_over_a"]):
-        cells = [with_error(float(one[name][row]), float(one[f"{name}_error"][row])) for name in names]
-        distance = float(one["e_over_a"][row])
+    for row in range(part.sizes["e_over_a"]):
+        cells = [with_error(float(part[name][row]), float(part[f"{name}_error"][row])) for name in names]
+        distance = float(part["e_over_a"][row])
         lines.append(f"| {'half-space' if np.isinf(distance) else f'{distance:g}'} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def poisson_table(found: xr.Dataset) -> str:
+def poisson_table(solutions: xr.Dataset) -> str:
     """Markdown: load at equal depth and von Mises stress at equal depth and load of spheres of any Poisson's ratio."""
-    spheres = found.isel(indenter=[str(name).startswith("sphere") for name in found["indenter"].values])
+    spheres = solutions.isel(indenter=[str(name).startswith("sphere") for name in solutions["indenter"].values])
     spheres = spheres.sortby("poisson")
     heads = [f"nu = {float(nu):g}: load, von Mises at equal depth, at equal load" for nu in spheres["poisson"]]
     lines = [f"| e / a | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
     for distance in spheres["e_over_a"].values:
         cells = []
         for i in range(spheres.sizes["indenter"]):
-            one = spheres.isel(indenter=i).sel(e_over_a=distance)
+            row = spheres.isel(indenter=i).sel(e_over_a=distance)
             pairs = [("load", "depth"), ("von_mises", "depth"), ("von_mises", "load")]
             values = [
-                (float(one[name].sel(held=way)), float(one[f"{name}_error"].sel(held=way))) for name, way in pairs
+                (
+                    float(row[name].sel(condition=condition_name)),
+                    float(row[f"{name}_error"].sel(condition=condition_name)),
+                )
+                for name, condition_name in pairs
             ]
             cells.append(", ".join(with_error(*value) for value in values))
         lines.append(f"| {'half-space' if np.isinf(distance) else f'{distance:g}'} | {' | '.join(cells)} |")
@@ -406,22 +440,22 @@ LINES = {
 }
 
 
-def draw(found: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -> plt.Figure:
+def draw(solutions: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -> plt.Figure:
     """Every quantity over its value on the half-space against the distance: a panel for each shape and condition."""
     figure, axes = plt.subplots(
         2, len(indenters), figsize=(10.0, 7.0), layout="constrained", sharex=True, squeeze=False
     )
-    near = found["e_over_a"].values[np.isfinite(found["e_over_a"].values)]
-    for (row, held), (column, indenter) in itertools.product(enumerate(HELD), enumerate(indenters)):
-        ax, one = axes[row, column], found.sel(indenter=indenter, held=held)
-        over = one.sel(e_over_a=near) / one.sel(e_over_a=HALF_SPACE)
+    near = solutions["e_over_a"].values[np.isfinite(solutions["e_over_a"].values)]
+    for (row, condition), (column, indenter) in itertools.product(enumerate(CONDITIONS), enumerate(indenters)):
+        ax, part = axes[row, column], solutions.sel(indenter=indenter, condition=condition)
+        ratio = part.sel(e_over_a=near) / part.sel(e_over_a=HALF_SPACE)
         ax.axhline(1.0, color="0.7", linewidth=0.8)
         for name, (label, marker, dashes) in LINES.items():
-            if name != ("approach" if held == "depth" else "load"):
+            if name != ("approach" if condition == "depth" else "load"):
                 fill = "black" if name == "von_mises" else "white"
                 ax.plot(
                     near,
-                    over[name],
+                    ratio[name],
                     dashes,
                     marker=marker,
                     color="black",
@@ -429,11 +463,11 @@ def draw(found: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -
                     markersize=5,
                     label=label,
                 )
-        if indenter == "sphere" and held == "depth":
+        if indenter == "sphere" and condition == "depth":
             far = np.linspace(2.0, near[-1], 61)
-            line = [far_from_edge(float(one["poisson"]), float(e)) for e in far]
+            line = [far_from_edge(float(part["poisson"]), float(e)) for e in far]
             ax.plot(far, line, color="0.6", linewidth=3, zorder=0, label="load, point load far from the edge")
-        ax.set_title(f"{indenter}, equal {held}", fontsize="medium")
+        ax.set_title(f"{indenter}, equal {condition}", fontsize="medium")
         ax.legend(frameon=False, fontsize="small")
         if column == 0:
             ax.set_ylabel("over the half-space")
@@ -454,13 +488,15 @@ def main() -> None:
         "sphere, nu = 0": sphere(0.0, accuracy=0.01),
         "sphere, nu = 0.5": sphere(0.5, accuracy=0.01),
     }
-    found = solved(indenters, DISTANCES)
+    solutions = solve_all(indenters, DISTANCES)
     options.out.mkdir(parents=True, exist_ok=True)
-    found.to_netcdf(options.out / "quarter_space.nc")
-    draw(found).savefig(options.out / "quarter_space.png", dpi=110)
-    for indenter, held in itertools.product(("sphere", "cylinder"), HELD):
-        print(f"{indenter.capitalize()}, {held} as on the half-space:\n\n{table(found, indenter, held)}\n")
-    print(f"Spheres:\n\n{poisson_table(found)}\n")
+    solutions.to_netcdf(options.out / "quarter_space.nc")
+    draw(solutions).savefig(options.out / "quarter_space.png", dpi=110)
+    for indenter, condition in itertools.product(("sphere", "cylinder"), CONDITIONS):
+        print(
+            f"{indenter.capitalize()}, {condition} as on the half-space:\n\n{table(solutions, indenter, condition)}\n"
+        )
+    print(f"Spheres:\n\n{poisson_table(solutions)}\n")
     print(check_table(checks(indenters["sphere"], indenters["cylinder"])))
 
 

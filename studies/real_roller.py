@@ -1,4 +1,4 @@
-"""One real roller on real raceways: what each profile and each model of the ends makes of it.
+"""One real roller on real raceways by profile and by model of the ends.
 
 Usage: ``python studies/real_roller.py [--out FOLDER] [--accuracy A]``; about a minute on two cores. Prints Markdown
 tables and writes ``real_roller.nc``. Radius 5 mm, length 10 mm, steel on steel, 1.5 GPa Hertz pressure; raceways 14 mm
@@ -25,6 +25,7 @@ import xarray as xr
 from threadpoolctl import threadpool_limits
 
 import contactstudy as cs
+from contactstudy.bodies import Body
 
 RADIUS, LENGTH, PRESSURE = 5e-3, 10e-3, 1.5e9
 RACEWAYS = (14e-3, 10e-3)
@@ -54,7 +55,7 @@ PRESSURES = (
     *("peak_pressure", "peak_pressure_error", "end_pressure", "end_pressure_error"),
     *("peak_von_mises", "peak_von_mises_error"),
 )
-"""Quantities over p0; loads are over that of a half-width, intensities over p0 and the half-width to the exponent."""
+"""Quantities over p0; loads are over the load of a half-width, intensities over p0 a^m."""
 
 
 def case_of(profile: cs.profiles.Profile, model: str, raceway: float, length: float = LENGTH) -> cs.Case:
@@ -62,7 +63,7 @@ def case_of(profile: cs.profiles.Profile, model: str, raceway: float, length: fl
     rigid = model == "finite raceway, rigid roller"
     material = HALF_STIFF if rigid else STEEL
     if model == "half-spaces":
-        body: cs.Body = cs.HalfSpace(material=material)
+        body: Body = cs.HalfSpace(material=material)
     else:
         body = cs.FiniteLengthSpace(length=raceway, material=material)
     roller = cs.Roller(
@@ -75,49 +76,49 @@ def case_of(profile: cs.profiles.Profile, model: str, raceway: float, length: fl
     return cs.Case(body=body, roller=roller, max_pressure=PRESSURE, end_distance=0.5 * (raceway - length))
 
 
-def measured(case: cs.Case, accuracy: float) -> dict[str, float]:
+def evaluate_case(case: cs.Case, accuracy: float) -> dict[str, float]:
     """Peak, pressure and load at the end with their errors, law of a singular end, largest von Mises stress."""
-    # The largest stress does not depend on where stresses are asked for.
+    # The largest stress does not depend on the positions of the stresses.
     result = cs.solve(case, accuracy=accuracy, x=[0.0], y=[0.0], z=[HALF_WIDTH])
     exponent = float(result.get("end_exponent_first", np.nan))
     over_intensity = PRESSURE * HALF_WIDTH ** np.nan_to_num(exponent)
     over_load = case.normal_load * HALF_WIDTH / case.contact_length
-    nothing = xr.DataArray(np.nan)
+    missing = xr.DataArray(np.nan)
 
-    def over(name: str, scale: float) -> float:
-        return float(result.get(name, nothing)) / scale
+    def ratio(name: str, scale: float) -> float:
+        return float(result.get(name, missing)) / scale
 
     return {
-        "peak_pressure": over("peak_pressure", PRESSURE),
-        "peak_pressure_error": over("peak_pressure_error", PRESSURE),
-        "end_pressure": over("end_pressure_first", PRESSURE),
-        "end_pressure_error": over("end_pressure_first_error", PRESSURE),
-        "end_intensity": over("end_intensity_first", over_intensity),
-        "end_intensity_error": over("end_intensity_first_error", over_intensity),
+        "peak_pressure": ratio("peak_pressure", PRESSURE),
+        "peak_pressure_error": ratio("peak_pressure_error", PRESSURE),
+        "end_pressure": ratio("end_pressure_first", PRESSURE),
+        "end_pressure_error": ratio("end_pressure_first_error", PRESSURE),
+        "end_intensity": ratio("end_intensity_first", over_intensity),
+        "end_intensity_error": ratio("end_intensity_first_error", over_intensity),
         "end_exponent": exponent,
-        "end_load": over("end_load_first", over_load),
-        "end_load_error": over("end_load_first_error", over_load),
-        "peak_von_mises": over("peak_von_mises", PRESSURE),
-        "peak_von_mises_error": over("peak_von_mises_error", PRESSURE),
+        "end_load": ratio("end_load_first", over_load),
+        "end_load_error": ratio("end_load_first_error", over_load),
+        "peak_von_mises": ratio("peak_von_mises", PRESSURE),
+        "peak_von_mises_error": ratio("peak_von_mises_error", PRESSURE),
     }
 
 
 def column(
     profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float, raceway: float, model: str
 ) -> list[dict[str, float]]:
-    """All profiles with one raceway and model, which share what frees the ends."""
+    """All profiles with one raceway and model, which share the end correction."""
     with threadpool_limits(1):
-        return [measured(case_of(profile, model, raceway, length), accuracy) for profile in profiles.values()]
+        return [evaluate_case(case_of(profile, model, raceway, length), accuracy) for profile in profiles.values()]
 
 
-def solved(
+def solve_all(
     profiles: Mapping[str, cs.profiles.Profile], accuracy: float, length: float = LENGTH, *, workers: int | None = None
 ) -> xr.Dataset:
     """Every quantity (raceway, profile, model); raceways keep their distance from a shorter roller.
 
     `workers` processes share the work, by default one per core; 0: this one does it.
     """
-    raceways = [each - LENGTH + length for each in RACEWAYS]
+    raceways = [width - LENGTH + length for width in RACEWAYS]
     pairs = list(itertools.product(raceways, MODELS))
     solve_column = partial(column, profiles, accuracy, length)
     if workers == 0:
@@ -125,9 +126,10 @@ def solved(
     else:
         with ProcessPoolExecutor(workers, get_context("spawn")) as pool:
             columns = list(pool.map(solve_column, *zip(*pairs, strict=True)))
-    found = dict(zip(pairs, columns, strict=True))
+    solution = dict(zip(pairs, columns, strict=True))
     rows = [
-        [[found[raceway, model][number] for model in MODELS] for number in range(len(profiles))] for raceway in raceways
+        [[solution[raceway, model][number] for model in MODELS] for number in range(len(profiles))]
+        for raceway in raceways
     ]
     dims = ("raceway", "profile", "model")
     return xr.Dataset(
@@ -135,7 +137,7 @@ def solved(
             name: (
                 dims,
                 [[[cell[name] for cell in row] for row in table] for table in rows],
-                {"units": "1", "long_name": f"{name.replace('_', ' ')}{' over p0' if name in PRESSURES else ''}"},
+                {"units": "1", "long_name": f"{name.replace('_', ' ')}{' ratio p0' if name in PRESSURES else ''}"},
             )
             for name in QUANTITIES
         },
@@ -153,41 +155,41 @@ def with_error(value: float, error: float) -> str:
     return f"{value:.3f} ± {error:.3f}"
 
 
-def end_in_words(one: Mapping[str, float]) -> str:
+def end_in_words(row: Mapping[str, float]) -> str:
     """Pressure at the roller's end, the law of a singular one, or that nothing touches there."""
-    if one["end_pressure"] == 0:
+    if row["end_pressure"] == 0:
         return "open"
-    if np.isfinite(one["end_pressure"]):
-        return with_error(one["end_pressure"], one["end_pressure_error"])
-    if not np.isfinite(one["end_intensity"]):
+    if np.isfinite(row["end_pressure"]):
+        return with_error(row["end_pressure"], row["end_pressure_error"])
+    if not np.isfinite(row["end_intensity"]):
         return "singular (logarithm)"
     return (
-        f"singular, K = {with_error(one['end_intensity'], one['end_intensity_error'])}, m = {one['end_exponent']:.2f}"
+        f"singular, K = {with_error(row['end_intensity'], row['end_intensity_error'])}, m = {row['end_exponent']:.2f}"
     )
 
 
-def table(found: xr.Dataset) -> str:
+def table(solution: xr.Dataset) -> str:
     """Markdown, one table: a row for each profile, pressures and stresses over p0."""
-    names = " | ".join(f"{model}: peak, end, von Mises" for model in found["model"].values)
-    lines = [f"| profile | {names} |", "|---" * (found.sizes["model"] + 1) + "|"]
-    for profile in found["profile"].values:
+    names = " | ".join(f"{model}: peak, end, von Mises" for model in solution["model"].values)
+    lines = [f"| profile | {names} |", "|---" * (solution.sizes["model"] + 1) + "|"]
+    for profile in solution["profile"].values:
         cells = []
-        for model in found["model"].values:
-            one = {name: float(found[name].sel(profile=profile, model=model)) for name in QUANTITIES}
-            singular = np.isinf(one["peak_pressure"])
-            peak = "singular" if singular else with_error(one["peak_pressure"], one["peak_pressure_error"])
-            stress = "" if singular else f", {with_error(one['peak_von_mises'], one['peak_von_mises_error'])}"
-            cells.append(f"{peak}, {end_in_words(one)}{stress}")
+        for model in solution["model"].values:
+            row = {name: float(solution[name].sel(profile=profile, model=model)) for name in QUANTITIES}
+            singular = np.isinf(row["peak_pressure"])
+            peak = "singular" if singular else with_error(row["peak_pressure"], row["peak_pressure_error"])
+            stress = "" if singular else f", {with_error(row['peak_von_mises'], row['peak_von_mises_error'])}"
+            cells.append(f"{peak}, {end_in_words(row)}{stress}")
         lines.append(f"| {profile} | {' | '.join(cells)} |")
     return "\n".join(lines)
 
 
-def load_table(found: xr.Dataset) -> str:
+def load_table(solution: xr.Dataset) -> str:
     """Markdown: load on the last half-width of the roller, over the mean load of a half-width."""
-    lines = [f"| profile | {' | '.join(found['model'].values)} |", "|---" * (found.sizes["model"] + 1) + "|"]
-    for profile in found["profile"].values:
-        one = found.sel(profile=profile)
-        pairs = zip(one["end_load"].values, one["end_load_error"].values, strict=True)
+    lines = [f"| profile | {' | '.join(solution['model'].values)} |", "|---" * (solution.sizes["model"] + 1) + "|"]
+    for profile in solution["profile"].values:
+        row = solution.sel(profile=profile)
+        pairs = zip(row["end_load"].values, row["end_load_error"].values, strict=True)
         lines.append(f"| {profile} | {' | '.join(with_error(*pair) for pair in pairs)} |")
     return "\n".join(lines)
 
@@ -200,12 +202,12 @@ def main() -> None:
         "--accuracy", type=float, default=0.01, help="error to which pressures are settled; default 0.01"
     )
     options = parser.parse_args()
-    found = solved(PROFILES, options.accuracy)
-    for raceway in found["raceway"].values:
-        one = found.sel(raceway=raceway)
-        print(f"Raceway {1e3 * raceway:g} mm wide\n\n{table(one)}\n\nLoad on the last a:\n\n{load_table(one)}\n")
+    solution = solve_all(PROFILES, options.accuracy)
+    for raceway in solution["raceway"].values:
+        row = solution.sel(raceway=raceway)
+        print(f"Raceway {1e3 * raceway:g} mm wide\n\n{table(row)}\n\nLoad on the last a:\n\n{load_table(row)}\n")
     options.out.mkdir(parents=True, exist_ok=True)
-    found.to_netcdf(options.out / "real_roller.nc")
+    solution.to_netcdf(options.out / "real_roller.nc")
 
 
 if __name__ == "__main__":

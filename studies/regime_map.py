@@ -2,13 +2,13 @@
 
 Usage, after ``contactstudy run studies/regime_map.toml``: ``python studies/regime_map.py [FOLDER] [--finer]``, default
 ``results/regime_map``. Writes ``errors.nc``, ``limits.csv`` and a figure for each crown into the folder, and prints
-from which distance on the errors stay small. With ``--finer`` it solves some cases again to a quarter of the accuracy
-and prints by how much the errors change.
+the distances beyond which the errors stay small. With ``--finer`` it solves some cases again to a
+quarter of the accuracy and prints the change of the errors.
 
-What counts is e over the body's length, not over a: once the free ends are a quarter of the length away, the half-space
-is right within 2.6 % from L = 32 a on and within 8 % at 4 a, whatever the crown; half as far it is 9 to 33 % wrong. A
+The ratio of e to the body's length decides, not e over a: once the free ends are a quarter of the length away, the
+half-space is right within 2.6 % from L = 32 a on, 8 % at 4 a, for every crown; half as far it is 9 to 33 % wrong. A
 single pair of mirrored loads with two separate vertical half-spaces, the published scheme, is within 1 % in pressure,
-1.2 % in load and 4.3 % in stress everywhere. The report of the studies says the rest.
+1.2 % in load and 4.3 % in stress everywhere. The report of the studies has the details.
 """
 
 from __future__ import annotations
@@ -39,13 +39,13 @@ QUANTITIES = {
     "peak_von_mises": "von Mises stress",
     "end_load_first": "load on the last $a$",
 }
-"""What is compared; pressure and load on the half nearer to end I, because a quarter space has no other end."""
+"""Compared quantities; pressure and load of the half at end I, because a quarter space has one end."""
 
 LIMITS = (5.0, 1.0)
 """Errors, in percent, below which one may stop worrying."""
 
 
-def evaluated(study: xr.Dataset) -> xr.Dataset:
+def select_quantities(study: xr.Dataset) -> xr.Dataset:
     """Largest pressure between the end and the middle, largest stress, and the load within a of the roller's end."""
     radius = json.loads(study.attrs["contactstudy_study"])["base"]["radius"]
     length = (study["gamma"] * radius / study["hertz_half_width"].max()).round(3)
@@ -56,16 +56,16 @@ def stated_errors(study: xr.Dataset) -> str:
     """Largest stated error of the settled quantities, in words."""
     parts = []
     for name in QUANTITIES:
-        known = np.isfinite(study[name]) & (study[name] > 0)
-        share = (study[f"{name}_error"] / study[name]).where(known)
+        finite = np.isfinite(study[name]) & (study[name] > 0)
+        share = (study[f"{name}_error"] / study[name]).where(finite)
         parts.append(f"{QUANTITIES[name].replace('$', '')}: {100 * float(share.max()):.2f} %")
     return f"largest stated error of the {', of the '.join(parts)}"
 
 
-def errors(found: xr.Dataset) -> xr.Dataset:
+def errors(values: xr.Dataset) -> xr.Dataset:
     """Error of each model against the exact ends, in percent; infinite where only the model's pressure is singular."""
-    exact = pick(found, {"body": "finite-length", "model": "exact"})
-    parts = [100 * (pick(found, words) / exact - 1) for words in MODELS.values()]
+    exact = select_model(values, {"body": "finite-length", "model": "exact"})
+    parts = [100 * (select_model(values, selection) / exact - 1) for selection in MODELS.values()]
     result = xr.concat(parts, xr.DataArray(list(MODELS), dims="approximation", name="approximation"))
     # The largest stress of a quarter space may lie where the other body ends.
     comparable = result["approximation"] != "quarter space"
@@ -73,25 +73,25 @@ def errors(found: xr.Dataset) -> xr.Dataset:
     for name, meaning in QUANTITIES.items():
         result[name].attrs = {"units": "percent", "long_name": f"error of the {meaning.replace('$', '')}"}
     result.attrs = {"Conventions": "CF-1.11", "title": "errors of approximations for free ends"}
-    return result.assign_coords(length_over_a=found["length_over_a"])
+    return result.assign_coords(length_over_a=values["length_over_a"])
 
 
-def pick(found: xr.Dataset, words: dict[str, str]) -> xr.Dataset:
+def select_model(values: xr.Dataset, selection: dict[str, str]) -> xr.Dataset:
     """Return the cases of one body and model."""
-    place = next(
+    number = next(
         i
-        for i, pair in enumerate(zip(found["body"].values, found["model"].values, strict=True))
-        if pair == (words["body"], words["model"])
+        for i, pair in enumerate(zip(values["body"].values, values["model"].values, strict=True))
+        if pair == (selection["body"], selection["model"])
     )
-    return found.isel(body_and_model=place, drop=True).reset_coords(drop=True)
+    return values.isel(body_and_model=number, drop=True).reset_coords(drop=True)
 
 
 def limits(error: xr.Dataset) -> xr.Dataset:
-    """Smallest e/a of the study from which on the errors stay below each limit; NaN if they never do."""
+    """Smallest e/a of the study beyond which the errors stay below each limit; NaN without such a distance."""
     size = abs(error)
     distances = error["e_over_a"]
-    from_here_on = [size.sel(e_over_a=slice(e, None)).max("e_over_a") for e in distances.values]
-    worst = xr.concat(from_here_on, distances)
+    running = [size.sel(e_over_a=slice(e, None)).max("e_over_a") for e in distances.values]
+    worst = xr.concat(running, distances)
     return xr.concat(
         [distances.where(worst < limit).min("e_over_a") for limit in LIMITS],
         xr.DataArray(list(LIMITS), dims="below", name="below", attrs={"units": "percent"}),
@@ -99,7 +99,7 @@ def limits(error: xr.Dataset) -> xr.Dataset:
 
 
 def table(error: xr.Dataset) -> str:
-    """Markdown: e/a from which on errors stay below 5 and 1 %, whatever the study's crown and friction."""
+    """Markdown: e/a beyond which errors stay below 5 and 1 % for every crown and friction."""
     largest = abs(error).max(["profile", "friction"])
     reach = largest["e_over_a"].where(largest["end_load_first"].notnull()).max(["e_over_a", "approximation"])
     lengths = [f"L = {length:g} a" for length in error["length_over_a"].values]
@@ -108,10 +108,10 @@ def table(error: xr.Dataset) -> str:
         for name, meaning in QUANTITIES.items():
             if largest[name].sel(approximation=model).isnull().all():
                 continue
-            found = limits(largest)[name].sel(approximation=model).transpose("gamma", "below").values
+            values = limits(largest)[name].sel(approximation=model).transpose("gamma", "below").values
             cells = [
                 " / ".join(f"{e:g}" if np.isfinite(e) else f"> {last:g}" for e in pair)
-                for pair, last in zip(found, reach.values, strict=True)
+                for pair, last in zip(values, reach.values, strict=True)
             ]
             lines.append(f"| {model} | {meaning.replace('$', '')} | {' | '.join(cells)} |")
     return "\n".join(lines)
@@ -126,14 +126,14 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
     colours = plt.get_cmap("viridis_r", len(bands) - 1)
     for row, name in zip(axes, QUANTITIES, strict=True):
         for ax, model in zip(row, MODELS, strict=True):
-            one = error[name].sel(approximation=model, friction=0.0, profile=profile).transpose("gamma", "e_over_a")
-            size = np.ma.masked_where(np.isnan(one.values), np.minimum(abs(one.values), 0.99 * bands[-1]))
-            drawn = ax.pcolormesh(size, cmap=colours, norm=BoundaryNorm(bands, colours.N))
+            panel = error[name].sel(approximation=model, friction=0.0, profile=profile).transpose("gamma", "e_over_a")
+            size = np.ma.masked_where(np.isnan(panel.values), np.minimum(abs(panel.values), 0.99 * bands[-1]))
+            mesh = ax.pcolormesh(size, cmap=colours, norm=BoundaryNorm(bands, colours.N))
             # Lines that follow the cells' borders: the values repeated on a much finer grid.
             fine = np.repeat(np.repeat(size, 40, axis=0), 40, axis=1)
             up, across = ((np.arange(n) + 0.5) / 40 for n in fine.shape)
             ax.contour(across, up, fine, levels=sorted(LIMITS), colors="black", linestyles=["--", "-"], linewidths=1.6)
-            for (i, j), value in np.ndenumerate(one.values):
+            for (i, j), value in np.ndenumerate(panel.values):
                 if not np.isnan(value):
                     colour = "white" if abs(value) > 5 else "black"
                     text = f"{value:+.0f}" if abs(value) >= 9.95 else f"{value:+.1f}"
@@ -148,7 +148,7 @@ def draw(error: xr.Dataset, profile: str) -> plt.Figure:
     for ax in axes[-1]:
         ax.set_xlabel("$e/a$")
         ax.set_xticks(np.arange(error.sizes["e_over_a"]) + 0.5, [f"{v:g}" for v in error["e_over_a"].values])
-    bar = figure.colorbar(drawn, ax=axes, ticks=bands[1:-1], shrink=0.6, pad=0.01)
+    bar = figure.colorbar(mesh, ax=axes, ticks=bands[1:-1], shrink=0.6, pad=0.01)
     bar.set_label("size of the error (%); lines: solid 5 %, dashed 1 %")
     figure.suptitle(f"{profile}: error against exact free ends (%)")
     return figure
@@ -169,10 +169,10 @@ def main() -> None:
     options = parser.parse_args()
     folder: Path = options.folder
     study = cs.open_study(folder)
-    error = errors(evaluated(study))
+    error = errors(select_quantities(study))
     if options.finer:
         cs.run_study(finer(cs.Study.from_toml(Path(__file__).with_suffix(".toml"))), folder / "finer", workers=2)
-        change = abs(errors(evaluated(cs.open_study(folder / "finer"))) - error)
+        change = abs(errors(select_quantities(cs.open_study(folder / "finer"))) - error)
         for model in MODELS:
             largest = change.where(np.isfinite(change)).sel(approximation=model).max()
             print(f"{model}: errors change by at most", *(f"{float(largest[n]):.2f} % ({n})" for n in QUANTITIES))

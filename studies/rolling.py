@@ -1,6 +1,9 @@
-"""Figure of the four studies of rolling, from the folders in which they were run.
+"""Figure of the four studies of rolling, from their folders.
 
-contactstudy run studies/traction_curve.toml   # likewise axial_slip, spin and partial_slip
+contactstudy run studies/traction_curve.toml
+contactstudy run studies/axial_slip.toml
+contactstudy run studies/spin.toml
+contactstudy run studies/partial_slip.toml
 python studies/rolling.py
 """
 
@@ -21,7 +24,7 @@ import contactstudy as cs
 NAMES = ("traction_curve", "axial_slip", "spin", "partial_slip")
 
 BELOW = 0.19
-"""Depth over a from which on von Mises stresses are compared."""
+"""Least depth over a of the compared von Mises stresses."""
 
 LINE: dict[str, Any] = {"color": "black", "markersize": 5, "markerfacecolor": "white"}
 """Lines that differ by dashes and markers."""
@@ -34,21 +37,21 @@ def full_sliding(study: xr.Dataset) -> xr.DataArray:
 
 def draw_curve(ax: Axes, study: xr.Dataset) -> None:
     """Traction curves: free ends flush and inside the face, and half-spaces."""
-    over = study["force_y"] / full_sliding(study)
+    ratio = study["force_y"] / full_sliding(study)
     a = study["hertz_half_width"]
     dashes = iter(["-", "--", "-", "--", "-.", ":"])
     markers = iter("osD^vP")
     for length in study["roller_length"].values:
         size = f"roller of {float(length / a.max()):.0f}a"
         for body, e_over_a in (("finite-length", 0.0), ("finite-length", 2.0), ("half-space", 0.0)):
-            one = over.sel(roller_length=length, e_over_a=e_over_a, body=body)
-            where = "half-spaces" if body == "half-space" else f"e = {e_over_a:g}a"
+            curve = ratio.sel(roller_length=length, e_over_a=e_over_a, body=body)
+            position = "half-spaces" if body == "half-space" else f"e = {e_over_a:g}a"
             ax.plot(
-                1e3 * one["longitudinal_creepage"],
-                one,
+                1e3 * curve["longitudinal_creepage"],
+                curve,
                 next(dashes),
                 marker=next(markers),
-                label=f"{size}, {where}",
+                label=f"{size}, {position}",
                 **LINE,
             )
     ax.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
@@ -59,10 +62,10 @@ def draw_curve(ax: Axes, study: xr.Dataset) -> None:
 def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
     """Work lost and part that slips when a roller of the same material rolls freely."""
     slips = 1 - study["sticking_part"]
-    lost = study["friction_work"] / full_sliding(study)
+    loss = study["friction_work"] / full_sliding(study)
     ax.errorbar(
         study["e_over_a"],
-        1e3 * lost,
+        1e3 * loss,
         1e3 * study["friction_work_error"] / full_sliding(study),
         linestyle="-",
         marker="o",
@@ -76,15 +79,15 @@ def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
 
 
 def draw_spin(ax: Axes, study: xr.Dataset) -> None:
-    """Moment over that of full sliding either way from mid-length, free ends and half-spaces."""
-    over = study["moment_z"] / (0.25 * full_sliding(study) * study["contact_length"])
+    """Moment over full sliding's in opposite directions from mid-length, free ends and half-spaces."""
+    ratio = study["moment_z"] / (0.25 * full_sliding(study) * study["contact_length"])
     markers = iter("osD^")
     for length in study["roller_length"].values:
         size = f"{float(length / study['hertz_half_width'].max()):.0f}a"
         for body, dash in (("finite-length", "-"), ("half-space", ":")):
-            one = over.sel(roller_length=length, body=body)
+            curve = ratio.sel(roller_length=length, body=body)
             ends = "free ends" if body == "finite-length" else "half-spaces"
-            ax.plot(one["spin"], one, dash, marker=next(markers), label=f"roller of {size}, {ends}", **LINE)
+            ax.plot(curve["spin"], curve, dash, marker=next(markers), label=f"roller of {size}, {ends}", **LINE)
     ax.set_xlabel(r"spin, $\varphi$ (rad/m)")
     ax.set_ylabel("moment over $f W L / 4$")
 
@@ -93,19 +96,22 @@ def draw_stress(ax: Axes, study: xr.Dataset) -> None:
     """Largest von Mises stress below the surface near a free end, and tension on the surface there."""
     swept = study["longitudinal_creepage"]
     p0 = study["hertz_max_pressure"]
-    near = study["x_field"] <= study["hertz_half_width"].max()
-    # A transverse traction that ends at the edge makes the stress grow into the corner: it has no largest value there.
+    near = study["x"] <= study["hertz_half_width"].max()
+    # A transverse traction that ends at the edge makes the stress unbounded at the corner.
     below = study["z"] >= BELOW * study["hertz_half_width"].max()
-    mises = study["von_mises"].isel(x_field=near.values, z=below.values).max(("x_field", "y_field", "z")) / p0
-    tension = study["sigma_yy"].isel(x_field=near.values).sel(z=0.0).max(("x_field", "y_field")) / p0
+    mises = study["von_mises"].isel(x=near.values, z=below.values).max(("x", "y_field", "z")) / p0
+    tension = study["sigma_yy"].isel(x=near.values).sel(z=0.0).max(("x", "y_field")) / p0
     markers = iter("osD^")
-    places = np.arange(swept.size)
+    ticks = np.arange(swept.size)
     for friction in study["friction"].values:
-        for values, dash, what in ((mises, "-", "von Mises below $0.2a$"), (tension, ":", "tension on the surface")):
-            one = values.sel(friction=friction)
-            ax.plot(places, one, dash, marker=next(markers), label=f"{what}, $f$ = {friction:g}", **LINE)
+        for values, dash, quantity in (
+            (mises, "-", "von Mises below $0.2a$"),
+            (tension, ":", "tension on the surface"),
+        ):
+            curve = values.sel(friction=friction)
+            ax.plot(ticks, curve, dash, marker=next(markers), label=f"{quantity}, $f$ = {friction:g}", **LINE)
     ax.set_ylim(0.0, 1.15)
-    ax.set_xticks(places, [f"{1e3 * value:g}" for value in swept.values])
+    ax.set_xticks(ticks, [f"{1e3 * value:g}" for value in swept.values])
     ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$ (the last is full sliding)")
     ax.set_ylabel("within $a$ of the free end, over $p_0$")
 

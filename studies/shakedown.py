@@ -1,4 +1,4 @@
-"""Draw what load a crowned roller may carry again and again, from the study shakedown.toml.
+"""Shakedown limit of a crowned roller, from the study shakedown.toml.
 
 Usage, after ``contactstudy run studies/shakedown.toml``: ``python studies/shakedown.py [FOLDER]``, default
 ``results/shakedown``. Writes ``shakedown_limits.csv`` and ``shakedown.png`` into the folder and prints a table.
@@ -38,15 +38,15 @@ LEVELS = np.linspace(1.0, 3.4, 25)
 def line_contact(frictions: np.ndarray, poisson: float) -> xr.Dataset:
     """Limits of Hertz' line contact by friction: a variable for each of LINE_CONTACT."""
     y, z = np.linspace(-4.0, 4.0, 161), np.linspace(0.0, 1.5, 61)
-    found: dict[str, list[float]] = {name: [] for name in LINE_CONTACT}
+    limits_by_model: dict[str, list[float]] = {name: [] for name in LINE_CONTACT}
     for friction in frictions:
         stress = hertz_strip(y[:, None], z, 1.0, 1.0, poisson, float(friction))
         fields = xr.Dataset({name: (("y", "z"), values) for name, values in stress.items()}, {"y": y, "z": z})
         fields["hertz_max_pressure"] = 1.0
         limits = {axial: shakedown_limit(fields, axial=axial) for axial in (False, True)}
         for name, (limit, axial) in LINE_CONTACT.items():
-            found[name].append(float(limits[axial][limit]))
-    return xr.Dataset({name: ("friction", values) for name, values in found.items()}, {"friction": frictions})
+            limits_by_model[name].append(float(limits[axial][limit]))
+    return xr.Dataset({name: ("friction", values) for name, values in limits_by_model.items()}, {"friction": frictions})
 
 
 def stated_errors(study: xr.Dataset) -> xr.DataArray:
@@ -55,7 +55,7 @@ def stated_errors(study: xr.Dataset) -> xr.DataArray:
 
 
 def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
-    """Limits over friction and distance: a map, and lines with those of the line contact, for each crown."""
+    """Limits over friction and distance: a map, and lines with the line contact's limits, for each crown."""
     crowns = study["profile"].values
     figure, axes = plt.subplots(2, crowns.size, figsize=(11.0, 8.2), layout="constrained", squeeze=False)
     for crown, upper, lower in zip(crowns, *axes, strict=True):
@@ -65,8 +65,8 @@ def draw(study: xr.Dataset, line: xr.Dataset) -> plt.Figure:
         lines = upper.contour(friction, distance, limit.values, levels=LEVELS[2::2], colors="white", linewidths=0.8)
         upper.clabel(lines, fmt="%.1f", fontsize="small")
         upper.set(title=str(crown), xlabel="friction", ylabel="$e/a$")
-        for one, style in zip(distance, line_styles(distance.size), strict=True):
-            lower.plot(friction, limit.sel(e_over_a=one), label=f"$e$ = {one:g} $a$", **style)
+        for value, style in zip(distance, line_styles(distance.size), strict=True):
+            lower.plot(friction, limit.sel(e_over_a=value), label=f"$e$ = {value:g} $a$", **style)
         for name, dashes in zip(LINE_CONTACT, (":", "--", "-"), strict=True):
             lower.plot(line["friction"], line[name], color="black", linestyle=dashes, label=f"line contact, {name}")
         lower.set(xlabel="friction", ylabel="$p_0/k$", ylim=(0.8, 4.1))
@@ -109,9 +109,11 @@ def main() -> None:
     draw(study, line).savefig(folder / "shakedown.png", dpi=100)
     print(table(study, line))
     errors = stated_errors(study).values
-    stated = errors[np.isfinite(errors)]
-    without = errors.size - stated.size
-    print(f"\nlargest stated error: {100 * stated.max():.1f} %; without an error: {without} of {errors.size}")
+    finite_errors = errors[np.isfinite(errors)]
+    unestimated = errors.size - finite_errors.size
+    print(
+        f"\nlargest stated error: {100 * finite_errors.max():.1f} %; without an error: {unestimated} of {errors.size}"
+    )
     print(f"\nwrote shakedown_limits.csv and shakedown.png in {folder}")
 
 

@@ -4,8 +4,8 @@ Usage: ``python studies/worn_profile.py [--out FOLDER]``; about one minute. Writ
 ``worn_profile_judged.nc`` and ``worn_profile.png`` and prints a table.
 
 A rigid cylinder that ends half a width from the free ends slides under one load until its load per length is uniform.
-What it has become, early, later and worn in, is then pressed on under other loads and tilts, beside Lundberg's profile
-with the factor that ``best_profile.py`` finds.
+Its profiles after little wear, more wear and wear-in are then pressed under other loads and tilts, beside
+Lundberg's profile with the factor that ``best_profile.py`` finds.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from contactstudy.plots.style import line_styles
 from contactstudy.wear import wear_in, worn_profile
 
 BESIDE_END = 0.05
-"""Distance from the roller's end over the half-width from which on pressures are compared: some are singular there."""
+"""Least distance from the roller's end, over the half-width, of compared pressures; the ends are singular."""
 
 WINDOW, CELLS_Y = 2.6, 64
 """Half-width of the window over the Hertz half-width, and its cells: sharp ends make a contact wide."""
@@ -31,7 +31,7 @@ WINDOW, CELLS_Y = 2.6, 64
 
 @dataclass(frozen=True)
 class Task:
-    """What wears and how it is judged: SI units."""
+    """Roller, wear and loads: SI units."""
 
     material: cs.Material = field(default_factory=lambda: cs.Material(210e9, 0.3))
     radius: float = 5e-3
@@ -67,7 +67,7 @@ class Task:
         )
 
 
-def worn_in(task: Task) -> xr.Dataset:
+def wear_roller(task: Task) -> xr.Dataset:
     """Wear at the design load, kept at some mean depths."""
     case = task.case()
     area = 2 * np.pi * task.radius * task.length
@@ -76,17 +76,17 @@ def worn_in(task: Task) -> xr.Dataset:
 
 
 def profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:
-    """Return what is compared, by its name."""
+    """Return the compared profiles by name."""
     names = ["sharp", *(f"worn by {1e6 * depth:g} µm" for depth in task.mean_depths)]
     case = task.case()
-    found: dict[str, cs.profiles.Profile] = {
+    pressures: dict[str, cs.profiles.Profile] = {
         name: worn_profile(case, worn, float(distance))
         for name, distance in zip(names, worn["distance"].values, strict=True)
     }
-    return found | {"best crown": task.crown}
+    return pressures | {"best crown": task.crown}
 
 
-def judged(task: Task, worn: xr.Dataset) -> xr.Dataset:
+def press_profiles(task: Task, worn: xr.Dataset) -> xr.Dataset:
     """Load per length and largest pressure of every profile under every load and tilt, on the cells of the wear."""
     edges = np.append(worn["x_bounds"].values[:, 0], worn["x_bounds"].values[-1, 1])
     compared = profiles(task, worn)
@@ -94,11 +94,11 @@ def judged(task: Task, worn: xr.Dataset) -> xr.Dataset:
     for profile in compared.values():
         of_loads = []
         for pressure in task.pressures:
-            reach = WINDOW * task.case(pressure=pressure).hertz_half_width
-            grid = cs.Grid.from_edges(edges, (-reach, reach), CELLS_Y)
+            half_window = WINDOW * task.case(pressure=pressure).hertz_half_width
+            grid = cs.Grid.from_edges(edges, (-half_window, half_window), CELLS_Y)
             of_loads.append(
                 xr.concat(
-                    [_pressed(task.case(profile, pressure, tilt), grid) for tilt in task.tilts],
+                    [_press_profile(task.case(profile, pressure, tilt), grid) for tilt in task.tilts],
                     xr.Variable("tilt", list(task.tilts), {"units": "rad"}),
                 )
             )
@@ -108,13 +108,13 @@ def judged(task: Task, worn: xr.Dataset) -> xr.Dataset:
     return result
 
 
-def _pressed(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
+def _press_profile(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
     """Load per length over the mean one, and pressure over p0 beside the ends and between them."""
-    found = cs.solve(case, grid, stresses=False)
-    line_load = cs.analysis.line_load(found) * case.contact_length / case.normal_load
+    pressures = cs.solve(case, grid, stresses=False)
+    line_load = cs.analysis.line_load(pressures) * case.contact_length / case.normal_load
     start, stop = case.contact_range
-    away = np.minimum(found["x"] - start, stop - found["x"]) >= BESIDE_END * case.hertz_half_width
-    largest = found["pressure"].max("y").where(away).max() / case.max_pressure
+    distance = np.minimum(pressures["x"] - start, stop - pressures["x"]) >= BESIDE_END * case.hertz_half_width
+    largest = pressures["pressure"].max("y").where(distance).max() / case.max_pressure
     return xr.Dataset(
         {
             "relative_load": line_load.assign_attrs(units="1", long_name="load per length over the mean"),
@@ -123,7 +123,7 @@ def _pressed(case: cs.Case, grid: cs.Grid) -> xr.Dataset:
     )
 
 
-def draw(task: Task, worn: xr.Dataset, found: xr.Dataset) -> plt.Figure:
+def draw(task: Task, worn: xr.Dataset, pressures: xr.Dataset) -> plt.Figure:
     """Profiles, and the load per length near an end at the load that they wore at and at a higher one."""
     figure, axes = plt.subplots(1, 3, figsize=(13.0, 4.2), layout="constrained")
     compared = profiles(task, worn)
@@ -136,23 +136,23 @@ def draw(task: Task, worn: xr.Dataset, found: xr.Dataset) -> plt.Figure:
     axes[0].legend(frameon=False, fontsize="small", loc="lower center")
     for ax, pressure in zip(axes[1:], task.pressures[-2:], strict=True):
         for name, style in zip(compared, styles, strict=True):
-            line = found["relative_load"].sel(profile=name, max_pressure=pressure, tilt=task.tilts[0])
-            away = (line["x"].values - task.end_distance) / task.case().hertz_half_width
-            shown = (away > BESIDE_END) & (away < 8)
-            ax.plot(away[shown], line.values[shown], **style)
+            line = pressures["relative_load"].sel(profile=name, max_pressure=pressure, tilt=task.tilts[0])
+            distance = (line["x"].values - task.end_distance) / task.case().hertz_half_width
+            near = (distance > BESIDE_END) & (distance < 8)
+            ax.plot(distance[near], line.values[near], **style)
         ax.set(xlabel="distance from the end over $a$ at 1.5 GPa", ylabel="load per length over the mean")
         ax.set(title=f"$p_0$ = {pressure / 1e9:g} GPa", ylim=(0.0, 2.0), xscale="log")
     return figure
 
 
-def table(found: xr.Dataset) -> str:
+def table(pressures: xr.Dataset) -> str:
     """Markdown: largest pressure off the ends, by load and tilt."""
-    loads = [(float(load), float(tilt)) for tilt in found["tilt"] for load in found["max_pressure"]]
+    loads = [(float(load), float(tilt)) for tilt in pressures["tilt"] for load in pressures["max_pressure"]]
     heads = [f"{load / 1e9:g} GPa{f', {1e3 * tilt:g} mrad' if tilt else ''}" for load, tilt in loads]
     lines = [f"| profile | {' | '.join(heads)} |", "|---" * (len(heads) + 1) + "|"]
-    for name in found["profile"].values:
+    for name in pressures["profile"].values:
         cells = [
-            f"{float(found['largest_pressure'].sel(profile=name, max_pressure=load, tilt=tilt)):.2f}"
+            f"{float(pressures['largest_pressure'].sel(profile=name, max_pressure=load, tilt=tilt)):.2f}"
             for load, tilt in loads
         ]
         lines.append(f"| {name} | {' | '.join(cells)} |")
@@ -165,13 +165,13 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=Path("results/worn_profile"))
     options = parser.parse_args()
     task = Task()
-    worn = worn_in(task)
-    found = judged(task, worn)
+    worn = wear_roller(task)
+    pressures = press_profiles(task, worn)
     options.out.mkdir(parents=True, exist_ok=True)
     worn.to_netcdf(options.out / "worn_profile.nc")
-    found.to_netcdf(options.out / "worn_profile_judged.nc")
-    draw(task, worn, found).savefig(options.out / "worn_profile.png", dpi=110)
-    print(table(found))
+    pressures.to_netcdf(options.out / "worn_profile_judged.nc")
+    draw(task, worn, pressures).savefig(options.out / "worn_profile.png", dpi=110)
+    print(table(pressures))
 
 
 if __name__ == "__main__":

@@ -14,6 +14,9 @@ QUIET = (
     *("--disable-component-update", "--disable-sync"),
 )
 
+SECONDS = 200
+"""Longest wait for a page, on a machine however busy."""
+
 
 def chromium() -> str | None:
     """Path of Chromium; None if it is not installed."""
@@ -22,7 +25,8 @@ def chromium() -> str | None:
 
 def open_served(page: Any, address: str) -> None:
     """Open the page of a server that listens a moment after it has said where, and wait for its figures."""
-    for _ in range(100):
+    end = time.monotonic() + SECONDS
+    while time.monotonic() < end:
         with suppress(Exception):
             page.goto(address)
             break
@@ -44,6 +48,7 @@ def browser(width: int, height: int, *, local_only: bool = True) -> Iterator[Any
             viewport={"width": width, "height": height},
         )
         page = context.new_page()
+        page.set_default_timeout(SECONDS * 1000)
         page.refused = []
 
         def judge(route: Any) -> None:

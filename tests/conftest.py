@@ -8,13 +8,21 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import FiniteLengthSpace, HalfSpace, Material, von_mises
-from contactstudy.study import open_study, run_study
+from contactstudy import FiniteLengthSpace, HalfSpace, Material
+from contactstudy.stress import von_mises
+from contactstudy.study import open_study, run_study, worker
+from contactstudy.study.settings import RunSettings
 from contactstudy.verification import closed_forms as ref
 from contactstudy.verification import problems
 from tests.small_study import BASE, small_study
 from tests.solved_case import solved_case
 from tests.stand_in_solver import FAILS, solve_fake
+
+
+@pytest.fixture(autouse=True)
+def _default_batches(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Solvers that hold cases write every case at once, and only in their test."""
+    monkeypatch.setattr(worker, "RUN", RunSettings())
 
 
 @pytest.fixture(scope="session")

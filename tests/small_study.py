@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 from contactstudy.study import Study
-from contactstudy.study.identity import case_id
+from contactstudy.study.parameters import case_id
 
 BASE = {
     "young": 210e9,

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass
 from threading import Barrier, Thread
 
 import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError, cache
-from contactstudy.cache import ArrayKey, kept
+from contactstudy.cache import ArrayKey, cached
+from contactstudy.checks import FloatArray
 
 
 @pytest.fixture(autouse=True)
@@ -24,7 +26,7 @@ def recorded(kind: str) -> tuple[Callable[[str], str], list[str]]:
     """Return a maker that keeps strings as large as they are long, and the list of what it has made."""
     made: list[str] = []
 
-    @kept(kind, len)
+    @cached(kind, len)
     def make(name: str) -> str:
         made.append(name)
         return name
@@ -69,7 +71,7 @@ def test_info_counts_what_is_made_and_reused() -> None:
     for name in ("aa", "aa", "bbb"):
         make(name)
     found = cache.info().kinds["counted"]
-    assert (found.values, found.nbytes, found.made, found.reused) == (2, 5, 2, 1)
+    assert (found.values, found.nbytes, found.computed, found.reused) == (2, 5, 2, 1)
     assert "counted: 2 in" in str(cache.info())
 
 
@@ -95,7 +97,7 @@ def test_a_limit_is_a_number_of_bytes(bound: object) -> None:
 def test_threads_share_one_value() -> None:
     barrier, found = Barrier(4), []
 
-    @kept("shared", lambda array: array.nbytes)
+    @cached("shared", lambda array: array.nbytes)
     def make(size: int) -> np.ndarray:
         barrier.wait()  # all four have missed
         return np.zeros(size)
@@ -116,3 +118,20 @@ def test_arrays_are_compared_by_values_shape_and_type() -> None:
     assert key != ArrayKey(np.zeros((2, 3), np.float32))
     with pytest.raises(ValueError, match="read-only"):
         key.values[0] = 1.0
+
+
+def test_arrays_of_values_are_read_only() -> None:
+    @dataclass
+    class Factors:
+        lower: FloatArray
+        by_name: dict[str, list[FloatArray]]
+
+    Factors.__module__ = "contactstudy.tests"
+
+    @cached("read-only", lambda value: 8)
+    def factors(size: int) -> Factors:
+        return Factors(np.ones(size), {"upper": [np.ones(size)]})
+
+    value = factors(3)
+    assert not value.lower.flags.writeable
+    assert not value.by_name["upper"][0].flags.writeable

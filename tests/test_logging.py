@@ -33,16 +33,13 @@ def test_the_stages_of_a_case_are_logged_and_timed(caplog: pytest.LogCaptureFixt
     assert min(run["stages"].values()) > 0
 
 
-def test_a_study_keeps_the_stages_of_its_cases_and_logs_its_progress(
-    tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
+def test_a_study_logs_its_progress(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.2e-3, "max_pressure": 1.5e9}
     coarse = {"body": "half-space", "cells_x": 4, "cells_y": 8, "stresses": False, "e_over_a": 0}
     study = small_study(base=base | coarse, sweep={"friction": [0.0]})
     with caplog.at_level(logging.INFO, "contactstudy"):
-        report = run_study(study, tmp_path, workers=0, progress=False)
-    assert set(report.entries[0].run["stages"]) == {"contact", "stresses"}
-    assert any("1/1 ok" in record.getMessage() for record in caplog.records)
+        run_study(study, tmp_path, workers=0, progress=False)
+    assert any("1/1 cases" in record.getMessage() for record in caplog.records)
 
 
 def test_the_command_is_verbose_if_asked(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
@@ -55,7 +52,7 @@ def test_the_command_is_verbose_if_asked(tmp_path: Path, caplog: pytest.LogCaptu
         assert logger.level == logging.INFO
     finally:
         logger.setLevel(previous)
-    assert any("4/4 ok" in record.getMessage() for record in caplog.records)
+    assert any("4/4 cases" in record.getMessage() for record in caplog.records)
 
 
 def test_versions_from_the_command(capsys: pytest.CaptureFixture[str]) -> None:

@@ -1,22 +1,37 @@
-"""Dimensions and positions along x, y and z, in a result of one case and in an opened study alike.
+"""Dimensions and positions along x, y and z, in a result of one case and in an opened study.
 
-A result has the dimensions ``x``, ``y``, ``z`` with positions as coordinates; stresses at positions of their own have
-``x_field``, ``y_field``. Where the cases of a study share positions over the half-width, the dimension is ``x_over_a``;
-where they do not, it is ``x_index``. Each case's positions in metres are then the coordinate ``x``, padded with NaN.
+A result has the dimensions ``x``, ``y``, ``z`` with positions as coordinates; stresses at separate positions have
+``x_field``, ``y_field``. In an opened study the dimension is ``x_over_a``, with ``cells="original"`` ``x_index``. The
+coordinate ``x`` contains the positions of each case in metres then, padded with NaN.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import AXES
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.arrays.variables import (
+    AXES,
+    COORDINATES,
+    POSITIONS,
+    Variable,
+    labels,
+    require,
+    required_in_si,
+    variable_of,
+)
+from contactstudy.case.case import Case
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import in_words
 
 
 def dimension_along(array: xr.DataArray, axis: str) -> str:
-    """Dimension of `array` along an axis: the axis' own name, or one that begins with it, such as ``x_field``.
+    """Return the dimension of an array along an axis: the name of the axis, or one with this prefix, as ``x_field``.
 
     Parameters
     ----------
@@ -28,36 +43,27 @@ def dimension_along(array: xr.DataArray, axis: str) -> str:
     Raises
     ------
     InvalidInputError
-        If there is no such dimension, or more than one.
+        If the array lacks such a dimension, or more than one.
 
     Examples
     --------
     >>> dimension_along(xr.DataArray(np.zeros((2, 3)), dims=("x_field", "z")), "x")
     'x_field'
     """
-    found = [str(dim) for dim in array.dims if dim == axis or str(dim).startswith(f"{axis}_")]
-    if len(found) != 1:
+    dims = [str(dim) for dim in array.dims if dim == axis or str(dim).startswith(f"{axis}_")]
+    if len(dims) != 1:
         raise InvalidInputError("dims", array.dims, f"with exactly one dimension along {axis}")
-    return found[0]
+    return dims[0]
 
 
 def axis_dimensions(array: xr.DataArray) -> dict[str, str]:
-    """Axes that `array` extends along, each with its dimension.
-
-    Examples
-    --------
-    >>> axis_dimensions(xr.DataArray(np.zeros((2, 3)), dims=("friction", "z_index")))
-    {'z': 'z_index'}
-    """
-    along = {}
-    for axis in AXES:
-        if any(dim == axis or str(dim).startswith(f"{axis}_") for dim in array.dims):
-            along[axis] = dimension_along(array, axis)
-    return along
+    """Return the axes along which an array extends, with its dimensions."""
+    axes = [axis for axis in AXES if any(dim == axis or str(dim).startswith(f"{axis}_") for dim in array.dims)]
+    return {axis: dimension_along(array, axis) for axis in axes}
 
 
 def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Positions of `array` along an axis, metres; NaN where a case of a study has fewer than others.
+    """Return the positions of an array along an axis, metres; NaN in the padding of a study.
 
     Parameters
     ----------
@@ -69,12 +75,12 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     Returns
     -------
     DataArray
-        With the dimension along the axis, and those of the study if its cases differ.
+        Along the dimension of the axis, and those of the study if its cases differ.
 
     Raises
     ------
     InvalidInputError
-        If there is not exactly one such dimension, or it has no positions.
+        If the array does not have exactly one such dimension, or lacks its positions.
 
     Examples
     --------
@@ -82,85 +88,54 @@ def positions(array: xr.DataArray, axis: str) -> xr.DataArray:
     >>> positions(array, "x").values.tolist()
     [0.0, 0.5]
     """
-    dim = dimension_along(array, axis)
-    name = position_name(dim)
+    name = position_name(dimension_along(array, axis))
     if name not in array.coords:
-        raise no_positions(array, name)
+        raise missing_positions(array, name)
     return array[name].reset_coords(drop=True)
 
 
-def no_positions(array: xr.DataArray | xr.Dataset, name: str) -> InvalidInputError:
-    """Return the error of an array that has no positions `name`."""
+def missing_positions(array: xr.DataArray | xr.Dataset, name: str) -> InvalidInputError:
+    """Return the error of an array without the positions `name`."""
     return InvalidInputError("coords", sorted(map(str, array.coords)), f"with the positions {name} (metres)")
 
 
 def position_name(dim: str) -> str:
-    """Name of the coordinate with the positions along a dimension, metres.
-
-    Examples
-    --------
-    >>> position_name("x_field_index"), position_name("y_over_a"), position_name("z")
-    ('x_field', 'y', 'z')
-    """
+    """Return the name of the coordinate with the positions along a dimension, metres."""
     return dim.removesuffix("_index").removesuffix("_over_a")
 
 
-def in_order(dataset: xr.Dataset) -> xr.Dataset:
-    """Return one case with its positions increasing, in which stresses may be asked for in any order.
-
-    Examples
-    --------
-    >>> in_order(xr.Dataset({"von_mises": ("z", [3.0, 1.0])}, {"z": [1e-3, 0.0]})).von_mises.values.tolist()
-    [1.0, 3.0]
-    """
-    turned = [
-        dim for dim, index in dataset.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
-    ]
-    return dataset.sortby(turned) if turned else dataset
-
-
-def increasing(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Return a field with its positions along an axis increasing; padded fields are in order already.
-
-    Examples
-    --------
-    >>> increasing(xr.DataArray([3.0, 1.0], dims="x", coords={"x": [0.5, 0.0]}), "x").values.tolist()
-    [1.0, 3.0]
-    """
+def sort_positions(array: xr.DataArray, axis: str) -> xr.DataArray:
+    """Return a field with increasing positions along an axis; padded fields are sorted already."""
     dim = dimension_along(array, axis)
-    known = array.indexes.get(dim)
-    return array if known is None or known.is_monotonic_increasing else array.sortby(dim)
+    index = array.indexes.get(dim)
+    return array if index is None or index.is_monotonic_increasing else array.sortby(dim)
 
 
 def cell_size(array: xr.DataArray, axis: str) -> xr.DataArray:
-    """Width of the cells along an axis, metres: as told by ``<axis>_width``, or the distance of uniform positions.
-
-    A single position has no width, 0.
-    """
+    """Return the width of the cells along an axis, metres; a single position has the width 0."""
     if f"{axis}_width" in array.coords:
         return array[f"{axis}_width"].reset_coords(drop=True)
-    dim, place = dimension_along(array, axis), positions(array, axis)
-    return (place.max(dim) - place.min(dim)) / np.maximum(place.count(dim) - 1, 1)
+    dim, centres = dimension_along(array, axis), positions(array, axis)
+    return (centres.max(dim) - centres.min(dim)) / np.maximum(centres.count(dim) - 1, 1)
 
 
 def single_case(dataset: xr.Dataset) -> xr.Dataset:
-    """One case, selected from a study, in the form that :func:`contactstudy.solve` returns.
+    """Return one case, selected from a study, in the form of a result of :func:`contactstudy.solve`.
 
     Parameters
     ----------
     dataset : Dataset
-        A result of one case; or an opened study with one value of each swept parameter selected.
+        A result of one case; or an opened study with one value of each swept parameter.
 
     Returns
     -------
     Dataset
-        With positions as dimensions instead of ``x_index`` or ``x_over_a``, increasing, and without padding; a result
-        of :func:`contactstudy.solve` mostly as it is.
+        With increasing positions as dimensions instead of ``x_index`` or ``x_over_a``, and without padding.
 
     Raises
     ------
     InvalidInputError
-        If there is more than one case.
+        If the Dataset contains more than one case.
 
     Examples
     --------
@@ -169,17 +144,190 @@ def single_case(dataset: xr.Dataset) -> xr.Dataset:
     [0.0, 0.5]
     """
     require(dataset)
-    cases = dataset[["hertz_half_width"]].sizes if "hertz_half_width" in dataset else {}
-    if any(size > 1 for size in cases.values()):
+    swept = dataset[["hertz_half_width"]].sizes if "hertz_half_width" in dataset else {}
+    if any(size > 1 for size in swept.values()):
         raise InvalidInputError(
-            "dataset", dict(cases), "a single case", "select one, for example with .isel(...) or .sel(...)"
+            "dataset", dict(swept), "a single case", "select one, for example with .isel(...) or .sel(...)"
         )
-    one = dataset.isel(dict.fromkeys(cases, 0))
-    for dim in [str(dim) for dim in one.dims if str(dim) != position_name(str(dim))]:
+    case = dataset.isel(dict.fromkeys(swept, 0))
+    for dim in [str(dim) for dim in case.dims if str(dim) != position_name(str(dim))]:
         name = position_name(dim)
-        if name not in one.coords or one[name].dims != (dim,):
-            raise InvalidInputError("dataset", dict(one.sizes), "a single case", f"with the positions {name}")
-        kept = np.flatnonzero(np.isfinite(one[name].values))
-        # A case without stresses has no positions at all.
-        one = one.isel({dim: kept}).swap_dims({dim: name}) if kept.size else one.drop_dims(dim)
-    return in_order(one)
+        if name not in case.coords or case[name].dims != (dim,):
+            raise InvalidInputError("dataset", dict(case.sizes), "a single case", f"with the positions {name}")
+        finite = np.flatnonzero(np.isfinite(case[name].values))
+        # A case without stresses lacks finite positions.
+        case = case.isel({dim: finite}).swap_dims({dim: name}) if finite.size else case.drop_dims(dim)
+    if "x_field" in case.coords and case["x_field"].dims == ("x",):
+        case = _with_stress_points(case)
+    unsorted = [
+        dim for dim, index in case.indexes.items() if str(dim)[:1] in AXES and not index.is_monotonic_increasing
+    ]
+    return case.sortby(unsorted) if unsorted else case
+
+
+def _with_stress_points(case: xr.Dataset) -> xr.Dataset:
+    """Return a case whose stresses lie on `x_field`, instead of on an axis that they share with the pressure."""
+    deep = [name for name, array in case.data_vars.items() if "x" in array.dims and "z" in array.dims]
+    if not deep:
+        return case.drop_vars("x_field")
+    finite = np.flatnonzero(np.isfinite(case["x_field"].values))
+    stresses = case[deep].isel(x=finite).swap_dims(x="x_field").drop_vars(["x", "x_over_a", "x_width"], errors="ignore")
+    return case.drop_vars([*deep, "x_field"]).assign(stresses.data_vars)
+
+
+def reduce_dims(
+    function: Callable[..., tuple[Array, ...]], arguments: Sequence[tuple[xr.DataArray, Sequence[str]]], outputs: int
+) -> tuple[xr.DataArray, ...]:
+    """Apply a function that reduces the last axes of its arrays to two or more arrays of floats; dask stays lazy."""
+    results: tuple[xr.DataArray, ...] = xr.apply_ufunc(
+        function,
+        *(array for array, _ in arguments),
+        input_core_dims=[list(dims) for _, dims in arguments],
+        output_core_dims=[[]] * outputs,
+        dask="parallelized",
+        dask_gufunc_kwargs={"allow_rechunk": True},
+        output_dtypes=[np.float64] * outputs,
+    )
+    return results
+
+
+# Powers of a and of p0 in the scale of each unit: a for a length, p0 a**2 for a load, and so on
+POWERS = {"m": (1, 0), "m2": (2, 0), "Pa": (0, 1), "N/m": (1, 1), "N": (2, 1), "N m": (3, 1)}
+SCALES = ("hertz_half_width", "hertz_max_pressure")  # The scales themselves, which stay in SI
+
+
+def normalized(dataset: xr.Dataset) -> xr.Dataset:
+    """Return lengths over a, stresses over p0, loads over p0 a**2: variables and positions without unit.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `hertz_half_width` and `hertz_max_pressure`: a result, an opened study, or a Dataset of
+        :mod:`contactstudy.analysis` with the two scales added.
+
+    Returns
+    -------
+    Dataset
+        The same variables; each variable with a unit in `POWERS` is divided by its scale, has the unit ``1``, and names
+        the scale. `hertz_half_width` and `hertz_max_pressure` stay in SI; so do swept parameters, and positions in
+        metres that cases of different a share: use the coordinates ``x_over_a`` and similar there.
+
+    Raises
+    ------
+    InvalidInputError
+        If a scale is missing.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([2.0e9], dims="x", coords={"x": [1e-4]}, attrs={"units": "Pa"})
+    >>> result = xr.Dataset({"pressure": pressure, "hertz_half_width": 5e-5, "hertz_max_pressure": 1e9})
+    >>> scaled = normalized(result)
+    >>> float(scaled.pressure[0]), float(scaled.x[0]), scaled.pressure.attrs["units"]
+    (2.0, 2.0, '1')
+    """
+    require(dataset, *SCALES)
+    # Variables instead of arrays: no alignment, and the positions change as well.
+    half_width, pressure = (dataset[name].variable for name in SCALES)
+
+    def scaled(array: xr.DataArray, specification: Variable) -> xr.Variable:
+        powers = POWERS[specification.units]
+        result = array.variable / (half_width ** powers[0] * pressure ** powers[1])
+        # Dimensions of the study come first, as in the result.
+        result = result.transpose(*(dim for dim in result.dims if dim not in array.dims), *array.dims)
+        a, p0 = powers
+        scale = " ".join(["p0"] * p0 + ([f"a**{a}"] if a > 1 else ["a"] * a))  # such as p0 a**2
+        long_name = f"{specification.long_name}, over {scale}"
+        result.attrs = {**array.attrs, "units": "1", "long_name": long_name}
+        return result
+
+    variables, coordinates = {}, {}
+    for name, array in dataset.data_vars.items():
+        specification = variable_of(str(name), array.attrs)
+        if specification.units in POWERS and name not in SCALES:
+            variables[name] = scaled(array, specification)
+    for name, coordinate in dataset.coords.items():
+        specification = variable_of(str(name), coordinate.attrs, coordinate=True)
+        shared = name in dataset.dims and half_width.ndim > 0
+        if name in COORDINATES and specification.units == "m" and not shared:
+            coordinates[name] = scaled(coordinate, specification)
+            coordinates[name].attrs |= labels(f"{name}_over_a", coordinate=True)  # as in positions_over_a
+    return dataset.assign_coords(coordinates).assign(variables)
+
+
+def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a result with positions over a as dimensions, for ``.sel(x_over_a=1, method="nearest")``.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of :func:`contactstudy.solve`; or an opened study whose cases share positions, in metres or over a.
+
+    Returns
+    -------
+    Dataset
+        The same values in SI along ``x_over_a``, ``y_over_a``, ``z_over_a``, and similar for stresses at separate
+        positions; the coordinates ``x``, ``y``, ``z`` are in metres. A result of `solve` also has the coordinates
+        `e_over_a`, `friction`, `gamma` and `profile` of an opened study, if its case has a single value of them:
+        several results on the same cells can be joined along one. :func:`single_case` is the inverse.
+
+    Raises
+    ------
+    InvalidInputError
+        If half-width or positions are missing, positions over a differ between the cases, or `x` is over a already.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, solve
+    >>> body = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
+    >>> result = positions_over_a(solve(case, stresses=False))
+    >>> row = result.pressure.sel(x_over_a=3.8, method="nearest").sel(y_over_a=slice(-0.5, 0.5))
+    >>> row.dims, round(float(row.e_over_a), 2), round(float(row.gamma), 2)
+    (('y_over_a',), 1.54, 0.1)
+    """
+    dataset = required_in_si(dataset, "hertz_half_width")
+    half_width = dataset["hertz_half_width"]
+    if half_width.size == 1:
+        dataset = single_case(dataset)
+        half_width = dataset["hertz_half_width"]
+        dataset = dataset.assign_coords(_case_coordinates(dataset))
+    for dim in map(str, dataset.dims):
+        name = position_name(dim)
+        over = f"{name}_over_a"
+        if name not in POSITIONS or dim == over:
+            continue
+        if dataset[dim].attrs.get("units") == "1":
+            raise InvalidInputError(dim, "over a", "in metres", "results of analysis.normalized are over a already")
+        if half_width.ndim == 0:
+            if dim not in dataset.coords:
+                raise missing_positions(dataset, name)
+            values = dataset[dim].variable / half_width.variable
+        elif over in dataset.coords and dataset[over].dims == (dim,):
+            values = dataset[over].variable
+        else:
+            allowed = f"with the same {over} in all cases"
+            raise InvalidInputError("dataset", f"{dim} of {half_width.size} cases", allowed, "select one case")
+        values.attrs = labels(over, coordinate=True)
+        dataset = dataset.assign_coords({over: values}).swap_dims({dim: over})
+    return dataset
+
+
+def _case_coordinates(result: xr.Dataset) -> dict[str, Any]:
+    """Coordinates of a result that identify its case."""
+    if "case" not in attribute(result, INPUTS_ATTRIBUTE):
+        return {}
+    values = _parameters(solved_case(result), float(result["hertz_half_width"]))
+    return {name: ((), value, labels(name, coordinate=True)) for name, value in values.items() if name not in result}
+
+
+def _parameters(case: Case, half_width: float) -> dict[str, float | str]:
+    """Values of e/a, friction, gamma and profile of a case, without those it does not have."""
+    low, high = case.body.extent
+    values: dict[str, float | str] = {}
+    if np.isfinite(low):
+        values["e_over_a"] = case.roller_start / half_width
+    if isinstance(case.friction, float):
+        values["friction"] = case.friction
+    if np.isfinite(high - low):
+        values["gamma"] = (high - low) / case.roller.radius
+    return values | {"profile": in_words(case.roller.profile)}

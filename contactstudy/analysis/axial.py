@@ -1,4 +1,9 @@
-"""The contact along the roller's axis: pressure, load, half-width and unloaded gap."""
+"""Edges of a contact to a few hundredths of a cell: half-width, length and area.
+
+Across the smooth edge of a contact the pressure vanishes like the square root of the distance, and the gap opens like
+its power 3/2 (K. L. Johnson, Contact Mechanics, 1985, section 5.1). The squared pressure inside and the gap to the
+power 2/3 outside are therefore linear at the edge: the edge is the mean of the zeros of quadratics fitted to both.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +11,179 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
-from contactstudy.analysis.border import contact_borders
-from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.required import require
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import named, without_error
+from contactstudy.analysis.axes import cell_size, dimension_along, positions, reduce_dims, single_case, sort_positions
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe, named, require, required_in_si, without_error
+from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
+
+SKIPPED, FITTED = 2, 5  # Cells beside an edge that carry the error of the cut cell, and cells behind them in the fit
+# Largest error of an edge in cells, measured on Hertz contacts at all positions of the edge in a cell
+EDGE_UNCERTAINTY = 0.04
+
+
+def contact_borders(pressure: Array, centres: Array, gap: Array | None = None) -> tuple[Array, Array]:
+    """First and last y in contact of each row of cells (..., y), NaN without contact; NaN in padding.
+
+    The gap beyond the contact gives a second estimate, and the only one of a contact of fewer than 7 cells.
+    """
+    shape, cells = pressure.shape[:-1], pressure.shape[-1]
+    rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cells)
+    opening = np.full_like(rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cells)
+    positions = np.broadcast_to(centres, pressure.shape).reshape(-1, cells)
+    begin, count = np.nanmin(positions, axis=1, initial=np.inf), np.isfinite(positions).sum(axis=1)
+    step = (np.nanmax(positions, axis=1, initial=-np.inf) - begin) / np.maximum(count - 1, 1)
+    first = cells - 1 - _last_edges(rows[:, ::-1], opening[:, ::-1])
+    last = _last_edges(rows, opening)
+    return (begin + step * first).reshape(shape), (begin + step * last).reshape(shape)
+
+
+def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
+    """Last edge of each row, in cells from the centre of the first; NaN without contact."""
+    edges = np.full(pressure.shape[0], np.nan)
+    rows = np.flatnonzero(pressure.any(axis=1))
+    last = pressure.shape[1] - 1 - (pressure[rows, ::-1] > 0).argmax(axis=1)
+    begin_inside, begin_outside = last - SKIPPED, last + 1 + SKIPPED
+    squared = _samples(pressure[rows], begin_inside, -1) ** 2
+    opening = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
+    face = last + 0.5
+    estimates = np.stack([begin_inside + _distance_to_zero(squared), begin_outside - _distance_to_zero(opening)])
+    valid = np.abs(estimates - face) <= 1
+    total = np.where(valid, estimates, 0.0).sum(axis=0)
+    edges[rows] = np.where(valid.any(axis=0), total / np.maximum(valid.sum(axis=0), 1), face)
+    return edges
+
+
+def _samples(values: FloatArray, begin: IntArray, direction: int) -> FloatArray:
+    """Values of each row from the cell `begin`: array (row, `FITTED`); NaN unless all are positive and finite."""
+    cells = begin[:, None] + direction * np.arange(FITTED)
+    inside = (cells >= 0) & (cells < values.shape[1])
+    samples = np.take_along_axis(values, np.where(inside, cells, 0), axis=1)
+    valid = (inside & (samples > 0) & np.isfinite(samples)).all(axis=1)
+    return np.where(valid[:, None], samples, np.nan)
+
+
+def _distance_to_zero(values: FloatArray) -> FloatArray:
+    """Return the steps from the zero of the fitted quadratic to the first of growing values; NaN without a zero."""
+    to_quadratic = np.linalg.pinv(np.vander(np.arange(float(FITTED)), 3))
+    bend, slope, level = to_quadratic @ values.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.asarray(2 * level / (slope + np.sqrt(slope**2 - 4 * bend * level)))
+
+
+def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
+    """Return edges, half-width, length and area of a contact, to a few hundredths of a cell.
+
+    Where the contact ends with the shape or the body, its edge is the face of the last cell.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure` (Pa) and `gap` (metres, after deformation; infinite beyond the surfaces) on (x, y), as from
+        `solve_contact`; or one case selected from a study.
+
+    Returns
+    -------
+    Dataset
+        In metres: `y_left`, `y_right` and `half_width` (x), NaN without contact (of several contacts at one x, the
+        outermost edges); `x_first`, `x_last` and their distance `contact_length`; in square metres `contact_area`, the
+        integral of the width. Without contact, length and area are 0.
+
+    Raises
+    ------
+    InvalidInputError
+        If `pressure` or `gap` is missing, or the cells do not tile a range.
+
+    Examples
+    --------
+    >>> from contactstudy import HalfSpace, Material, solve_contact
+    >>> centres = np.linspace(-1.5, 1.5, 97)
+    >>> gap = xr.DataArray(
+    ...     0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y")
+    ... )
+    >>> contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, load=4 / 3)  # Hertz: radius 1
+    >>> edges = contact_edges(contact)
+    >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
+    (1.0, 1.0)
+    """
+    contact, pressure, gap, grid = _cells(dataset)
+    left, right = contact_borders(pressure, grid.y, gap)
+    touches = bool(pressure.any())
+    first, last = _axial_ends(pressure, gap, grid) if touches else (np.nan, np.nan)
+    result = xr.Dataset(
+        {
+            "y_left": ("x", left),
+            "y_right": ("x", right),
+            "half_width": ("x", 0.5 * (right - left)),
+            "x_first": first,
+            "x_last": last,
+            "contact_length": last - first if touches else 0.0,
+            "contact_area": _area(grid, gap, right - left, (first, last)) if touches else 0.0,
+        },
+        coords={"x": contact["x"].values},
+    )
+    return describe(result, "edges of a contact, within a cell")
+
+
+def contact_length(dataset: xr.Dataset) -> xr.DataArray:
+    """Return the length of a contact alone, as from `contact_edges`, metres."""
+    _, pressure, gap, grid = _cells(dataset)
+    first, last = _axial_ends(pressure, gap, grid) if pressure.any() else (0.0, 0.0)
+    return describe(xr.Dataset({"contact_length": last - first}))["contact_length"]
+
+
+def _cells(dataset: xr.Dataset) -> tuple[xr.Dataset, FloatArray, FloatArray, Grid]:
+    """Contact of one case, with its pressure and gap on its cells."""
+    require(dataset)
+    contact = single_case(dataset)
+    require(contact, "pressure", "gap")
+    pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
+    gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
+    return contact, pressure, gap, grid
+
+
+def _axial_ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:
+    """First and last x of the contact: within a uniform cell, or faces of the outermost of other cells."""
+    if grid.uniform:
+        starts, stops = contact_borders(pressure.T, grid.x, gap.T)
+        # A smooth end is not beyond the face of the shape or the body.
+        facing, faces = np.flatnonzero(np.isfinite(gap).any(axis=1)), grid.x_edges
+        first, last = max(np.nanmin(starts), faces[facing[0]]), min(np.nanmax(stops), faces[facing[-1] + 1])
+        return float(first), float(last)
+    loaded, faces = np.flatnonzero(pressure.any(axis=1)), grid.x_edges
+    return float(faces[loaded[0]]), float(faces[loaded[-1] + 1])
+
+
+def _area(grid: Grid, gap: FloatArray, width: FloatArray, ends: tuple[float, float]) -> float:
+    """Integral of the width over x: a spline of its square, which is smooth at the ends."""
+    first, last = ends
+    columns = np.flatnonzero(np.isfinite(width))
+    if np.any(np.diff(columns) > 1):
+        return float(np.nansum(width * grid.widths))
+    smooth = [
+        int(0 <= neighbour < grid.cells_x and np.isfinite(gap[neighbour]).any())
+        for neighbour in (columns[0] - 1, columns[-1] + 1)
+    ]
+    # Columns near an end that are too narrow for the fits would spoil the spline, which has the zero of a smooth end.
+    wide = columns[width[columns] > 2 * (SKIPPED + FITTED) * grid.dy]
+    columns = columns[(columns >= wide[0]) & (columns <= wide[-1])] if wide.size > 3 else columns
+    # The border within an outermost column may lie short of its centre.
+    columns = columns[(grid.x[columns] > first) & (grid.x[columns] < last)]
+    if columns.size < 2:
+        return float(np.nansum(width * grid.widths))
+    from scipy.interpolate import CubicSpline
+
+    x = np.concatenate([[first][: smooth[0]], grid.x[columns], [last][: smooth[1]]])
+    squared = np.concatenate([[0.0][: smooth[0]], width[columns] ** 2, [0.0][: smooth[1]]])
+    angles = np.pi * (np.arange(4096) + 0.5) / 4096
+    nodes = 0.5 * (first + last) - 0.5 * (last - first) * np.cos(angles)
+    widths = np.sqrt(np.maximum(CubicSpline(x, squared)(nodes), 0.0))
+    return float((widths * np.sin(angles)).sum() * 0.5 * (last - first) * np.pi / angles.size)
 
 
 def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
-    """Largest pressure across y at each position along the roller's axis.
+    """Return the largest pressure across y at each position along the roller's axis.
 
     Parameters
     ----------
@@ -31,7 +198,7 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If the Dataset lacks pressure.
 
     Examples
     --------
@@ -40,12 +207,11 @@ def axial_pressure(dataset: xr.Dataset) -> xr.DataArray:
     [1.0, 2.0]
     """
     pressure = required_in_si(dataset, "pressure", normalized=True)["pressure"]
-    largest = pressure.max(dimension_along(pressure, "y"))
-    return named("axial_pressure", largest)
+    return named("axial_pressure", pressure.max(dimension_along(pressure, "y")))
 
 
 def line_load(dataset: xr.Dataset) -> xr.DataArray:
-    """Load per length at each position along the roller's axis, the integral of the pressure across y.
+    """Return the load per length along the roller's axis, the integral of the pressure across y.
 
     Parameters
     ----------
@@ -60,7 +226,7 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If the Dataset lacks pressure, or less than two positions along y.
 
     Examples
     --------
@@ -70,32 +236,32 @@ def line_load(dataset: xr.Dataset) -> xr.DataArray:
     [1.0, 5.0]
     """
     pressure = required_in_si(dataset, "pressure")["pressure"]
-    if pressure.sizes[dimension_along(pressure, "y")] < 2:
+    y = dimension_along(pressure, "y")
+    if pressure.sizes[y] < 2:
         raise InvalidInputError("dataset", dict(pressure.sizes), "a result with two positions along y or more")
-    load = pressure.sum(dimension_along(pressure, "y"), min_count=1) * cell_size(pressure, "y")
-    return named("line_load", load)
+    return named("line_load", pressure.sum(y, min_count=1) * cell_size(pressure, "y"))
 
 
 def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.DataArray | float) -> xr.DataArray:
-    """Load carried between two positions along the roller's axis.
+    """Return the load between two positions along the roller's axis.
 
     Parameters
     ----------
     dataset : Dataset
         With `pressure` on cells.
     start, stop : float or DataArray
-        Positions, metres; an array has a position for each case of a study. They may be infinite.
+        Positions, metres, also infinite; an array has a position for each case of a study.
 
     Returns
     -------
     DataArray
-        N, without the dimensions along x and y. A cell that a position cuts counts by its part, so that the load next
-        to an end, unlike the pressure there, hardly depends on the grid.
+        N, without the dimensions along x and y. A cell that a position cuts counts by its part, so that the load beside
+        an end, unlike the pressure there, depends little on the grid.
 
     Raises
     ------
     InvalidInputError
-        If there is no pressure, or the part is empty, misses the cells or is no number.
+        If the Dataset lacks pressure, or the interval is empty, outside the cells or not a number.
 
     Examples
     --------
@@ -107,22 +273,22 @@ def load_between(dataset: xr.Dataset, start: xr.DataArray | float, stop: xr.Data
     for name, value in (("start", start), ("stop", stop)):
         checks.instance(name, value, (float, int, np.number, xr.DataArray), "a number (metres) or a DataArray")
     load = line_load(dataset)
-    along, place, half_cell = dimension_along(load, "x"), positions(load, "x"), 0.5 * cell_size(load, "x")
+    x, half_cell = positions(load, "x"), 0.5 * cell_size(load, "x")
     if np.any(np.greater_equal(start, stop)):
         raise InvalidInputError("start, stop", (start, stop), "increasing (metres)")
-    low, high = float((place - half_cell).min()), float((place + half_cell).max())
+    low, high = float((x - half_cell).min()), float((x + half_cell).max())
     if np.all(np.greater_equal(start, high)) or np.all(np.less_equal(stop, low)):
         raise InvalidInputError("start, stop", (start, stop), f"a part of the cells, {low:.4g} to {high:.4g} m")
-    shared = (np.minimum(place + half_cell, stop) - np.maximum(place - half_cell, start)).clip(0.0)
-    carried = (load * shared).sum(along, min_count=1)
-    return named("normal_load", carried).assign_attrs(comment="between two positions along the axis")
+    overlap = (np.minimum(x + half_cell, stop) - np.maximum(x - half_cell, start)).clip(0.0)
+    total = (load * overlap).sum(dimension_along(load, "x"), min_count=1)
+    return named("normal_load", total).assign_attrs(comment="between two positions along the axis")
 
 
 def half_width(dataset: xr.Dataset) -> xr.Dataset:
-    """Half-width of the contact at each position along the roller's axis, and the y of its middle.
+    """Return the half-width of the contact at each position along the roller's axis, and its middle.
 
-    The border is resolved finer than the cells, see :mod:`contactstudy.analysis.border`, from the pressure alone;
-    where few cells are loaded across y it is that of whole cells.
+    The border follows from the pressure alone, more finely than the cells (:mod:`contactstudy.analysis.axial`); with
+    few loaded cells across y it is the face of a cell.
 
     Parameters
     ----------
@@ -132,13 +298,13 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Along x: `half_width` (m; 0 where nothing is loaded) and `contact_middle` (m, the y of the contact's middle;
-        NaN where nothing is loaded).
+        Along x: `half_width` (m; 0 without contact) and `contact_middle` (m, the y of the contact's middle; NaN without
+        contact).
 
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If the Dataset lacks pressure.
 
     Examples
     --------
@@ -147,21 +313,16 @@ def half_width(dataset: xr.Dataset) -> xr.Dataset:
     >>> half_width(xr.Dataset({"pressure": pressure})).half_width.values.round(9).tolist()
     [1.0]
     """
-    pressure = increasing(required_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
-    along = dimension_along(pressure, "y")
-    low, high = reduced(contact_borders, [(pressure, [along]), (positions(pressure, "y"), [along])], 2)
-    exists = pressure.notnull().any(along)
-    width = (0.5 * (high - low)).fillna(0.0).where(exists)
-    return xr.Dataset(
-        {
-            "half_width": named("half_width", width),
-            "contact_middle": named("contact_middle", 0.5 * (low + high)),
-        }
-    )
+    pressure = sort_positions(required_in_si(dataset, "pressure", normalized=True)["pressure"], "y")
+    y = dimension_along(pressure, "y")
+    low, high = reduce_dims(contact_borders, [(pressure, [y]), (positions(pressure, "y"), [y])], 2)
+    width = (0.5 * (high - low)).fillna(0.0).where(pressure.notnull().any(y))
+    middle = 0.5 * (low + high)
+    return xr.Dataset({"half_width": named("half_width", width), "contact_middle": named("contact_middle", middle)})
 
 
 def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
-    """Gap before deformation at each position along the roller's axis: the profile's drop and the tilt.
+    """Return the gap before deformation along the roller's axis: drop of the profile and tilt.
 
     Parameters
     ----------
@@ -176,7 +337,7 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     Raises
     ------
     InvalidInputError
-        If there is no initial gap.
+        If the Dataset lacks the initial gap.
 
     Examples
     --------
@@ -187,12 +348,11 @@ def unloaded_gap(dataset: xr.Dataset) -> xr.DataArray:
     require(dataset, "initial_gap")
     gap = dataset["initial_gap"]
     smallest = gap.min(dimension_along(gap, "y"))
-    smallest = smallest.where(np.isfinite(smallest))
-    return named("unloaded_gap", smallest)
+    return named("unloaded_gap", smallest.where(np.isfinite(smallest)))
 
 
 def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:
-    """Everything about the contact along the roller's axis, in one Dataset.
+    """Return pressure, load, half-width and gap along the roller's axis in one Dataset.
 
     Parameters
     ----------
@@ -207,7 +367,7 @@ def axial_profiles(dataset: xr.Dataset) -> xr.Dataset:
     Raises
     ------
     InvalidInputError
-        If there is no pressure.
+        If the Dataset lacks pressure.
 
     Examples
     --------

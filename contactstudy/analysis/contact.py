@@ -1,138 +1,102 @@
-"""The contact as a whole: peak and edge pressure, area, length and its loss, and where the load acts."""
+"""Scalars of a contact on its cells: area, length, edge pressures, resultant and its position; cut ends."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.axes import cell_size, dimension_along, increasing, positions
+from contactstudy.analysis.axes import (
+    axis_dimensions,
+    cell_size,
+    dimension_along,
+    positions,
+    reduce_dims,
+    sort_positions,
+)
 from contactstudy.analysis.axial import axial_pressure, unloaded_gap
-from contactstudy.analysis.cut_ends import CUT, cut_ends
-from contactstudy.analysis.peaks import peak
-from contactstudy.analysis.reduced import reduced
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import UNBOUNDED, named, without_error
+from contactstudy.analysis.peaks import largest_sample, measure
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.arrays.variables import named, required_in_si, variable_of, without_error
 from contactstudy.checks import Array
+from contactstudy.errors import InvalidInputError
 
-OF_CELL = f"mean of the outermost loaded cell, {UNBOUNDED}; end_pressure of a settled result has one"
-
-
-def _first_and_last(values: Array) -> tuple[Array, Array]:
-    """First and last positive number along the last axis; NaN if there is none."""
-    loaded = values > 0
-    first, last = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
-    ends = [np.take_along_axis(values, at[..., None], axis=-1)[..., 0] for at in (first, last)]
-    none = ~loaded.any(axis=-1)
-    return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
+MISSING_LOAD = 0.01  # Relative load below which a Dataset is a part of a contact
+END_TOLERANCE = 1e-6  # Distance of a border of the cells from the end of the contact, over a cell, that is rounding
 
 
-def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
-    """Pressure in the first and in the last loaded cells along the roller's axis, the largest across y.
+class ContactNumbers(NamedTuple):
+    """Scalars of contacts in whole cells: arrays without the cells' axes; NaN without pressure."""
 
-    Parameters
-    ----------
-    dataset : Dataset
-        With `pressure`.
-
-    Returns
-    -------
-    Dataset
-        `edge_pressure_first` and `edge_pressure_last`, Pa: means of a cell, which depend on the cells. Infinite where
-        `end_pressure_first` or `end_pressure_last` of a result is; NaN if nothing is loaded, and at an end where the
-        Dataset is only a part of the contact, which goes on there.
-
-    Raises
-    ------
-    InvalidInputError
-        If there is no pressure.
-
-    Examples
-    --------
-    >>> pressure = xr.DataArray([[0.0], [3.0], [1.0], [2.0]], dims=("x", "y"))
-    >>> ends = edge_pressure(xr.Dataset({"pressure": pressure}))
-    >>> float(ends.edge_pressure_first), float(ends.edge_pressure_last)
-    (3.0, 2.0)
-    """
-    values: dict[str, xr.DataArray] = {}
-    axial = increasing(axial_pressure(dataset), "x")
-    first, last = reduced(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
-    cut_first, cut_last = cut_ends(dataset)
-    first, last = first.where(cut_first == 0), last.where(cut_last == 0)
-    for end, value in (("first", first), ("last", last)):
-        # A cell beside a singular end has a height of its own only.
-        endless = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
-        values[f"edge_pressure_{end}"] = named(f"edge_pressure_{end}", value.where(~endless | value.isnull(), np.inf))
-        values[f"edge_pressure_{end}"].attrs["comment"] = OF_CELL
-    return xr.Dataset(values)
+    contact_area: Array  # m2
+    contact_length: Array  # m
+    contact_width: Array
+    contact_length_loss: Array  # m, facing length without contact
+    resultant: Array  # N
+    load_position: Array  # m, along x
+    facing_middle: Array  # m
 
 
-def _range(place: Array, chosen: Array) -> tuple[Array, Array]:
-    """First and last of the chosen positions along the last axis; infinite if there is none."""
-    return np.where(chosen, place, np.inf).min(axis=-1), np.where(chosen, place, -np.inf).max(axis=-1)
-
-
-def _scalars(pressure: Array, facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> tuple[Array, ...]:
-    """Area, length, width, loss of length, resultant, its x, middle of what faces; of contacts (..., x, y), or NaN."""
-    known = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
-    # A case that failed has no positions either.
-    place_x, place_y, dx, dy = (np.where(known[..., None], place, 0.0) for place in (x, y, dx, dy))
+def contact_numbers(pressure: Array, facing: Array, x: Array, y: Array, dx: Array, dy: Array) -> ContactNumbers:
+    """Return the scalars of pressures (..., x, y), with `facing`, `x`, `dx` (..., x), and `y`, `dy` (..., y)."""
+    solved = np.asarray(~np.isnan(pressure).all(axis=(-2, -1)))
+    # A failed case lacks positions.
+    x, y, dx, dy = (np.where(solved[..., None], values, 0.0) for values in (x, y, dx, dy))
     loaded = np.asarray(pressure > 0)
-    in_row, in_column = (np.asarray(loaded.any(axis=axis)) for axis in (-1, -2))
 
-    def length(place: Array, chosen: Array, width: Array) -> Array:
-        first, last = _range(place - 0.5 * width, chosen)[0], _range(place + 0.5 * width, chosen)[1]
-        return np.where(chosen.any(axis=-1), last - first, 0.0)
+    def length(centres: Array, mask: Array, width: Array) -> Array:
+        first, last = _range(centres - 0.5 * width, mask)[0], _range(centres + 0.5 * width, mask)[1]
+        return np.where(mask.any(axis=-1), last - first, 0.0)
 
-    along = length(place_x, in_row, dx)
+    along = length(x, np.asarray(loaded.any(axis=-1)), dx)
     load = np.nansum(pressure * dy[..., None, :], axis=-1) * dx
     resultant = np.nansum(load, axis=-1)
-    moment = np.nansum(load * place_x, axis=-1)
-    acting = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
-    first, last = _range(place_x, facing)
-    scalars = (
+    moment = np.nansum(load * x, axis=-1)
+    position = np.divide(moment, resultant, out=np.full(np.shape(moment), np.nan), where=resultant > 0)
+    first, last = _range(x, facing)
+    numbers = (
         np.nansum(loaded * dx[..., :, None] * dy[..., None, :], axis=(-2, -1)),
         along,
-        length(place_y, in_column, dy),
-        length(place_x, facing, dx) - along,
+        length(y, np.asarray(loaded.any(axis=-2)), dy),
+        length(x, facing, dx) - along,
         resultant,
-        acting,
+        position,
         0.5 * np.where(first <= last, first, np.nan) + 0.5 * last,
     )
-    return tuple(np.where(known, value, np.nan) for value in scalars)
+    return ContactNumbers(*(np.where(solved, number, np.nan) for number in numbers))
 
 
-def _width_at_each(pressure: xr.DataArray, axis: str) -> xr.DataArray:
-    """Width of the cell at every position along an axis; NaN where a case has fewer than others."""
-    place = positions(pressure, axis)
-    return cell_size(pressure, axis) + 0.0 * place
+def _range(centres: Array, mask: Array) -> tuple[Array, Array]:
+    """First and last position of a mask along the last axis; infinite if it is empty."""
+    return np.where(mask, centres, np.inf).min(axis=-1), np.where(mask, centres, -np.inf).max(axis=-1)
 
 
 def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Dataset:
-    """Scalars of the contact: peak and edge pressure, area, length and its loss, and where the load acts.
+    """Return scalars of the contact: peak and edge pressure, area, length and its loss, resultant and moment.
 
     Parameters
     ----------
     dataset : Dataset
-        A result of :func:`contactstudy.solve` or of :func:`contactstudy.open_study`; `initial_gap` says how far
-        roller and body face each other.
+        A result of :func:`contactstudy.solve` or of :func:`contactstudy.open_study`; `initial_gap` contains the facing
+        length of roller and body.
     about : float, optional
-        Position x that the moment is taken about, m; default: the middle of where roller and body face each other
-        (mid-length of the roller unless it overhangs), or of the grid if there is no `initial_gap`.
+        Position x of the moment's axis, m; default: the middle of the facing length (mid-length of the roller unless it
+        overhangs), or of the grid without `initial_gap`.
 
     Returns
     -------
     Dataset
-        `peak_pressure` with ``_x`` and ``_y``, the settled one with its error where a whole result has it, and else
-        that of the highest cell; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2),
-        `contact_length`, `contact_width` (m), in whole cells; `contact_length_loss` (m, what of the facing length
-        carries nothing); `resultant` (N) of the pressure, `load_position` (m, the x where it acts) and `moment`
-        (N m, positive if it acts beyond `about`). NaN for cases without pressure.
+        `peak_pressure` with ``_x`` and ``_y``: settled, with its error, where a whole result has it, otherwise of the
+        highest cell; `edge_pressure_first`, `edge_pressure_last` (Pa); `contact_area` (m2), `contact_length`,
+        `contact_width` (m), in whole cells; `contact_length_loss` (m, facing length without contact); `resultant` (N),
+        `load_position` (m, its position x) and `moment` (N m, positive beyond `about`). NaN for cases without pressure.
 
     Raises
     ------
     InvalidInputError
-        If there is no pressure, or `about` is not a number.
+        If the Dataset lacks pressure, or `about` is not a number.
 
     Examples
     --------
@@ -145,44 +109,276 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
     dataset = required_in_si(dataset, "pressure", normalized=True)
     pressure = dataset["pressure"]
     x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
-    opposite = unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)
+    facing = (unloaded_gap(dataset) if "initial_gap" in dataset else axial_pressure(dataset)).notnull()
     arguments = [
         (pressure, [x, y]),
-        (opposite.notnull(), [x]),
-        (positions(pressure, "x"), [x]),
-        (positions(pressure, "y"), [y]),
-        *((_width_at_each(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        (facing, [x]),
+        *((positions(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
     ]
-    area, length, width, loss, resultant, position, middle = reduced(_scalars, arguments, 7)
+    numbers = dict(zip(ContactNumbers._fields, reduce_dims(contact_numbers, arguments, 7), strict=True))
+    middle, loss = numbers.pop("facing_middle"), numbers.pop("contact_length_loss")
     centre = middle if about is None else checks.finite("about", about, "metres")
-    values = {
-        "contact_area": area,
-        "contact_length": length,
-        "contact_width": width,
-        "resultant": resultant,
-        "load_position": position,
-        "moment": resultant * (position - centre),
-    }
+    numbers["moment"] = numbers["resultant"] * (numbers["load_position"] - centre)
     if "initial_gap" in dataset:
-        values["contact_length_loss"] = loss
-    scalars = {name: named(name, value) for name, value in values.items()}
+        numbers["contact_length_loss"] = loss
+    scalars = {name: named(name, value) for name, value in numbers.items()}
     for name in ("contact_area", "contact_length"):
         scalars[name].attrs["comment"] = "in whole cells"
-    found = _peak(dataset, resultant).assign(edge_pressure(dataset).data_vars).assign(scalars).compute()
-    return without_error(found, *scalars)
+    peak = _peak_pressure(dataset, numbers["resultant"])
+    return without_error(peak.assign(edge_pressure(dataset).data_vars).assign(scalars).compute(), *scalars)
 
 
-def _peak(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
-    """Largest pressure and its place: the settled one of a contact that is whole."""
-    found = peak(dataset, "pressure")
+def _cell_widths(pressure: xr.DataArray, axis: str) -> xr.DataArray:
+    """Width of each cell along an axis; NaN in padding."""
+    return cell_size(pressure, axis) + 0.0 * positions(pressure, axis)
+
+
+def _peak_pressure(dataset: xr.Dataset, resultant: xr.DataArray) -> xr.Dataset:
+    """Largest pressure and its position: settled if the contact is whole."""
+    sampled = largest_sample(dataset, "pressure")
     names = ("peak_pressure", "peak_pressure_error")
     if not {*names, "normal_load"} <= set(dataset.variables):
-        return found
-    whole = resultant > (1 - CUT) * dataset["normal_load"]
+        return sampled
+    whole = resultant > (1 - MISSING_LOAD) * dataset["normal_load"]
     settled = dataset[list(names)].reset_coords(drop=True)
-    highest = settled["peak_pressure"].where(whole, found["peak_pressure"])
-    comment = "settled where the contact is whole, else of the highest cell"
-    return found.assign(
-        peak_pressure=named("peak_pressure", highest).assign_attrs(comment=comment),
+    peak = settled["peak_pressure"].where(whole, sampled["peak_pressure"])
+    comment = "settled where the contact is whole, otherwise of the highest cell"
+    return sampled.assign(
+        peak_pressure=named("peak_pressure", peak).assign_attrs(comment=comment),
         peak_pressure_error=settled["peak_pressure_error"].where(whole),
     )
+
+
+def edge_pressure(dataset: xr.Dataset) -> xr.Dataset:
+    """Return the pressure in the first and in the last loaded cells along the roller's axis, the largest across y.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure`.
+
+    Returns
+    -------
+    Dataset
+        `edge_pressure_first` and `edge_pressure_last`, Pa: means of a cell, which depend on the cells. Infinite where
+        `end_pressure_first` or `end_pressure_last` of a result is; NaN without contact, and at a cut end.
+
+    Raises
+    ------
+    InvalidInputError
+        If the Dataset lacks pressure.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[0.0], [3.0], [1.0], [2.0]], dims=("x", "y"))
+    >>> ends = edge_pressure(xr.Dataset({"pressure": pressure}))
+    >>> float(ends.edge_pressure_first), float(ends.edge_pressure_last)
+    (3.0, 2.0)
+    """
+    axial = sort_positions(axial_pressure(dataset), "x")
+    values = reduce_dims(_first_and_last, [(axial, [dimension_along(axial, "x")])], 2)
+    edges = {}
+    for end, value, cut in zip(("first", "last"), values, cut_ends(dataset), strict=True):
+        edge = value.where(cut == 0)
+        # The mean of a cell beside a singular end depends on the cell alone.
+        singular = np.isinf(dataset.get(f"end_pressure_{end}", xr.DataArray(0.0)))
+        edges[f"edge_pressure_{end}"] = named(f"edge_pressure_{end}", edge.where(~singular | edge.isnull(), np.inf))
+        edges[f"edge_pressure_{end}"].attrs["comment"] = "mean of the outermost loaded cell"
+    return without_error(xr.Dataset(edges), *edges)
+
+
+def _first_and_last(values: Array) -> tuple[Array, Array]:
+    """First and last positive number along the last axis; NaN without one."""
+    loaded = values > 0
+    first, last = loaded.argmax(axis=-1), values.shape[-1] - 1 - loaded[..., ::-1].argmax(axis=-1)
+    ends = [np.take_along_axis(values, index[..., None], axis=-1)[..., 0] for index in (first, last)]
+    none = ~loaded.any(axis=-1)
+    return np.where(none, np.nan, ends[0]), np.where(none, np.nan, ends[1])
+
+
+def cut_ends(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """Return whether the contact continues beyond the first and the last x, as in a part of a result: 1, otherwise 0.
+
+    The pressure of a part carries less than the load, and reaches a border of the cells inside the contact's range. The
+    range follows from the inputs of `solve`; without them it begins at x = 0 or inside the cells, without a last x.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        With `pressure` on cells; without `normal_load` no end is cut.
+
+    Raises
+    ------
+    InvalidInputError
+        If the Dataset lacks pressure, or an unknown unit.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5, 2.5], "y": [-1.0, 0.0, 1.0]}
+    >>> pressure = xr.DataArray([[0, 2, 0], [0, 1, 0], [0, 1, 0]], dims=("x", "y"), coords=cells)
+    >>> contact = xr.Dataset({"pressure": pressure, "normal_load": 4.0})
+    >>> [[float(end) for end in cut_ends(part)] for part in (contact, contact.isel(x=[1, 2]), contact.isel(x=[0, 1]))]
+    [[0.0, 0.0], [1.0, 1.0], [0.0, 1.0]]
+    """
+    dataset = required_in_si(dataset, "pressure", normalized=True)
+    pressure = dataset["pressure"]
+    scaled = pressure.attrs.get("units") == "1"
+    if "normal_load" not in dataset or scaled or pressure.sizes[dimension_along(pressure, "y")] < 2:
+        return xr.DataArray(0.0), xr.DataArray(0.0)
+    dataset = required_in_si(dataset, "normal_load")
+    for axis in "xy":
+        pressure = sort_positions(pressure, axis)
+    x, y = dimension_along(pressure, "x"), dimension_along(pressure, "y")
+    arguments = [
+        (pressure, [x, y]),
+        (dataset["normal_load"], []),
+        (positions(pressure, "x"), [x]),
+        *((_cell_widths(pressure, axis), [dim]) for axis, dim in (("x", x), ("y", y))),
+        *((xr.DataArray(end), []) for end in _contact_range(dataset)),
+    ]
+    first, last = reduce_dims(_find_cuts, arguments, 2)
+    return first, last
+
+
+def _find_cuts(
+    pressure: Array, load: Array, x: Array, dx: Array, dy: Array, start: float, stop: float
+) -> tuple[Array, Array]:
+    """Whether contacts (..., x, y) continue beyond the first and the last x."""
+    cells = np.broadcast_to(np.isfinite(x), pressure.shape[:-1])
+    x, dx = (np.broadcast_to(values, cells.shape) for values in (x, dx))
+    resultant = np.nansum(pressure * dx[..., :, None] * dy[..., None, :], axis=(-2, -1))
+    gaps = np.abs(np.diff(x, axis=-1) - 0.5 * (dx[..., 1:] + dx[..., :-1])) > END_TOLERANCE * dx[..., 1:]
+    pressed = pressure > 0
+    # A cut along y, or cells left out, also reduce the resultant.
+    short = (resultant < (1 - MISSING_LOAD) * load) & ~pressed[..., [0, -1]].any(axis=(-2, -1)) & ~gaps.any(axis=-1)
+
+    def outermost(values: Array, *, first: bool) -> Array:
+        last = cells.sum(axis=-1, keepdims=True) - 1
+        index = np.zeros_like(last) if first else np.maximum(last, 0)
+        return np.asarray(np.take_along_axis(values, index, axis=-1)[..., 0])
+
+    loaded, slack = pressed.any(axis=-1), END_TOLERANCE * dx
+    starts_inside, stops_inside = x - 0.5 * dx > start + slack, x + 0.5 * dx < stop - slack
+    first, last = outermost(loaded & starts_inside, first=True), outermost(loaded & stops_inside, first=False)
+    return (short & first).astype(np.float64), (short & last).astype(np.float64)
+
+
+def _contact_range(dataset: xr.Dataset) -> tuple[float, float]:
+    """First and last x of the contact, as far as the inputs determine them."""
+    if "case" in attribute(dataset, INPUTS_ATTRIBUTE):
+        try:
+            return solved_case(dataset).contact_range
+        except InvalidInputError:  # inputs of another version
+            pass
+    return 0.0, np.inf
+
+
+class _Values(NamedTuple):
+    """Largest value near both ends, at mid-length, and anywhere."""
+
+    first: xr.DataArray
+    last: xr.DataArray
+    middle: xr.DataArray
+    peak: xr.DataArray
+
+
+def edge_factors(
+    dataset: xr.Dataset, variable: str = "pressure", reference: xr.Dataset | None = None, *, reach: float | None = None
+) -> xr.Dataset:
+    """Return the largest value near each end of the contact over mid-length, and over another model.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result or an opened study, with `pressure` and `hertz_half_width`.
+    variable : str
+        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`, with its largest sample in each
+        cross-section.
+    reference : Dataset, optional
+        The same contact on another body, usually the half-space, in the same coordinates, with its own borders.
+    reach : float, optional
+        Length of an end from the contact's border, m; default: one Hertz half-width.
+
+    Returns
+    -------
+    Dataset
+        `end_over_middle_first`, `end_over_middle_last`; with a reference also `over_reference_first` and
+        `over_reference_last` (ends over its ends), `over_reference_middle`, and `over_reference_peak` (largest over
+        largest, anywhere). NaN without points, and at a cut end. Infinite at a singular end. The error is
+        not estimated.
+
+    Raises
+    ------
+    InvalidInputError
+        If a variable is missing or negative, or `reach` is not positive.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[3.0], [1.0], [1.0], [1.0], [2.0]], dims=("x", "y"), coords={"x": range(5), "y": [0]})
+    >>> result = edge_factors(xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0}))
+    >>> float(result.end_over_middle_first), float(result.end_over_middle_last)
+    (3.0, 2.0)
+    """
+    dataset = required_in_si(dataset, "pressure", "hertz_half_width")
+    checks.instance("variable", variable, str, "a name; a second result is given as reference=")
+    length = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
+    values = _values(dataset, variable, length)
+    factors = {
+        "end_over_middle_first": values.first / values.middle,
+        "end_over_middle_last": values.last / values.middle,
+    }
+    if reference is not None:
+        reference = required_in_si(reference, "pressure", argument="reference")
+        reference_values = _values(reference, variable, length)
+        for name, value, reference_value in zip(_Values._fields, values, reference_values, strict=True):
+            factors[f"over_reference_{name}"] = value / reference_value
+    base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
+    result = xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in factors.items()})
+    return without_error(result, *factors)
+
+
+def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> _Values:
+    """Largest value near the first and the last border, at mid-length, and anywhere."""
+    profile = _section_maxima(dataset, variable).compute()
+    if (profile < 0).any():
+        raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
+    x, points = dimension_along(profile, "x"), positions(profile, "x")
+    borders = _borders(dataset)
+    ends = []
+    for side, border in zip(("first", "last"), borders, strict=True):
+        # Distance of a point beyond the reach of an end, over the reach, that is rounding
+        value = profile.where(abs(points - border) <= reach * (1 + 1e-9)).max(x)
+        # Beside a singular end pressure and stress are unbounded.
+        singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
+        ends.append(value.where(~singular | value.isnull(), np.inf))
+    return _Values(ends[0], ends[1], _nearest(profile, 0.5 * (borders[0] + borders[1])), profile.max(x))
+
+
+def _section_maxima(dataset: xr.Dataset, variable: str) -> xr.DataArray:
+    """Largest value of a variable in each cross-section."""
+    if variable == "pressure":
+        return axial_pressure(dataset)
+    array = measure(dataset, variable)
+    if list(axis_dimensions(array)) == ["x"]:
+        return array
+    return largest_sample(dataset, variable, along="x")[f"peak_{variable}"]
+
+
+def _borders(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
+    """First and last loaded position along x; NaN at a cut end."""
+    axial = axial_pressure(dataset)
+    x = dimension_along(axial, "x")
+    loaded = positions(axial, "x").where(axial > 0)
+    cut_first, cut_last = cut_ends(dataset)
+    return loaded.min(x).where(cut_first == 0).compute(), loaded.max(x).where(cut_last == 0).compute()
+
+
+def _nearest(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:
+    """Value at the point nearest to a position; NaN beyond the points."""
+    x = dimension_along(profile, "x")
+    distance = abs(positions(profile, "x") - position)
+    nearest = distance.fillna(np.inf).argmin(x)
+    width = cell_size(profile, "x")
+    limit = width.isel({x: nearest}) if x in width.dims else width
+    return profile.isel({x: nearest}).where(distance.min(x) <= limit)

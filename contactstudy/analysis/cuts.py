@@ -1,4 +1,4 @@
-"""Fields along any line and in any plane of the body, interpolated between the points of a result."""
+"""Fields along a line and in a plane of the body, interpolated between the points of a result."""
 
 from __future__ import annotations
 
@@ -9,54 +9,39 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, single_case
-from contactstudy.analysis.fields import fields_on_one_grid
-from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import AXES, labels
+from contactstudy.analysis.peaks import measure
+from contactstudy.arrays.variables import AXES, labels, require
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-ROUNDING = 1e-9
-"""Positions may lie outside the points of a result by this fraction of their range. Accuracy."""
+
+def fields_on_same_points(
+    dataset: xr.Dataset, variables: str | Sequence[str] | None, *, along: Sequence[str] = ()
+) -> dict[str, xr.DataArray]:
+    """Return fields on the same points, by name; default: those along the axes `along`, in the body or on its top."""
+    if variables is not None:
+        names = [variables] if isinstance(variables, str) else list(variables)
+        fields = {name: measure(dataset, name) for name in names}
+    else:
+        axes = {str(name): axis_dimensions(array) for name, array in dataset.data_vars.items()}
+        wide = [name for name, dims in axes.items() if len(dims) > 1 and set(along) <= set(dims)]
+        inside = [name for name in wide if "z" in axes[name]]
+        fields = {name: dataset[name] for name in inside or wide}
+    points = {tuple(axis_dimensions(array).values()) for array in fields.values()}
+    if len(points) != 1 or points == {()}:
+        raise InvalidInputError(
+            "variables", variables or "all", "fields on the same points along x, y or z", points_hint(fields)
+        )
+    return fields
 
 
-def _inside(name: str, values: FloatArray, place: FloatArray) -> FloatArray:
-    """Values clipped by rounding errors to the range of `place`; raise for any outside."""
-    low, high = float(place.min()), float(place.max())
-    rounding = ROUNDING * max(high - low, abs(high), abs(low))
-    outside = (values < low - rounding) | (values > high + rounding)
-    if outside.any():
-        hint = "solve with positions there" if low < high else "the result holds this plane only"
-        raise InvalidInputError(name, float(values[outside][0]), f"within the result, {low:g} to {high:g} m", hint)
-    return np.clip(values, low, high)
-
-
-def _interpolate(array: xr.DataArray, where: dict[str, xr.DataArray]) -> xr.DataArray:
-    """Linear interpolation along the axes in `where`, which may share a new dimension."""
-    targets, along = {}, axis_dimensions(array)
-    for axis, target in where.items():
-        if axis not in along:
-            continue
-        dim = along[axis]
-        place = positions(array, axis)
-        if array.sizes[dim] == 1:
-            array = array.isel({dim: 0}, drop=True)
-        else:
-            array = array.assign_coords({dim: place}).sortby(dim)
-            if target.ndim:
-                targets[dim] = target
-            else:
-                array = _at(array, dim, float(target))
-    return array.interp(targets) if targets else array
-
-
-def _at(array: xr.DataArray, dim: str, place: float) -> xr.DataArray:
-    """Linear interpolation to one position: between two planes only, and so without SciPy, which takes long to load."""
-    values = array[dim].values
-    right = int(np.clip(np.searchsorted(values, place), 1, values.size - 1))
-    part = float((place - values[right - 1]) / (values[right] - values[right - 1]))
-    before, after = (array.isel({dim: at}, drop=True) for at in (right - 1, right))
-    # The nearer plane alone where that is exact: what lies beside it may be infinite.
-    return before if part == 0 else after if part == 1 else (1 - part) * before + part * after
+def points_hint(arrays: dict[str, xr.DataArray]) -> str:
+    """Return the variables grouped by their points, as a hint."""
+    groups: dict[tuple[str, ...], list[str]] = {}
+    for name, array in arrays.items():
+        groups.setdefault(tuple(map(str, array.dims)), []).append(name)
+    texts = [f"{', '.join(names)} ({', '.join(dims) or 'a single number'})" for dims, names in groups.items()]
+    return f"name some on the same points: {' or '.join(texts)}" if texts else "the dataset has no such variable"
 
 
 def along_line(
@@ -67,7 +52,7 @@ def along_line(
     points: int = 101,
     variables: str | Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Fields along a straight line, linearly interpolated.
+    """Return fields along a straight line, linearly interpolated.
 
     Parameters
     ----------
@@ -79,7 +64,7 @@ def along_line(
         Number of points, at least 2.
     variables : str or sequence of str, optional
         Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all stresses,
-        or all surfaces if there are none.
+        or all surfaces without stresses.
 
     Returns
     -------
@@ -101,28 +86,27 @@ def along_line(
     [0.0, 1.5, 3.0]
     """
     require(dataset)
-    one = single_case(dataset)
     count = checks.count("points", points, least=2)
-    fields = fields_on_one_grid(one, variables, along=("x", "y"))
-    ends = [checks.coordinates(name, values) for name, values in (("start", start), ("end", end))]
-    size = ends[0].size
-    if size not in (2, 3) or ends[1].size != size:
+    fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
+    first, last = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
+    if first.size not in (2, 3) or last.size != first.size:
         raise InvalidInputError("start, end", (start, end), "both (x, y, z), or both (x, y), in metres")
-    along = axis_dimensions(next(iter(fields.values())))
-    if "z" in along and size == 2:
+    field = next(iter(fields.values()))
+    axes = axis_dimensions(field)
+    if "z" in axes and first.size == 2:
         raise InvalidInputError("start, end", (start, end), "(x, y, z) for fields below the surface")
-    length = float(np.linalg.norm(ends[1] - ends[0]))
+    length = float(np.linalg.norm(last - first))
     if length == 0:
         raise InvalidInputError("end", end, "different from start")
-    share = np.linspace(0.0, 1.0, count)
-    where = {}
-    for axis, low, high in zip(AXES, *ends, strict=False):
-        values = low + share * (high - low)
-        if axis in along:
-            values = _inside(axis, values, positions(next(iter(fields.values())), axis).values)
-        where[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
-    distance = ("distance", share * length, labels("distance", coordinate=True))
-    return _assemble(fields, where).assign_coords({"distance": distance, **where})
+    fraction = np.linspace(0.0, 1.0, count)
+    targets = {}
+    for axis, low, high in zip(AXES, first, last, strict=False):
+        values = low + fraction * (high - low)
+        if axis in axes:
+            values = _clip_rounding(axis, values, positions(field, axis).values)
+        targets[axis] = xr.DataArray(values, dims="distance", attrs=labels(axis, coordinate=True))
+    distance = ("distance", fraction * length, labels("distance", coordinate=True))
+    return _interpolate_fields(fields, targets).assign_coords({"distance": distance, **targets})
 
 
 def in_plane(
@@ -133,7 +117,7 @@ def in_plane(
     z: float | None = None,
     variables: str | Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Fields in a plane ``x``, ``y`` or ``z`` = const, linearly interpolated between the two nearest ones.
+    """Return fields in a plane ``x``, ``y`` or ``z`` = const, linearly interpolated between the two nearest ones.
 
     Parameters
     ----------
@@ -152,8 +136,8 @@ def in_plane(
     Raises
     ------
     InvalidInputError
-        If not exactly one position is given, the plane lies outside the result, or the variables are missing or lie
-        on different points.
+        Unless exactly one position is a number; if the plane lies outside the result, or the variables are missing or
+        lie on different points.
 
     Examples
     --------
@@ -162,25 +146,64 @@ def in_plane(
     [1.0, 2.0]
     """
     require(dataset)
-    one = single_case(dataset)
-    given = {axis: value for axis, value in zip(AXES, (x, y, z), strict=True) if value is not None}
-    if len(given) != 1:
+    planes = {axis: value for axis, value in zip(AXES, (x, y, z), strict=True) if value is not None}
+    if len(planes) != 1:
         raise InvalidInputError("x, y, z", (x, y, z), "exactly one of them a number, the others None")
-    ((axis, value),) = given.items()
-    fields = fields_on_one_grid(one, variables, along=("x", "y"))
-    first = next(iter(fields.values()))
-    if axis not in axis_dimensions(first):
+    ((axis, value),) = planes.items()
+    fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
+    field = next(iter(fields.values()))
+    if axis not in axis_dimensions(field):
         raise InvalidInputError("variables", list(fields), f"fields along {axis}")
-    place = _inside(axis, np.array([checks.finite(axis, value, "metres")]), positions(first, axis).values)
-    at = xr.DataArray(place[0], attrs=labels(axis, coordinate=True))
-    return _assemble(fields, {axis: at}).assign_coords({axis: at})
+    position = _clip_rounding(axis, np.array([checks.finite(axis, value, "metres")]), positions(field, axis).values)
+    target = xr.DataArray(position[0], attrs=labels(axis, coordinate=True))
+    return _interpolate_fields(fields, {axis: target}).assign_coords({axis: target})
 
 
-def _assemble(fields: dict[str, xr.DataArray], where: dict[str, xr.DataArray]) -> xr.Dataset:
-    """Every field interpolated; the coordinates that the positions replace are dropped."""
-    cut = {}
+def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatArray:
+    """Values clipped to the range of `points` within rounding; raise for values outside."""
+    low, high = float(points.min()), float(points.max())
+    # Distance beyond the points of a result, over their range, that is rounding
+    rounding = 1e-9 * max(high - low, abs(high), abs(low))
+    outside = (values < low - rounding) | (values > high + rounding)
+    if outside.any():
+        hint = "solve with positions there" if low < high else "the result contains this plane only"
+        raise InvalidInputError(name, float(values[outside][0]), f"within the result, {low:g} to {high:g} m", hint)
+    return np.clip(values, low, high)
+
+
+def _interpolate_fields(fields: dict[str, xr.DataArray], targets: dict[str, xr.DataArray]) -> xr.Dataset:
+    """Interpolate every field; the positions replace its coordinates."""
+    result = {}
     for name, array in fields.items():
-        value = _interpolate(array, where)
+        value = _interpolate(array, targets)
         replaced = [coordinate for coordinate in value.coords if coordinate not in value.dims]
-        cut[name] = value.drop_vars(replaced).assign_attrs(array.attrs)
-    return xr.Dataset(cut)
+        result[name] = value.drop_vars(replaced).assign_attrs(array.attrs)
+    return xr.Dataset(result)
+
+
+def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:
+    """Linear interpolation along the axes of `targets`, which may share a new dimension."""
+    lines, axes = {}, axis_dimensions(array)
+    for axis, target in targets.items():
+        if axis not in axes:
+            continue
+        dim = axes[axis]
+        if array.sizes[dim] == 1:
+            array = array.isel({dim: 0}, drop=True)
+            continue
+        array = array.assign_coords({dim: positions(array, axis)}).sortby(dim)
+        if target.ndim:
+            lines[dim] = target
+        else:
+            array = _interpolate_plane(array, dim, float(target))
+    return array.interp(lines) if lines else array
+
+
+def _interpolate_plane(array: xr.DataArray, dim: str, position: float) -> xr.DataArray:
+    """Linear interpolation between two planes, without SciPy, whose import is slow."""
+    values = array[dim].values
+    right = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
+    weight = float((position - values[right - 1]) / (values[right] - values[right - 1]))
+    before, after = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
+    # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
+    return before if weight == 0 else after if weight == 1 else (1 - weight) * before + weight * after

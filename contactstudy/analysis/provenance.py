@@ -1,7 +1,4 @@
-"""Where a result comes from: the case that was solved, with what settings, by what, when, and in which time.
-
-Both stand in attributes of the Dataset as JSON, so that they are in every file that it is written to.
-"""
+"""Provenance of a result: solved case, settings, versions, date and times, as JSON in attributes of the Dataset."""
 
 from __future__ import annotations
 
@@ -9,77 +6,90 @@ import json
 import math
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from numbers import Real
 from operator import attrgetter
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import require
 from contactstudy.bodies.models import Body
 from contactstudy.case.case import Case
-from contactstudy.case.stored import case_from, case_table, table_of
+from contactstudy.case.serialization import from_dict, to_dict
 from contactstudy.errors import InvalidInputError
 from contactstudy.versions import versions
 
 INPUTS_ATTRIBUTE, RUN_ATTRIBUTE = "contactstudy_inputs", "contactstudy_run"
+# Attributes: case and settings; versions, date and times, also in files of a study; definition of a study
 STUDY_ATTRIBUTE = "contactstudy_study"
-"""What was solved; and by what, when and how long. The files of a study have the second one, too."""
-
-SAME, NOTHING = 1e-6, 1e-15
-"""Part, and size in SI, by which two numbers may differ and be the same: a load that was found carries its tolerance.
-Accuracy."""
-
-FOLLOWING = ("approach", "load_position", "load", "tilt")
-"""Values of a case of which some follow from the others and the solution."""
-
-WHOLE = ("roller.profile", "friction", "motion")
-"""Parts that a message names as a whole."""
-
-MOST_SHOWN = 3
-"""Values that a message names."""
+# Differences of equal numbers, relative and in SI: a solved load has the tolerance of the iteration
+RELATIVE_TOLERANCE, ABSOLUTE_TOLERANCE = 1e-6, 1e-15
+# Values of a case that follow from the solution unless the case prescribes them
+DEPENDENT = ("approach", "load_position", "load", "tilt")
+# Values of a case without influence on its dry contact
+FILM_ONLY = ("motion.body_speed", "motion.roller_speed", "motion.speed", "lubricant")
+PARTS = ("roller.profile", "friction", "motion")  # Parts of a case that a message contains as a unit
+# Types of entries in the attributes of inputs and run
+KINDS: dict[str, type | tuple[type, ...]] = {
+    "time": str,
+    "seconds": Real,
+    "stages": dict,
+    "warnings": list,
+    "settings": dict,
+    "accuracy": Real,
+    "tolerance": Real,
+    "case": dict,
+    "body": dict,
+    "roller": dict,
+    "motion": dict,
+    "profile": dict,
+}
 
 
 def with_provenance(
     result: xr.Dataset, case: Case, settings: Mapping[str, Any], stages: Mapping[str, float]
 ) -> xr.Dataset:
-    """Return a result with what was solved, and how.
-
-    Parameters
-    ----------
-    result : Dataset
-        What `solve` returns.
-    case : Case
-        What it solved.
-    settings : mapping
-        Arguments beside the case, as plain values.
-    stages : mapping
-        Seconds of each stage.
-    """
+    """Return a result with case, settings, versions and seconds of each stage in its attributes."""
     now = datetime.now(UTC).isoformat(timespec="seconds")
     rounded = {name: round(seconds, 4) for name, seconds in stages.items()}
-    inputs = {"case": case_table(case), "settings": dict(settings)}
+    inputs = {"case": to_dict(case), "settings": dict(settings)}
     run = {**versions(), "time": now, "seconds": round(sum(stages.values()), 4), "stages": rounded}
     return result.assign_attrs({INPUTS_ATTRIBUTE: json.dumps(inputs), RUN_ATTRIBUTE: json.dumps(run)})
 
 
 def attribute(dataset: xr.Dataset, name: str) -> dict[str, Any]:
-    """Table in an attribute of a Dataset; empty if there is none.
-
-    Examples
-    --------
-    >>> attribute(xr.Dataset(attrs={"contactstudy_run": '{"seconds": 1.0}'}), "contactstudy_run")
-    {'seconds': 1.0}
-    """
+    """Return the table in an attribute of a Dataset, without entries of a foreign type; empty without the attribute."""
     try:
-        found = json.loads(dataset.attrs.get(name, "{}"))
+        table = json.loads(dataset.attrs.get(name, "{}"))
     except (TypeError, ValueError):
-        raise InvalidInputError(f"attribute {name}", str(dataset.attrs[name])[:60], "JSON, as it was written") from None
-    return found if isinstance(found, dict) else {}
+        raise InvalidInputError(f"attribute {name}", str(dataset.attrs[name])[:60], "JSON") from None
+    if not isinstance(table, dict):
+        return {}
+    return _without_malformed(table) if name in (INPUTS_ATTRIBUTE, RUN_ATTRIBUTE) else table
+
+
+def _without_malformed(table: dict[str, Any]) -> dict[str, Any]:
+    """Table, and the tables in it, without malformed entries."""
+    valid = {name: value for name, value in table.items() if _is_valid(name, value)}
+    nested = ("settings", "case", "roller")
+    return {name: _without_malformed(value) if name in nested else value for name, value in valid.items()}
+
+
+def _is_valid(name: str, value: Any) -> bool:
+    """Whether an entry has its type, a date is a date, and times are numbers."""
+    if name in KINDS and not isinstance(value, KINDS[name]):
+        return False
+    if name == "time":
+        try:
+            datetime.fromisoformat(value)
+        except ValueError:
+            return False
+    return name != "stages" or all(isinstance(seconds, Real) for seconds in value.values())
 
 
 def solved_case(dataset: xr.Dataset) -> Case:
-    """Case that a result was solved for, from the result alone.
+    """Return the case of a result, from the result alone.
 
     Parameters
     ----------
@@ -89,14 +99,13 @@ def solved_case(dataset: xr.Dataset) -> Case:
     Returns
     -------
     Case
-        Equal to the one that was solved. A profile that is not of this package is the one at some points, with lines
-        between.
+        Equal to the solved one. A profile from outside the package is piecewise linear.
 
     Raises
     ------
     InvalidInputError
-        If the Dataset does not say it: one that was computed from a result, or solved before results said it, or a
-        case selected from an opened study. For the latter the message names the file that says it.
+        If the Dataset lacks the inputs: it was computed from a result, or is a case selected from an opened study, see
+        :func:`contactstudy.study.load_case`.
 
     Examples
     --------
@@ -108,71 +117,46 @@ def solved_case(dataset: xr.Dataset) -> Case:
     """
     require(dataset)
     inputs = attribute(dataset, INPUTS_ATTRIBUTE)
-    if "case" not in inputs:
-        wanted = f"a result of solve, with the attribute {INPUTS_ATTRIBUTE}"
-        raise InvalidInputError("dataset", sorted(map(str, dataset.attrs)), wanted, _where_else(dataset))
-    return case_from(inputs["case"])
-
-
-def _where_else(dataset: xr.Dataset) -> str:
-    """Return the advice where the case stands that a part of an opened study was solved for."""
-    if "case_id" not in dataset:
-        return ""
-    named = f", {dataset['case_id'].item()[:8]}..." if dataset["case_id"].ndim == 0 else ""
-    return f"each case's own file in the study's folder, under cases, says it: its name begins as case_id does{named}"
+    if "case" in inputs:
+        return from_dict(inputs["case"], Case)
+    hint = "load the case with contactstudy.study.load_case(folder, case_id)" if "case_id" in dataset else ""
+    allowed = f"a result of solve, with the attribute {INPUTS_ATTRIBUTE}"
+    raise InvalidInputError("dataset", sorted(map(str, dataset.attrs)), allowed, hint)
 
 
 def check_solved_for(
-    result: xr.Dataset, given: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
+    result: xr.Dataset, part: Case | Body, argument: str = "result", *, only: tuple[str, ...] = ()
 ) -> None:
-    """Raise if a result says that it was solved for another case, or in another body, than the one given.
-
-    Parameters
-    ----------
-    result : Dataset
-        One that says nothing of its case, or says it in the words of another version, is taken as it is.
-    given : Case or Body
-        What was given beside it.
-    argument : str
-        Name of the result among the arguments, for the message.
-    only : tuple of str
-        Parts of the case that have to agree, such as "roller". Default: all.
-
-    Raises
-    ------
-    InvalidInputError
-        With what differs.
-    """
+    """Raise if the case of a result differs from a case, or its body from a body; `only` names the compared parts."""
     try:
-        solved = case_from(attribute(result, INPUTS_ATTRIBUTE)["case"])
+        solved = from_dict(attribute(result, INPUTS_ATTRIBUTE)["case"], Case)
     except (InvalidInputError, KeyError, TypeError):
         return
-    if isinstance(given, Case):
-        known, wanted = _compared(solved) | _found(result), _compared(given)
+    if isinstance(part, Case):
+        actual, expected = _comparable(solved) | _scalars(result), _comparable(part)
     else:
-        known, wanted = (dict(_leaves({"body": table_of(each)})) for each in (solved.body, given))
+        actual, expected = (dict(_leaves({"body": to_dict(body)})) for body in (solved.body, part))
     names = [
         name
-        for name in {**known, **wanted}
-        if (not only or any(name.startswith(part) for part in only))
-        and not _same(known.get(name), wanted.get(name))
-        # What the other one does not prescribe follows from the solution.
-        and not (name in FOLLOWING and None in (known.get(name), wanted.get(name)))
+        for name in {**actual, **expected}
+        if (not only or name.startswith(only))
+        and not _equal(actual.get(name), expected.get(name))
+        and not (name in DEPENDENT and None in (actual.get(name), expected.get(name)))
+        and not name.startswith(FILM_ONLY)
     ]
     if names:
-        what = "case" if isinstance(given, Case) else "body"
-        shown = (", ".join(_in_words(*each, names)) for each in ((known, solved), (wanted, given)))
+        kind = "case" if isinstance(part, Case) else "body"
         raise InvalidInputError(
             argument,
-            f"solved with {next(shown)}",
-            f"a result of the {what} that is given, {next(shown)}",
+            f"solved with {_texts(actual, solved, names)}",
+            f"a result of the {kind} beside it, {_texts(expected, part, names)}",
             f"if the Dataset was joined or changed, drop its attribute {INPUTS_ATTRIBUTE}",
         )
 
 
-def _compared(case: Case) -> dict[str, Any]:
-    """Values of a case by name, the same for the same contact however it was prescribed."""
-    values = dict(_leaves(case_table(case))) | {"end_distance": case.roller_start}
+def _comparable(case: Case) -> dict[str, Any]:
+    """Values of a case by name, equal for equal contacts however they are prescribed."""
+    values = dict(_leaves(to_dict(case))) | {"end_distance": case.roller_start}
     for name in ("load", "max_pressure"):
         values.pop(name, None)
     if case.approach is None:
@@ -182,21 +166,21 @@ def _compared(case: Case) -> dict[str, Any]:
     return values
 
 
-def _found(result: xr.Dataset) -> dict[str, float]:
-    """Values that a result has as numbers, which follow a selection from joined results: attributes do not."""
-    named = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
+def _scalars(result: xr.Dataset) -> dict[str, float]:
+    """Values of a case among the scalars of a result: they follow a selection from joined results."""
+    variables = {"load": "normal_load", "tilt": "tilt", "friction": "friction"}
     return {
         name: float(result[variable])
-        for name, variable in named.items()
+        for name, variable in variables.items()
         if variable in result and result[variable].ndim == 0 and np.isfinite(result[variable])
     }
 
 
 def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield what a table holds, with dotted names; not how a profile calls itself."""
+    """Yield the values of a table with dotted names, without the name of a sampled profile."""
     if isinstance(entry, Mapping):
         for key, value in entry.items():
-            if (entry.get("kind"), key) != ("Sampled", "says"):
+            if (entry.get("kind"), key) != ("Sampled", "label"):
                 yield from _leaves(value, f"{name}.{key}" if name else str(key))
     elif isinstance(entry, (list, tuple)):
         for number, value in enumerate(entry):
@@ -205,18 +189,18 @@ def _leaves(entry: Any, name: str = "") -> Iterator[tuple[str, Any]]:
         yield name, entry
 
 
-def _in_words(values: Mapping[str, Any], part: Case | Body, names: list[str]) -> list[str]:
-    """Say the values of these names, whole parts of a case as they call themselves."""
-    said: dict[str, str] = {}
+def _texts(values: Mapping[str, Any], part: Case | Body, names: list[str]) -> str:
+    """First three of the named values as text, or the part that contains them."""
+    texts: dict[str, str] = {}
     for name in names:
-        whole = next((each for each in WHOLE if name.startswith(each)), name)
-        value = values.get(name) if name == whole else attrgetter(whole)(part)
-        said[whole] = f"{whole} = {value:.6g}" if isinstance(value, float) else f"{whole} = {value}"
-    return list(said.values())[:MOST_SHOWN]
+        unit = next((prefix for prefix in PARTS if name.startswith(prefix)), name)
+        value = values.get(name) if name == unit else attrgetter(unit)(part)
+        texts[unit] = f"{unit} = {value:.6g}" if isinstance(value, float) else f"{unit} = {value}"
+    return ", ".join(list(texts.values())[:3])
 
 
-def _same(one: Any, other: Any) -> bool:
-    """Whether two values are the same but for rounding."""
-    if isinstance(one, float) and isinstance(other, float):
-        return math.isclose(one, other, rel_tol=SAME, abs_tol=NOTHING)
-    return bool(one == other)
+def _equal(first: Any, second: Any) -> bool:
+    """Whether two values are equal within rounding."""
+    if isinstance(first, float) and isinstance(second, float):
+        return math.isclose(first, second, rel_tol=RELATIVE_TOLERANCE, abs_tol=ABSOLUTE_TOLERANCE)
+    return bool(first == second)

@@ -1,108 +1,106 @@
-"""Summaries of one solved case: the scalars that a parametric study compares."""
+"""Numbers of one solved case, which a parametric study compares: computed on arrays, labelled once."""
 
 from __future__ import annotations
+
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import contact_results, peak
-from contactstudy.analysis.largest import largest
-from contactstudy.arrays.variables import STRESSES, named
+from contactstudy.analysis import largest_sample, peak
+from contactstudy.analysis.axes import cell_size
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, labels, require
+from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
+# Comments of numbers that depend on the cells, with errors that are not estimated
+COMMENTS = {
+    "contact_length": "in whole cells",
+    "contact_width": "in whole cells",
+    "end_pressure_over_p0_first": "mean of the outermost loaded cell",
+    "end_pressure_over_p0_last": "mean of the outermost loaded cell",
+}
 
-def pressure_summary(dataset: xr.Dataset) -> xr.Dataset:
-    """Peak pressure and its place, the pressure at both ends of the contact, and the contact's length.
 
-    Parameters
-    ----------
-    dataset : Dataset
-        A result of :func:`contactstudy.solve`: `pressure`, and for the ratios `hertz_max_pressure`.
-
-    Returns
-    -------
-    Dataset
-        Scalars `peak_pressure` with ``_x`` and ``_y``, `end_pressure_over_p0_first` and ``_last`` (at the roller's ends
-        if they are settled, infinite where they are singular; else in the first and the last loaded cells along the
-        axis), their mean `end_pressure_over_p0`, `contact_length` and `contact_width` (m, over whole cells).
-
-    Examples
-    --------
-    >>> pressure = xr.DataArray([[0.0], [3.0], [1.0], [2.0]], dims=("x", "y"), coords={"x": [0, 1, 2, 3], "y": [0]})
-    >>> result = pressure_summary(xr.Dataset({"pressure": pressure, "hertz_max_pressure": 2.0}))
-    >>> float(result.peak_pressure_x), float(result.end_pressure_over_p0), float(result.contact_length)
-    (1.0, 1.25, 3.0)
-    """
-    contact = contact_results(dataset).reset_coords(drop=True)
-    kept = ["peak_pressure", "peak_pressure_x", "peak_pressure_y", "contact_length", "contact_width"]
-    scale = float(dataset["hertz_max_pressure"])
-    # Settled ends count; the outermost loaded cells say less the narrower they are.
+def contact_numbers(dataset: xr.Dataset) -> dict[str, float]:
+    """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
+    require(dataset, "pressure", "hertz_max_pressure")
+    variables = dataset.variables
+    pressure = variables["pressure"].transpose("x", "y").values
+    x, y, scale = variables["x"].values, variables["y"].values, float(variables["hertz_max_pressure"].values)
+    pressed = pressure > 0
+    columns, rows = (np.flatnonzero(pressed.any(axis=axis)) for axis in (1, 0))
+    at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
+    outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
+    settled = [variables.get(f"end_pressure_{end}") for end in ("first", "last")]
     first, last = (
-        dataset.get(f"end_pressure_{end}", contact[f"edge_pressure_{end}"]) / scale for end in ("first", "last")
+        (value if end is None else float(end.values)) / scale for value, end in zip(outermost, settled, strict=True)
     )
-    ends = {
+    return {
+        "peak_pressure": float(pressure[at_x, at_y]),
+        "peak_pressure_x": float(x[at_x]),
+        "peak_pressure_y": float(y[at_y]),
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,
         "end_pressure_over_p0": 0.5 * (first + last),
+        "contact_length": _extent(x, _widths(dataset, "x"), columns),
+        "contact_width": _extent(y, _widths(dataset, "y"), rows),
     }
-    return contact[kept].assign({name: named(name, value) for name, value in ends.items()})
+
+
+def _widths(dataset: xr.Dataset, axis: str) -> Array:
+    """Widths of the cells along an axis, metres."""
+    widths = dataset.variables.get(f"{axis}_width")
+    size = dataset.sizes[axis]
+    if widths is not None:
+        return np.asarray(widths.values)
+    positions = dataset.variables[axis].values
+    uniform = (positions[-1] - positions[0]) / (size - 1) if size > 1 else cell_size(dataset["pressure"], axis).item()
+    return np.full(size, uniform)
+
+
+def _extent(positions: Array, widths: Array, pressed: Array) -> float:
+    """Distance between the outer edges of the first and the last pressed cell."""
+    if not pressed.size:
+        return 0.0
+    low, high = positions[pressed] - 0.5 * widths[pressed], positions[pressed] + 0.5 * widths[pressed]
+    return float(high.max() - low.min())
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
-    """Largest von Mises stress and its place; empty if the Dataset holds no stresses.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        A result of :func:`contactstudy.solve`.
-
-    Returns
-    -------
-    Dataset
-        Scalars `peak_von_mises` and its error (Pa), and `peak_von_mises_x`, ``_y``, ``_z`` (m), see
-        :func:`contactstudy.analysis.largest`; without the six stresses, at the points of `von_mises`.
-
-    Raises
-    ------
-    InvalidInputError
-        If there is no number among the stresses.
-
-    Examples
-    --------
-    >>> stress = xr.DataArray([[[1.0, 4.0]]], dims=("x", "y", "z"), coords={"x": [0], "y": [0], "z": [0, 2]})
-    >>> float(stress_summary(xr.Dataset({"von_mises": stress})).peak_von_mises_z)
-    2.0
-    """
+    """Largest von Mises stress, its error and position; empty without stresses."""
     if "von_mises" not in dataset:
         return xr.Dataset()
     if np.isnan(dataset["von_mises"].values).all():
         raise InvalidInputError("von_mises", "nan everywhere", "a field with at least one number")
-    known = all(name in dataset for name in STRESSES)
-    found = largest(dataset) if known else peak(dataset, "von_mises")
-    return found.reset_coords(drop=True)
+    complete = all(name in dataset for name in STRESSES)
+    result = peak(dataset) if complete else largest_sample(dataset, "von_mises")
+    return result.reset_coords(drop=True)
+
+
+class Number(NamedTuple):
+    """One number of a case with the attributes of its variable."""
+
+    value: float
+    attributes: dict[str, Any]
+
+
+def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
+    """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
+    numbers = {name: Number(value, _attributes(name)) for name, value in contact_numbers(dataset).items()}
+    for source in (stress_summary(dataset), dataset):
+        for name, variable in source.variables.items():
+            if variable.ndim == 0 and name not in source.coords:
+                numbers[str(name)] = Number(float(variable.values), dict(variable.attrs))
+    return numbers
+
+
+def _attributes(name: str) -> dict[str, Any]:
+    """Attributes of a number of the contact."""
+    return labels(name) | ({"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {})
 
 
 def summarize(dataset: xr.Dataset) -> xr.Dataset:
-    """Every summary of a solved case, together with the scalars that it has already.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        A result of :func:`contactstudy.solve`; stresses may be absent.
-
-    Returns
-    -------
-    Dataset
-        Scalars only: those of :func:`pressure_summary`, of :func:`stress_summary` and of `dataset`, which count where
-        names agree: a peak with an estimated error is more than that of the cells.
-
-    Examples
-    --------
-    >>> pressure = xr.DataArray([[1.0], [2.0]], dims=("x", "y"), coords={"x": [0, 1], "y": [0]})
-    >>> result = summarize(xr.Dataset({"pressure": pressure, "hertz_max_pressure": 2.0, "iterations": 7}))
-    >>> int(result.iterations), float(result.peak_pressure)
-    (7, 2.0)
-    """
-    own = dataset[[name for name, variable in dataset.data_vars.items() if variable.ndim == 0]]
-    own = own.reset_coords(drop=True).drop_attrs(deep=False)
-    return pressure_summary(dataset).assign(stress_summary(dataset).data_vars).assign(own.data_vars)
+    """Every number of a solved case as labelled scalars."""
+    numbers = case_numbers(dataset)
+    return xr.Dataset({name: ((), number.value, number.attributes) for name, number in numbers.items()})

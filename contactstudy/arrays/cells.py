@@ -18,28 +18,8 @@ def labelled_cells(
     extent: tuple[float, float] = (-np.inf, np.inf),
     infinite: bool = False,
 ) -> tuple[FloatArray, Grid]:
-    """Values ``(x, y)`` and grid of a DataArray on cell centres.
-
-    Cells are uniform along y. Along x their edges are, in this order: what the coordinate `x_width` says; those of
-    uniform cells; or what follows from the body's end and the centres. (`x_bounds` cannot be part of a DataArray
-    without the dimension `bounds`.)
-
-    Parameters
-    ----------
-    name : str
-        Name of the argument, for error messages.
-    array : DataArray
-        Two-dimensional, with dimensions and coordinates `x` and `y` in either order.
-    extent : tuple of float
-        Ends of the body, metres; infinite for none.
-    infinite : bool
-        Whether positive infinity is allowed among the values.
-
-    Raises
-    ------
-    InvalidInputError
-        If it is not such an array, its cells do not tile the range, or a value is not a number.
-    """
+    """Values (x, y) and grid of a DataArray on cell centres; `x_width`, or the body's end, determines the edges."""
+    # A DataArray without the dimension `bounds` cannot contain `x_bounds`.
     checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
     if set(array.dims) != {"x", "y"}:
         raise InvalidInputError(f"{name}.dims", array.dims, "('x', 'y')")
@@ -69,10 +49,7 @@ def labelled_cells(
 
 
 def cell_coordinates(grid: Grid) -> dict[str, tuple[tuple[str, ...], FloatArray]]:
-    """Coordinates beside `x` that say where cells of different widths begin and end; none for uniform cells.
-
-    `x_bounds` are the cells' edges as the CF conventions want them; `x_width` stays with every variable along x.
-    """
+    """Coordinates `x_bounds` (CF conventions) and `x_width` of cells of different widths; empty for uniform cells."""
     if grid.uniform:
         return {}
     edges = grid.x_edges
@@ -102,9 +79,11 @@ def _tiled(low: FloatArray, high: FloatArray, y_range: tuple[float, float], cell
     apart = np.abs(high[:-1] - low[1:])
     wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
     if wrong.size:
-        at = int(wrong[0])
+        index = int(wrong[0])
         raise InvalidInputError(
-            "x_width", f"one cell ends at {high[at]:g} m, the next begins at {low[at + 1]:g} m", "such that cells meet"
+            "x_width",
+            f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m",
+            "such that cells meet",
         )
     middle = 0.5 * (high[:-1] + low[1:])
     return Grid.between(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
@@ -119,12 +98,12 @@ def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatAr
     for centre in ahead:
         edges.append(2 * centre - edges[-1])
         if not edges[-2] < centre:
-            at = -centre if backwards else centre
+            position = -centre if backwards else centre
             raise InvalidInputError(
                 "x",
-                f"a cell centre at {at:g} m",
+                f"a cell centre at {position:g} m",
                 "the middle of a cell that follows the others from the body's end",
-                "cells of different widths are told by a coordinate x_width (x)",
+                "add a coordinate x_width (x) for cells of different widths",
             )
-    found = np.array(edges)
-    return -found[::-1] if backwards else found
+    positions = np.array(edges)
+    return -positions[::-1] if backwards else positions

@@ -7,59 +7,32 @@ from typing import Any
 
 import xarray as xr
 
-from contactstudy.arrays.vocabulary import AXES, COORDINATES, RULES, STRESSES, VARIABLES, Variable
+from contactstudy import checks
+from contactstudy.arrays.vocabulary import AXES as AXES
+from contactstudy.arrays.vocabulary import COORDINATES as COORDINATES
+from contactstudy.arrays.vocabulary import RULES as RULES
+from contactstudy.arrays.vocabulary import STRESSES as STRESSES
+from contactstudy.arrays.vocabulary import VARIABLES as VARIABLES
+from contactstudy.arrays.vocabulary import Variable as Variable
+from contactstudy.checks import factor_to
+from contactstudy.errors import InvalidInputError
 from contactstudy.versions import version_of
 
-__all__ = [
-    "AXES",
-    "COORDINATES",
-    "DERIVED",
-    "RULES",
-    "STRESSES",
-    "UNBOUNDED",
-    "VARIABLES",
-    "Variable",
-    "describe",
-    "labels",
-    "named",
-    "package_version",
-    "specification",
-    "variable_of",
-    "without_error",
-]
+DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
+ERROR_KIND = "error_kind"  # attribute of a number: how its error is stated, one of the three values below
 
-DERIVED = "follows from the other parameters"
-"""Comment of a coordinate that a study does not sweep."""
-
-UNBOUNDED = "no error known"
-"""Comment, or a part of it, of a number that is shown without an error."""
+ESTIMATED, NOT_ESTIMATED, BOUND = "estimated", "not estimated", "bound"
+"""The variable ``<name>_error`` holds the error; there is none; the number itself is a bound."""
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
-"""What each rule puts before and after a name, the longest first: `peak_gap_x` is where a peak is, not a peak."""
+"""Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""
 
 
 def specification(name: str, base: Variable | None = None, *, coordinate: bool = False) -> Variable | None:
-    """Specification of a variable or coordinate by its name; None if the package has none of that name.
-
-    Parameters
-    ----------
-    name : str
-        Name in the table, or one that a rule makes of another.
-    base : Variable, optional
-        What a derived quantity is derived from; default: what its name says.
-    coordinate : bool
-        Whether the name is that of a coordinate.
-
-    Examples
-    --------
-    >>> specification("peak_von_mises_z").attrs
-    {'units': 'm', 'long_name': 'z of the largest von Mises stress'}
-    >>> specification("peak_luck") is None
-    True
-    """
-    known = (COORDINATES if coordinate else VARIABLES).get(name)
-    if known is not None:
-        return _filled(known, base or Variable((), "", "", "value"))
+    """Specification of a variable or coordinate by its name; None if the name is unknown."""
+    entry = (COORDINATES if coordinate else VARIABLES).get(name)
+    if entry is not None:
+        return _filled(entry, base or Variable((), "", "", "value"))
     for prefix, suffix in _AFFIXES:
         middle = name.removeprefix(prefix).removesuffix(suffix)
         if name == f"{prefix}{middle}{suffix}" and middle:
@@ -69,7 +42,7 @@ def specification(name: str, base: Variable | None = None, *, coordinate: bool =
 
 
 def _filled(row: Variable, base: Variable) -> Variable:
-    """Row of a table with what its braces stand for."""
+    """Row of a table with its braces filled."""
     words = {"name": "", "variable": base.long_name, "units": base.units, "symbol": base.symbol or base.long_name}
     dims = base.dims if row.dims == ("{name}",) else row.dims
     symbol = row.symbol
@@ -81,48 +54,21 @@ def _filled(row: Variable, base: Variable) -> Variable:
 
 
 def variable_of(name: str, attributes: Mapping[Any, Any], *, coordinate: bool = False) -> Variable:
-    """Specification of a variable that carries labels: these count first, the table where they say nothing.
-
-    Examples
-    --------
-    >>> variable_of("pressure", {"units": "1"}).units, variable_of("pressure", {}).units
-    ('1', 'Pa')
-    """
-    known = specification(name, coordinate=coordinate) or Variable((), "", "", name)
-    return known._replace(
-        units=str(attributes.get("units", known.units)), long_name=str(attributes.get("long_name", known.long_name))
+    """Specification of a variable with labels, completed by the table."""
+    entry = specification(name, coordinate=coordinate) or Variable((), "", "", name)
+    return entry._replace(
+        units=str(attributes.get("units", entry.units)), long_name=str(attributes.get("long_name", entry.long_name))
     )
 
 
 def labels(name: str, base: Variable | None = None, *, coordinate: bool = False) -> dict[str, str]:
-    """Attributes of a variable or coordinate by its name; empty if the package has none of that name.
-
-    Examples
-    --------
-    >>> labels("x", coordinate=True)["units"], labels("anything")
-    ('m', {})
-    """
-    known = specification(name, base, coordinate=coordinate)
-    return known.attrs if known else {}
+    """Attributes of a variable or coordinate by its name; empty if the name is unknown."""
+    entry = specification(name, base, coordinate=coordinate)
+    return entry.attrs if entry else {}
 
 
 def named(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
-    """Return `array` with a name of the table and its unit and meaning, instead of what it carried.
-
-    Parameters
-    ----------
-    name : str
-        In the table, or made by a rule.
-    array : DataArray
-        Values.
-    base : Variable, optional
-        What the quantity is derived from; default: what its name says.
-
-    Examples
-    --------
-    >>> named("normal_load", xr.DataArray(1.0)).attrs
-    {'units': 'N', 'long_name': 'normal load'}
-    """
+    """Return `array` with a name of the table and its unit and meaning."""
     renamed = array.rename(name)
     renamed.attrs = labels(name, base)
     return renamed
@@ -134,43 +80,99 @@ def package_version() -> str:
 
 
 def without_error(dataset: xr.Dataset, *names: str) -> xr.Dataset:
-    """Return `dataset` with the mark that no error is known on those of the named variables that it has.
-
-    Examples
-    --------
-    >>> without_error(xr.Dataset({"approach": 1e-6}), "approach", "tilt").approach.attrs["comment"]
-    'no error known'
-    """
+    """Return `dataset` with the error kind "not estimated" on the named variables that it has."""
     marked = dataset.copy()
     for name in names:
         if name in marked:
-            said = str(marked[name].attrs.get("comment", ""))
-            marked[name].attrs["comment"] = said if UNBOUNDED in said else ", ".join(filter(None, (said, UNBOUNDED)))
+            marked[name].attrs[ERROR_KIND] = NOT_ESTIMATED
     return marked
 
 
 def describe(dataset: xr.Dataset, title: str | None = None) -> xr.Dataset:
-    """Return `dataset` with units and meanings from the table; attributes already there stay.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        Variables and coordinates that the table does not know stay as they are.
-    title : str, optional
-        Of a Dataset that stands alone: adds the attributes that the CF conventions ask of it.
-
-    Examples
-    --------
-    >>> describe(xr.Dataset({"normal_load": 1.0}), "a load")["normal_load"].attrs["units"]
-    'N'
-    """
+    """Return `dataset` with units and meanings from the table; attributes already there stay."""
     described = dataset.copy()
     for name, variable in described.variables.items():
         variable.attrs = labels(str(name), coordinate=name in described.coords) | variable.attrs
+        if f"{name}_error" in described:
+            variable.attrs.setdefault(ERROR_KIND, ESTIMATED)
     if title is not None:
-        own = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}
-        described.attrs = own | described.attrs | {"title": title}
+        conventions = {"Conventions": "CF-1.11", "source": f"contactstudy {package_version()}"}
+        described.attrs = conventions | described.attrs | {"title": title}
     for name in described.coords:
-        # By CF a coordinate has no missing values, and so no mark for them.
+        # CF: a coordinate has all values, without a fill value.
         described[name].encoding["_FillValue"] = None
     return described
+
+
+def require(dataset: object, *names: str, argument: str = "dataset") -> None:
+    """Raise unless a Dataset holds the variables that are needed."""
+    expected = f"a Dataset with {', '.join(names)}" if names else "an xarray.Dataset"
+    if not isinstance(dataset, xr.Dataset):
+        raise InvalidInputError(argument, type(dataset).__name__, expected)
+    missing = [name for name in names if name not in dataset]
+    if not missing:
+        return
+    status = dataset.get("status")
+    if status is not None and status.ndim == 0 and str(status.item()) != "ok":
+        reason = str(dataset["message"].item()) if "message" in dataset else ""
+        raise InvalidInputError(argument, f"a {status.item()} case", "a solved case", reason)
+    hint = f"{missing[0]} is missing"
+    entry = VARIABLES.get(missing[0])
+    if entry is not None and entry.dims:
+        level = "fields" if "z" in entry.dims else "surface"
+        hint += f"; a study keeps it at level {level!r}"
+    raise InvalidInputError(argument, sorted(map(str, dataset.data_vars)), expected, hint)
+
+
+POSITIONS = ("x", "y", "z", "x_field", "y_field", "x_width")  # coordinates in metres
+
+
+def in_si(name: str, array: xr.DataArray, unit: str) -> xr.DataArray:
+    """Return an array with its values in `unit`, a key of `checks.UNIT_SIZES`, and its positions in metres."""
+    checks.instance(name, array, xr.DataArray, "an xarray.DataArray with dimensions (x, y)")
+    factors = {axis: _factor(f"{name}.{axis}", array[axis], "m") for axis in POSITIONS if axis in array.coords}
+    moved = {axis: (array[axis] * factor).assign_attrs(units="m") for axis, factor in factors.items() if factor != 1}
+    scale = _factor(name, array, unit)
+    converted = array.assign_coords(moved) if moved else array
+    return converted if scale == 1 else (converted * scale).assign_attrs(units=unit)
+
+
+def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", normalized: bool = False) -> xr.Dataset:
+    """Return a Dataset that must hold some variables, with these and all positions in SI."""
+    require(dataset, *names, argument=argument)
+    changed: dict[str, xr.DataArray] = {}
+    for name in names:
+        units, array = VARIABLES[name].units, dataset[name]
+        stated_unit = array.attrs.get("units", units)
+        if not units:  # depends on another variable
+            continue
+        if stated_unit == "1" != units and not normalized:
+            hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
+            raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
+        factor = (
+            1.0 if stated_unit in ("1", units) else factor_to(units, f"{argument}.{name}.attrs['units']", stated_unit)
+        )
+        if factor != 1:
+            changed[name] = (array * factor).assign_attrs({**array.attrs, "units": units})
+    for axis in POSITIONS:
+        if axis in dataset.coords and dataset[axis].attrs.get("units", "m") not in ("m", "1"):
+            coordinate = dataset[axis]
+            factor = factor_to("m", f"{argument}.{axis}.attrs['units']", coordinate.attrs["units"])
+            changed[axis] = (coordinate * factor).assign_attrs({**coordinate.attrs, "units": "m"})
+    positions = {name: array.variable for name, array in changed.items() if name in POSITIONS}
+    values = {name: array.variable for name, array in changed.items() if name not in POSITIONS}
+    return dataset.assign_coords(positions).assign(values) if changed else dataset
+
+
+def numbers_in_si(name: str, values: Any, unit: str) -> Any:
+    """Return numbers in a unit of SI: a DataArray with a unit is converted, other values are unchanged."""
+    if not isinstance(values, xr.DataArray):
+        return values
+    factor = _factor(name, values, unit)
+    return values if factor == 1 else values * factor
+
+
+def _factor(name: str, array: xr.DataArray, unit: str) -> float:
+    """Factor that takes the values of an array to `unit`; 1 without a unit."""
+    stated_unit = array.attrs.get("units")
+    return 1.0 if stated_unit is None else factor_to(unit, f"{name}.attrs['units']", stated_unit)

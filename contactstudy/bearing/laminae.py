@@ -1,4 +1,4 @@
-"""Edge factors per lamina from real pressures: what ISO/TS 16281 calls stress riser functions."""
+"""Laminae of a roller: the slice model after ISO/TS 16281, and edge factors from solved pressures."""
 
 from __future__ import annotations
 
@@ -10,35 +10,158 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.axes import cell_size, dimension_along, single_case
-from contactstudy.analysis.between_columns import Columns, power_means
 from contactstudy.analysis.provenance import solved_case
-from contactstudy.analysis.stated import SIDES, pressure_errors
-from contactstudy.arrays.across import largest_across
-from contactstudy.arrays.required import require
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import UNBOUNDED, describe
+from contactstudy.analysis.slices import SIDES, Columns, power_means, pressure_errors
+from contactstudy.arrays.peaks import section_maxima
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, describe, require, required_in_si, without_error
 from contactstudy.bodies import hertz
-from contactstudy.case.case import Case
+from contactstudy.case.case import Case, small_tilt
 from contactstudy.checks import FloatArray
-from contactstudy.contact.slice_model import slice_model
-from contactstudy.profiles.base import local_radius
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import checked_drop, local_radius
 
+SPRING = 35948e6  # The standard's spring constant 35948 N / mm**2 in N / m**2; the powers of its lengths add up to 2
+# Contact modulus (Pa) that the standard's constant stands for: steel on steel, 207 GPa and 0.3
+STEEL = 0.5 * 207e9 / (1 - 0.3**2)
+EXPONENT = 10 / 9
+
+OF_MODEL = "of independent slices"  # Comment of every variable of the model
+
+
+def slice_model(case: Case, *, slices: int = 30, tilt: float | None = None, edge_riser: bool = False) -> xr.Dataset:
+    """Load and pressure along a roller by the slice model of ISO/TS 16281.
+
+    Each of the ``n`` slices of a contact of length ``L`` carries ``c_s (E* / E*_steel) (2 d_k)**(10/9)`` with
+    ``c_s = 35948 L**(8/9) / n`` (N, mm) and its own deflection ``d_k = max(d + tilt x_k - drop(x_k), 0)``. The approach
+    ``d`` follows from the load. The pressure is that of the Hertz line contact of the slice's load per length.
+
+    Parameters
+    ----------
+    case : Case
+        Body, roller and load. Of the body the model uses the contact modulus only. Where the roller
+        overhangs only the part over the body is cut.
+    slices : int
+        Number ``n`` of slices; at least 30 in the standard.
+    tilt : float, optional
+        Angle of the roller's axis about its mid-length, radians; positive presses the end at larger `x` deeper.
+        Default: the case's.
+    edge_riser : bool
+        Whether the pressure contains the standard's approximate stress riser: the load of slice ``k`` times
+        ``1 - 0.01 / ln(1.985 |2 k - n - 1| / (2 n - 2))``, 2.33 at the ends and 1 in the middle. Its range:
+        the standard's profiles (`IsoCylindrical`, `IsoTapered`), medium loads and tilts below 4 minutes of arc,
+        1.2 mrad; not rollers without a profile. `contactstudy.bearing.lamina_factors` has it from solved contacts.
+
+    Returns
+    -------
+    Dataset
+        Along `x` (middle of each slice, metres from end I of the body): `load_per_length` (N/m), `pressure` (Pa),
+        `half_width` (m), `deflection` (m), `edge_factor`; and the scalars `normal_load` (N) and `approach` (m). Their
+        errors are not estimated.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is of the wrong kind or out of range, or the case prescribes where the load acts.
+
+    Notes
+    -----
+    The standard's deflection belongs to a roller between two raceways; one contact has half of it. The standard applies
+    the riser to the loads of the life only. Formulas and range are second-hand, from public programs.
+
+    References
+    ----------
+    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
+    loaded bearings, equations 35, 38 to 44 and 60.
+
+    Examples
+    --------
+    >>> from contactstudy import HalfSpace, Material, Roller
+    >>> roller = Roller(radius=5e-3, length=10e-3)
+    >>> case = Case(body=HalfSpace(material=Material(210e9, 0.3)), roller=roller, load=1000.0)
+    >>> result = slice_model(case, tilt=1e-3)
+    >>> round(float(result.load_per_length.mean()) / 1e3, 6)
+    100.0
+    >>> bool(result.pressure[-1] > result.pressure[0])
+    True
+    """
+    checks.instance("case", case, Case, "a Case")
+    slices = checks.count("slices", slices, least=2)
+    if case.load_position is not None:
+        raise InvalidInputError("case.load_position", case.load_position, "None: the slice model takes a tilt")
+    tilt = small_tilt(case.tilt if tilt is None else tilt)
+    checks.instance("edge_riser", edge_riser, bool, "True or False")
+    start, _ = case.contact_range
+    length, roller = case.contact_length, case.roller
+    x = start + length * (np.arange(slices) + 0.5) / slices
+    from_middle = x - case.roller_middle
+    height = checked_drop(roller.profile, from_middle, roller.length) - np.tan(tilt) * from_middle
+    stiffness = SPRING * length ** (8 / 9) / slices * (case.modulus / STEEL)
+    approach, deflection = _equilibrium(height, stiffness, case.normal_load)
+    load_per_length = stiffness * (2 * deflection) ** EXPONENT * slices / length
+    factor = _edge_factor(slices)
+    radius = local_radius(roller.profile, from_middle, roller.length, roller.radius)
+    line_load = load_per_length * factor if edge_riser else load_per_length
+    pressure = np.sqrt(line_load * case.modulus / (np.pi * radius))
+    fields = {
+        "load_per_length": load_per_length,
+        "pressure": pressure,
+        "half_width": 2 * pressure * radius / case.modulus,
+        "deflection": deflection,
+        "edge_factor": factor,
+    }
+    result = xr.Dataset(
+        {name: ("x", values) for name, values in fields.items()}
+        | {"normal_load": case.normal_load, "approach": approach},
+        coords={"x": x},
+        attrs={"slices": slices, "tilt": tilt},
+    )
+    for name in ("load_per_length", "half_width", "deflection", "edge_factor", "approach"):
+        result[name].attrs["comment"] = OF_MODEL
+    risen = ", with stress riser" if edge_riser else ""
+    result["pressure"].attrs["comment"] = f"peak of each slice{risen}; {OF_MODEL}"
+    result["approach"].attrs["reference"] = "undeformed bodies, at mid-length"
+    result = without_error(result, *fields, "approach")
+    return describe(result, "slice model of ISO/TS 16281")
+
+
+def _equilibrium(height: FloatArray, stiffness: float, load: float) -> tuple[float, FloatArray]:
+    """Approach and deflections of springs of equal stiffness at different heights under the load."""
+    from scipy.optimize import brentq
+
+    def deflection(approach: float) -> FloatArray:
+        return np.asarray(np.maximum(approach - height, 0.0))
+
+    def excess(approach: float) -> float:
+        return float(stiffness * np.sum((2 * deflection(approach)) ** EXPONENT)) / load - 1
+
+    lowest = float(height.min())
+    largest = 0.5 * (load / stiffness) ** (1 / EXPONENT)  # of one slice under the whole load
+    approach = float(brentq(excess, lowest, lowest + 1.001 * largest, xtol=1e-15 * largest, rtol=1e-14, maxiter=200))
+    return approach, deflection(approach)
+
+
+def _edge_factor(slices: int) -> FloatArray:
+    """Stress riser of every slice; 1 in the middle."""
+    number = np.arange(1, slices + 1)
+    with np.errstate(divide="ignore"):
+        return np.asarray(1 - 0.01 / np.log(1.985 * np.abs(2 * number - slices - 1) / (2 * slices - 2)))
+
+
+# Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
+# of Weibull's distribution
 LIFE_POWER = 9 / 2
-"""Power of a lamina's load that its risk of fatigue follows: the life exponent 4 of a line contact times the slope 9/8
-of Weibull's distribution."""
-
 OF_COLUMNS = "from the stated errors of the pressure and the distance of its columns"
 
 
 def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
-    """Factors on the loads of the lamina model that make their Hertz pressures those of a solved contact.
+    """Factors on the loads of the lamina model that turn their Hertz pressures into the pressures of a solved contact.
 
     Parameters
     ----------
     result : Dataset
         A result of :func:`contactstudy.solve` for the roller on the inner raceway, or on the outer one.
     laminae : int
-        Number of laminae; the standard asks for at least 30.
+        Number of laminae; at least 30 in the standard.
 
     Returns
     -------
@@ -48,23 +171,20 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
         solved pressure; `stress_riser`, the latter over the former: ``f_i[k]`` from the inner raceway, ``f_e[k]`` from
         the outer one; with `hertz_load_per_length_error` and `stress_riser_error`, which follow from the stated errors
         of the peak pressures and from the distance of the columns; and `edge_factor`, the standard's approximation.
-        No error is known of what the lamina model alone says.
+        The error of the lamina model is not estimated.
 
     Raises
     ------
     InvalidInputError
-        If the result does not say its case, or `laminae` is no whole number above 1.
+        If the result lacks its case, or `laminae` is not a whole number above 1.
 
     Notes
     -----
     Within a lamina the pressure varies. Its load is the mean that gives the same life,
     ``(mean of (pi p**2 R / E*)**(9/2))**(2/9)`` with the largest pressure p of each cross-section, so the life does not
     depend on the number of laminae. At a sharp end, where the pressure is singular, the outermost factor is
-    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` still counts there.
-
-    The standard defines its functions by the Hertz pressures of the laminae (equations 58 and 59), and recommends
-    contact calculations for them in general. Its text was not available: that, and everything else of it here, is
-    second-hand, from what public programs quote of it.
+    infinite. The factor is NaN where the lamina model has no load; `hertz_load_per_length` is finite there (equations
+    58 and 59 of ISO/TS 16281, second-hand).
 
     Examples
     --------
@@ -79,70 +199,59 @@ def lamina_factors(result: xr.Dataset, *, laminae: int = 30) -> xr.Dataset:
     """
     require(result, "tilt", argument="result")
     result = required_in_si(result, "pressure", argument="result")
-    one = single_case(result)
-    case, count = solved_case(one), checks.count("laminae", laminae, least=2)
-    sliced = slice_model(replace(case, load_position=None, tilt=float(one["tilt"])), slices=count)
+    solution = single_case(result)
+    case, count = solved_case(solution), checks.count("laminae", laminae, least=2)
+    sliced = slice_model(replace(case, load_position=None, tilt=float(solution["tilt"])), slices=count)
     start, stop = case.contact_range
     borders = np.linspace(start, stop, count + 1)
-    load, error, _ = hertz_loads(one, case, borders)
-    carried = sliced["load_per_length"].values
+    load, error, _ = hertz_loads(solution, case, borders)
+    sliced_load = sliced["load_per_length"].values
     with np.errstate(divide="ignore", invalid="ignore"):
-        riser = np.where(carried > 0, load / carried, np.nan)
-        riser_error = np.where(carried > 0, error / carried, np.nan)
+        riser = np.where(sliced_load > 0, load / sliced_load, np.nan)
+        riser_error = np.where(sliced_load > 0, error / sliced_load, np.nan)
     values = {
         "position": 0.5 * (borders[1:] + borders[:-1]),
         "width": np.full(count, (stop - start) / count),
-        "load_per_length": carried,
+        "load_per_length": sliced_load,
         "hertz_load_per_length": load,
         "hertz_load_per_length_error": error,
         "stress_riser": riser,
         "stress_riser_error": riser_error,
         "edge_factor": sliced["edge_factor"].values,
     }
-    found = xr.Dataset(
+    labelled = xr.Dataset(
         {name: ("slice", array) for name, array in values.items()}, coords={"slice": np.arange(1, count + 1)}
     )
     for name in ("load_per_length", "edge_factor"):
-        found[name].attrs["comment"] = sliced[name].attrs["comment"]
-    known = not np.isnan(error).any()
+        labelled[name].attrs["comment"] = sliced[name].attrs["comment"]
+    estimated = not np.isnan(error).any()
     for name in ("hertz_load_per_length", "stress_riser"):
-        found[f"{name}_error"].attrs["comment"] = OF_COLUMNS if known else UNBOUNDED
-    return describe(found, "stress riser of every lamina from solved pressures")
+        labelled[f"{name}_error"].attrs |= {"comment": OF_COLUMNS} if estimated else {ERROR_KIND: NOT_ESTIMATED}
+    return describe(labelled, "stress riser of every lamina from solved pressures")
 
 
 class HertzLoads(NamedTuple):
-    """Load per length of every lamina whose line contact has the solved pressure, N/m.
+    """Load per length of every lamina whose line contact has the solved pressure, N/m."""
 
-    Attributes
-    ----------
-    load : array
-        Infinite at a singular end.
-    error : array
-        From the stated errors of the pressure, and from the distance of its columns.
-    common : array
-        The part of it from the stated errors. What the columns put into one lamina they leave out of the next, so this
-        part alone tells how well a life of all laminae is known.
-    """
-
-    load: FloatArray
-    error: FloatArray
-    common: FloatArray
+    load: FloatArray  # N/m; infinite at a singular end
+    error: FloatArray  # of the stated errors and of the columns
+    common: FloatArray  # of the stated errors: bounds a life, where errors of columns cancel
 
 
 def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoads:
     """Return loads per length of laminae between borders from the solved pressure, and their errors."""
     pressure = result["pressure"].transpose(dimension_along(result["pressure"], "x"), ...)
     x = dimension_along(pressure, "x")
-    place, top = result[x].values, largest_across(pressure.values)
-    half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, place.shape)
+    position, top = result[x].values, section_maxima(pressure.values)
+    half = 0.5 * np.broadcast_to(cell_size(pressure, "x").values, position.shape)
     middle = case.roller_middle
-    under = np.abs(place - middle) <= 0.5 * case.roller.length
-    radius = np.full(place.size, case.roller.radius)
-    radius[under] = local_radius(case.roller.profile, place[under] - middle, case.roller.length, case.roller.radius)
+    under = np.abs(position - middle) <= 0.5 * case.roller.length
+    radius = np.full(position.size, case.roller.radius)
+    radius[under] = local_radius(case.roller.profile, position[under] - middle, case.roller.length, case.roller.radius)
     line = hertz.line_load(1.0, 1.0, case.modulus) * top**2 * radius
-    columns = Columns(np.stack([place - half, place + half], axis=-1), place, line)
+    columns = Columns(np.stack([position - half, position + half], axis=-1), position, line)
     load, left_open = power_means(columns, borders, LIFE_POWER)
-    common = _of_pressure(result, load, line, columns.shares(borders))
+    common = _of_pressure(result, load, line, columns.overlaps(borders))
     error = common + left_open
     for end, side in ((0, "first"), (-1, "last")):
         if np.isinf(float(result.get(f"peak_pressure_{side}", 0.0))):
@@ -151,7 +260,7 @@ def hertz_loads(result: xr.Dataset, case: Case, borders: FloatArray) -> HertzLoa
 
 
 def _of_pressure(result: xr.Dataset, load: FloatArray, line: FloatArray, weights: FloatArray) -> FloatArray:
-    """Errors of loads per length from those of the pressure, which are stated of the largest on either half."""
+    """Errors of loads per length from the stated errors of the largest pressure on either half."""
     half = load.size // 2
     errors = []
     for parts, side, relative in zip(
@@ -160,7 +269,7 @@ def _of_pressure(result: xr.Dataset, load: FloatArray, line: FloatArray, weights
         endless = np.isinf(float(result.get(f"peak_pressure_{side}", 0.0)))
         largest = load[parts] if endless else line[weights[parts].any(axis=0)].max()
         error = np.zeros(load.size)
-        # The load goes with the square of the pressure, whose error is that of its largest.
+        # The load is proportional to the square of the pressure.
         error[parts] = 2 * relative * np.sqrt(load[parts] * largest)
         errors.append(error)
     return np.maximum(*errors)

@@ -1,8 +1,8 @@
-"""Contact law of a roller on a raceway: load, moment and stiffness over approach and tilt, and the inverse."""
+"""Contact laws: load and moment over approach and tilt with stiffness and the inverse, and two laws in series."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,24 +10,96 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.html_table import html_table
-from contactstudy.arrays.required import require
+from contactstudy.arrays.engineering import html_table
+from contactstudy.arrays.variables import describe, named, require, without_error
 from contactstudy.bearing.energy_spline import EnergySpline, Motion, Nodes
-from contactstudy.bearing.motions import UNITS, Values, broadcast, dataset, each_pair, with_position_errors
-from contactstudy.checks import FloatArray
+from contactstudy.checks import FloatArray, factor_to
 from contactstudy.errors import InvalidInputError
 
-FEWEST = 5
-"""Approaches and tilts below which an interpolation would not deserve the name."""
+Values = float | list[float] | tuple[float, ...] | FloatArray | xr.DataArray  # A number, several, or labelled ones
+UNITS = {"approach": "m", "tilt": "rad", "normal_load": "N", "moment": "N m"}  # Units of the arguments
 
-EDGE = 1e-9
-"""Part of the table by which rounding may leave it."""
 
-MET = 1e-7
-"""Part of load, and of load times length, to which an approach and a tilt meet what was asked for. Accuracy."""
+def broadcast(**values: Values) -> tuple[xr.DataArray, ...]:
+    """Arguments as arrays of the same dimensions: a sequence has a dimension of the argument's name."""
+    labelled = [_labelled(*item) for item in values.items()]
+    for dim in {str(dim) for argument in labelled for dim in argument.dims}:
+        indexes = [argument.indexes[dim] for argument in labelled if dim in argument.indexes]
+        if any(set(labels) != set(indexes[0]) for labels in indexes):
+            labels_text = " and ".join(str(labels.tolist()[:5]) for labels in indexes)
+            raise InvalidInputError(
+                ", ".join(values), f"{dim} = {labels_text}", f"with the same labels along {dim}, or without"
+            )
+    try:
+        aligned = xr.align(*labelled, join="left")
+    except ValueError as error:
+        sizes = {name: dict(argument.sizes) for name, argument in zip(values, labelled, strict=True)}
+        allowed = "as many values along each common dimension"
+        raise InvalidInputError(", ".join(values), sizes, allowed, str(error)) from None
+    return tuple(argument.astype(np.float64) for argument in xr.broadcast(*aligned))
 
+
+def _labelled(name: str, value: Values) -> xr.DataArray:
+    """One argument as a DataArray of finite numbers."""
+    if isinstance(value, xr.DataArray):
+        if (units := value.attrs.get("units")) is not None:
+            value = value * factor_to(UNITS[name], f"{name}.attrs['units']", units)
+        checks.coordinates(name, value.values.ravel(), UNITS[name])
+        return value.drop_vars(name, errors="ignore") if name not in value.dims else value
+    if np.ndim(value) == 0:
+        return xr.DataArray(checks.finite(name, value, UNITS[name]))
+    numbers = checks.coordinates(name, value, UNITS[name])
+    return xr.DataArray(numbers, dims=name, coords={name: numbers})
+
+
+def map_pairs(
+    first: xr.DataArray, second: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
+) -> tuple[xr.DataArray, xr.DataArray]:
+    """Two values of a function at every pair of arguments."""
+    results = [function(float(a), float(b)) for a, b in zip(first.values.ravel(), second.values.ravel(), strict=True)]
+    first_values, second_values = np.array(results, dtype=np.float64).reshape(-1, 2).T
+    return first.copy(data=first_values.reshape(first.shape)), second.copy(data=second_values.reshape(second.shape))
+
+
+def with_position_errors(motion: xr.Dataset) -> xr.Dataset:
+    """Add the errors of approach and tilt, from the errors of load and moment, to a motion under a load."""
+    names = ("normal_stiffness", "coupling_stiffness", "tilting_stiffness")
+    normal, coupling, tilting = (np.abs(motion[name]) for name in names)
+    size = np.abs(motion["normal_stiffness"] * motion["tilting_stiffness"] - motion["coupling_stiffness"] ** 2)
+    load, moment = motion["normal_load_error"], motion["moment_error"]
+    errors = {
+        "approach_error": (tilting * load + coupling * moment) / size,
+        "tilt_error": (coupling * load + normal * moment) / size,
+    }
+    return motion.assign({name: named(name, error.drop_attrs()) for name, error in errors.items()})
+
+
+def dataset(
+    approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[FloatArray, FloatArray]
+) -> xr.Dataset:
+    """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
+    values = {
+        "approach": approach.values,
+        "tilt": tilt.values,
+        "normal_load": motion.load,
+        "moment": motion.moment,
+        "normal_stiffness": motion.normal,
+        "coupling_stiffness": motion.coupling,
+        "tilting_stiffness": motion.tilting,
+        "normal_load_error": errors[0] * motion.load,
+        "moment_error": errors[1] * motion.load,
+    }
+    coords = {str(name): coordinate for name, coordinate in approach.coords.items()}
+    data = {name: (approach.dims, array) for name, array in values.items() if name not in coords}
+    labelled = describe(xr.Dataset(data, coords=coords))
+    return without_error(labelled, "normal_stiffness", "coupling_stiffness", "tilting_stiffness")
+
+
+FEWEST = 5  # Least number of approaches and of tilts
+EDGE = 1e-9  # Rounding of an argument over the range of the table
+MET = 1e-7  # Residual of load and moment, over load and load times length, at a position
+# Variables of a table that the law needs
 NEEDED = ("normal_load", "moment", "strain_energy", "relative_load_error", "relative_moment_error", "contact_length")
-"""Variables of a table from which the law follows."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,19 +109,19 @@ class ContactLaw:
     Parameters
     ----------
     table : Dataset
-        What :func:`contactstudy.bearing.contact_law` tabulates, or the same from a file:
+        Table of :func:`contactstudy.bearing.contact_law`, or its file:
         ``ContactLaw(xarray.open_dataset(path))``.
 
     Raises
     ------
     InvalidInputError
-        If the Dataset is no such table.
+        If the Dataset lacks a variable of the table.
 
     Notes
     -----
-    What is interpolated is the strain energy U, of which the load ``Q = dU/d delta`` and the moment
-    ``M = dU/d theta`` are derivatives, so that the stiffness matrix is symmetric and is the exact derivative of the
-    load and moment that are returned: what Newton's method for a bearing's equilibrium needs.
+    The law interpolates the strain energy U. The load ``Q = dU/d delta`` and the moment ``M = dU/d theta`` are its
+    derivatives, so the stiffness matrix is symmetric and is the exact derivative of load and moment, as Newton's method
+    for the equilibrium of a bearing needs.
 
     Examples
     --------
@@ -78,19 +150,18 @@ class ContactLaw:
     table: xr.Dataset
 
     def __post_init__(self) -> None:
-        """Check the table."""
         require(self.table, *NEEDED, argument="table")
         for name in ("approach", "tilt"):
             if self.table.sizes.get(name, 0) < FEWEST:
                 raise InvalidInputError("table", dict(self.table.sizes), f"one with {FEWEST} or more along {name}")
 
     def __repr__(self) -> str:
-        return f"ContactLaw({', '.join(f'{name} {text}' for name, text in self._said())})"
+        return f"ContactLaw({', '.join(f'{name} {text}' for name, text in self._rows())})"
 
     def _repr_html_(self) -> str:
-        return html_table([("Contact law", self._said())])
+        return html_table([("Contact law", self._rows())])
 
-    def _said(self) -> Iterator[tuple[str, str]]:
+    def _rows(self) -> Iterator[tuple[str, str]]:
         """Ranges of the table, and its errors."""
         low, high = (1e6 * end for end in self._range("approach"))
         least, most = (1e3 * end for end in self._range("tilt"))
@@ -152,7 +223,7 @@ class ContactLaw:
         Returns
         -------
         Dataset
-            `approach` (m), `tilt` (rad), their errors, and what :meth:`at` gives for them.
+            `approach` (m), `tilt` (rad), their errors, and the variables of :meth:`at`.
 
         Raises
         ------
@@ -160,14 +231,14 @@ class ContactLaw:
             If they belong to an approach and a tilt outside the table.
         """
         load, turn = broadcast(normal_load=normal_load, moment=moment)
-        delta, theta = each_pair(load, turn, self.position)
+        delta, theta = map_pairs(load, turn, self.position)
         pairs = delta.values, theta.values
         return with_position_errors(dataset(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
-        """Load, moment and stiffness as plain arrays, at pairs inside the table: for loops of one's own.
+        """Load, moment and stiffness as plain arrays, at pairs inside the table.
 
-        Outside it extrapolates without a warning, so that Newton's method may pass there; check where it ends.
+        Outside the table the law extrapolates without a warning; check the end of an iteration.
         """
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 
@@ -183,20 +254,20 @@ class ContactLaw:
         line, column = np.unravel_index(int(distance.argmin()), distance.shape)
         size = np.array([high, most - least])
 
-        def missed(scaled: FloatArray) -> FloatArray:
-            found = self.motion(*(scaled * size))
-            return np.array([found.load / load - 1, (found.moment - moment) / (load * length)])
+        def residual(scaled: FloatArray) -> FloatArray:
+            motion = self.motion(*(scaled * size))
+            return np.array([motion.load / load - 1, (motion.moment - moment) / (load * length)])
 
         def slopes(scaled: FloatArray) -> FloatArray:
-            found = self.motion(*(scaled * size))
-            turned = np.array([found.coupling, found.tilting]) / length
-            return np.asarray(np.array([[found.normal, found.coupling], turned]) / load * size)
+            motion = self.motion(*(scaled * size))
+            turned = np.array([motion.coupling, motion.tilting]) / length
+            return np.asarray(np.array([[motion.normal, motion.coupling], turned]) / load * size)
 
         bounds = (np.array([low, least]) / size, np.array([high, most]) / size)
-        begun = np.array([float(self.table["approach"][line]), float(self.table["tilt"][column])]) / size
-        inside = np.clip(begun, bounds[0] + EDGE, bounds[1] - EDGE)
-        found = least_squares(missed, inside, slopes, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        if np.abs(found.fun).max() > MET:
+        start = np.array([float(self.table["approach"][line]), float(self.table["tilt"][column])]) / size
+        start = np.clip(start, bounds[0] + EDGE, bounds[1] - EDGE)
+        solution = least_squares(residual, start, slopes, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        if np.abs(solution.fun).max() > MET:
             raise InvalidInputError(
                 "normal_load, moment",
                 (load, moment),
@@ -204,7 +275,7 @@ class ContactLaw:
                 f"and tilts from {least:g} to {most:g} rad",
                 "make the table for larger approaches or tilts",
             )
-        delta, theta = found.x * size
+        delta, theta = solution.x * size
         return float(delta), float(theta)
 
     def _range(self, name: str) -> tuple[float, float]:
@@ -223,12 +294,168 @@ class ContactLaw:
     def errors(self, approach: FloatArray, tilt: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Errors of load and moment over the load, at pairs inside the table: the largest of the nodes around each."""
         sides = []
-        for name, places in (("approach", approach), ("tilt", tilt)):
+        for name, values in (("approach", approach), ("tilt", tilt)):
             lines = self.table[name].values
-            right = np.clip(np.searchsorted(lines, places), 1, lines.size - 1)
+            right = np.clip(np.searchsorted(lines, values), 1, lines.size - 1)
             sides.append((right - 1, right))
-        found = []
+        largest = []
         for name in ("relative_load_error", "relative_moment_error"):
-            known = self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
-            found.append(np.max([known[i, j] for i in sides[0] for j in sides[1]], axis=0))
-        return found[0], float(self.table["contact_length"]) * found[1]
+            errors = self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
+            largest.append(np.max([errors[i, j] for i in sides[0] for j in sides[1]], axis=0))
+        return largest[0], float(self.table["contact_length"]) * largest[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Raceways:
+    """A roller between an inner and an outer raceway, free to tilt between them.
+
+    Parameters
+    ----------
+    inner, outer : ContactLaw
+        Of the same roller on either raceway, with x in the same direction.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not a ContactLaw.
+
+    Notes
+    -----
+    Load and moment about mid-length are the same in both contacts, as nothing else acts on the roller: no centrifugal
+    force, no flange. Approaches and tilts add up to the motion of the outer raceway relative to the inner one. Each
+    contact deforms an elastic roller as if the other were absent.
+
+    Examples
+    --------
+    >>> import contactstudy as cs
+    >>> steel = cs.Material(210e9, 0.3)
+    >>> roller = cs.Roller(radius=5e-3, length=0.3e-3, profile=cs.profiles.FullCrown(crown_radius=0.1))
+    >>> case = cs.Case(body=cs.HalfSpace(material=steel), roller=roller, load=30.0)
+    >>> law = cs.bearing.contact_law(case, np.linspace(-2e-4, 2e-4, 5), 1e-6 * np.linspace(1.0, 1.8, 5), accuracy=0.1)
+    >>> raceways = Raceways(law, law)  # of two equal contacts each takes half
+    >>> round(float(raceways.at(2.6e-6).normal_load / law.at(1.3e-6).normal_load), 6)
+    1.0
+    """
+
+    inner: ContactLaw
+    outer: ContactLaw
+
+    def __post_init__(self) -> None:
+        for name in ("inner", "outer"):
+            checks.instance(name, getattr(self, name), ContactLaw, "a ContactLaw, as contact_law returns")
+
+    def at(self, approach: Values, tilt: Values = 0.0) -> xr.Dataset:
+        """Load, moment and stiffness at an approach and a tilt of one raceway against the other.
+
+        Parameters
+        ----------
+        approach, tilt : float, sequence or DataArray
+            Metres and radians; broadcast as in :meth:`ContactLaw.at`.
+
+        Returns
+        -------
+        Dataset
+            As :meth:`ContactLaw.at`, with the shares of the contacts: `inner_approach`, `inner_tilt`, `outer_approach`
+            and `outer_tilt`.
+
+        Raises
+        ------
+        InvalidInputError
+            If either contact would leave its table.
+        """
+        delta, theta = broadcast(approach=approach, tilt=tilt)
+        inner = map_pairs(delta, theta, self._inner_share)
+        return self._dataset(inner, (delta - inner[0], theta - inner[1]))
+
+    def under(self, normal_load: Values, moment: Values = 0.0) -> xr.Dataset:
+        """Approach and tilt of the raceways under a load and a moment.
+
+        Parameters
+        ----------
+        normal_load, moment : float, sequence or DataArray
+            N and N m; broadcast as in :meth:`ContactLaw.at`.
+
+        Returns
+        -------
+        Dataset
+            As of :meth:`at`, with the errors of approach and tilt.
+
+        Raises
+        ------
+        InvalidInputError
+            If either contact would leave its table.
+        """
+        load, turn = broadcast(normal_load=normal_load, moment=moment)
+        motion = self._dataset(map_pairs(load, turn, self.inner.position), map_pairs(load, turn, self.outer.position))
+        return with_position_errors(motion)
+
+    def _dataset(
+        self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]
+    ) -> xr.Dataset:
+        """Label the series of two contacts at their own approaches and tilts."""
+        contacts = [
+            law.motion(shares[0].values, shares[1].values) for law, shares in ((self.inner, inner), (self.outer, outer))
+        ]
+        # Compliances add up.
+        stiffness = np.linalg.inv(sum(np.linalg.inv(_matrix(motion)) for motion in contacts))
+        first = contacts[0]
+        motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
+        # A softer contact decides; the larger error is a bound for either.
+        relative = [
+            law.errors(shares[0].values, shares[1].values) for law, shares in ((self.inner, inner), (self.outer, outer))
+        ]
+        errors = [np.maximum(*pair) for pair in zip(*relative, strict=True)]
+        labelled = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, (errors[0], errors[1]))
+        for name, shares in (("inner", inner), ("outer", outer)):
+            for kind, share in zip(("approach", "tilt"), shares, strict=True):
+                labelled[f"{name}_{kind}"] = (share.dims, share.values)
+        return describe(labelled)
+
+    def _inner_share(self, approach: float, tilt: float) -> tuple[float, float]:
+        """Approach and tilt of the inner contact at which both carry the same."""
+        from scipy.optimize import least_squares
+
+        tables = self.inner.table, self.outer.table
+        totals = {"approach": approach, "tilt": tilt}
+        low, high = [], []
+        for name, total in totals.items():
+            (first, last), (other_first, other_last) = ((float(t[name][0]), float(t[name][-1])) for t in tables)
+            low.append(max(first, total - other_last))
+            high.append(min(last, total - other_first))
+            if not low[-1] < high[-1]:
+                ends = f"from {first + other_first:g} to {last + other_last:g}"
+                raise InvalidInputError(name, total, f"in the tables of both contacts together, {ends}")
+        bounds, size = (
+            (np.array(low), np.array(high)),
+            np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)]),
+        )
+        length = float(tables[0]["contact_length"])
+
+        def motions(scaled: FloatArray) -> tuple[Motion, Motion]:
+            delta, theta = scaled * size
+            return self.inner.motion(delta, theta), self.outer.motion(approach - delta, tilt - theta)
+
+        def residual(scaled: FloatArray) -> FloatArray:
+            inner, outer = motions(scaled)
+            scale = float(np.sqrt(inner.load * outer.load))
+            return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
+
+        start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + EDGE * size, bounds[1] - EDGE * size)
+        solution = least_squares(
+            residual, start / size, bounds=(bounds[0] / size, bounds[1] / size), xtol=1e-14, ftol=1e-14, gtol=1e-14
+        )
+        if np.abs(solution.fun).max() > MET:
+            raise InvalidInputError(
+                "approach, tilt",
+                (approach, tilt),
+                "such that either contact's share is in its table",
+                "make the tables for more approaches or tilts",
+            )
+        delta, theta = solution.x * size
+        return float(delta), float(theta)
+
+
+def _matrix(motion: Motion) -> FloatArray:
+    """Stiffness as matrices along the last two axes."""
+    rows = [[motion.normal, motion.coupling], [motion.coupling, motion.tilting]]
+    return np.asarray(np.moveaxis(np.array(rows), (0, 1), (-2, -1)))

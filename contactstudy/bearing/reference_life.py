@@ -4,38 +4,32 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.arrays.variables import UNBOUNDED, describe
+from contactstudy.arrays.variables import describe
 from contactstudy.bearing.laminae import LIFE_POWER, hertz_loads, lamina_factors
 from contactstudy.bodies.models import HalfSpace
 from contactstudy.case.case import Case
-from contactstudy.case.doubts import question_values
+from contactstudy.case.magnitudes import warn_doubtful_values
 from contactstudy.case.motion import Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.solution import solve
 
-MODELS = ("slices", "slices with riser", "half-space", "free ends")
-"""What the pressure of a lamina follows from."""
-
+MODELS = ("slices", "slices with riser", "half-space", "free ends")  # Models of the pressure of a lamina
 RACEWAYS = ("inner", "outer")
 
-TURNING = 4.0
-"""Power of the mean of a raceway that turns against the load; of one that stands it is :data:`LIFE_POWER`."""
-
+TURNING = 4.0  # Power of the mean of a raceway that turns against the load; of one that stands it is :data:`LIFE_POWER`
+# Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: it allows for edge stress,
+# which a lamina model has in it
 REDUCTION = 0.83
-"""Factor lambda nu of ISO 281's dynamic ratings for radial roller bearings, second-hand: it allows for edge stress,
-which a lamina model has in it."""
-
 MILLION = 1e6
 
-OF_MODELS = f"from the stated errors of the pressures; of the models of slices NaN, {UNBOUNDED}"
-"""A model that knows no ends is off by what the ends do, which it does not tell."""
+# Comment of the errors: the models of slices neglect the ends, and their error is not estimated
+OF_MODELS = "from the stated errors of the pressures; NaN for the models of slices"
 
 
 def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: int = 1) -> tuple[float, float]:
@@ -83,7 +77,7 @@ def roller_ratings(dynamic_rating: float, rollers: int, gamma: float, *, rows: i
     part = checks.positive("gamma", gamma)
     if part >= 1:
         raise InvalidInputError("gamma", part, "below 1, roller diameter over pitch diameter")
-    question_values(dynamic_rating=rating)
+    warn_doubtful_values(dynamic_rating=rating)
     ratio = 1.038 * ((1 - part) / (1 + part)) ** (143 / 108)
     base = rating / (REDUCTION * count * rows ** (7 / 9))
     inner = base / 0.378 * (1 + ratio**LIFE_POWER) ** (1 / LIFE_POWER)
@@ -116,16 +110,16 @@ def reference_life(
     turning : str
         Raceway that turns against the load: "inner" or "outer".
     laminae : int
-        Number of laminae; the standard asks for at least 30.
+        Number of laminae; at least 30 in the standard.
     accuracy : float
-        Of the contacts, see :func:`contactstudy.solve`.
+        Accuracy of the contacts, see :func:`contactstudy.solve`.
 
     Returns
     -------
     Dataset
         Along `model`: `reference_life` (revolutions that 9 of 10 bearings survive), and along `raceway` too
         `raceway_life`. The models are "slices" (no edge factor), "slices with riser" (the standard's approximation),
-        "half-space" (of every Case's body, the roller without ends of its own), and "free ends" (the Case as it is).
+        "half-space" (body and roller as half-spaces, under the same load and moment), and "free ends" (the Case).
         Along `raceway`, `roller` and `slice` the factors ``f_i[j, k]`` and ``f_e[j, k]``, `stress_riser`, and the
         dynamic equivalent load per lamina, `lamina_equivalent_load` (N). Each has its ``_error`` from the stated errors
         of the pressures; it is NaN of both models of slices, whose error is not known.
@@ -153,36 +147,34 @@ def reference_life(
     >>> bool(life.sel(model="free ends") > life.sel(model="half-space"))
     True
     """
-    cases = {name: _cases(name, given) for name, given in zip(RACEWAYS, (inner, outer), strict=True)}
+    cases = {name: _cases(name, argument) for name, argument in zip(RACEWAYS, (inner, outer), strict=True)}
     if len(cases["inner"]) != len(cases["outer"]):
         raise InvalidInputError("outer", len(cases["outer"]), f"as many rollers as inside, {len(cases['inner'])}")
     loaded = len(cases["inner"])
     number = loaded if rollers is None else checks.count("rollers", rollers, least=loaded)
     if isinstance(inner, Case):
-        number = 1  # all carry the same, so their number is no part of the mean
+        number = 1  # equal rollers: the mean does not depend on their number
     checks.instance("turning", turning, str, "a name")
     checks.known_name("turning", turning, RACEWAYS)
-    rated = _ratings(ratings)
-    found = {
-        name: [_loads_of_roller(case, laminae, accuracy) for case in each] for name, each in cases.items()
-    }  # raceway, roller: arrays (model, lamina)
-    loads, errors, common, risers, riser_errors = (
-        np.array([[getattr(each, part) for each in found[name]] for name in RACEWAYS]).transpose(2, 0, 1, 3)
-        for part in _OfRoller._fields
-    )
+    rated = checks.coordinates("ratings", ratings, "N")
+    if rated.size != len(RACEWAYS) or (rated <= 0).any():
+        raise InvalidInputError("ratings", rated.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
+    # Arrays (model, raceway, roller, lamina).
+    rollers_loads = [[_loads_of_roller(case, laminae, accuracy) for case in cases[name]] for name in RACEWAYS]
+    loads, errors, common, risers, riser_errors = np.array(rollers_loads).transpose(2, 3, 0, 1, 4)
     count = loads.shape[-1]
     powers = np.array([TURNING if name == turning else LIFE_POWER for name in RACEWAYS])[:, None]
     rating = rated[:, None] * count ** (-7 / 9)
 
-    def equivalent(each: FloatArray) -> FloatArray:
-        """Return loads (model, raceway, lamina) from those of the rollers."""
+    def equivalent(roller_loads: FloatArray) -> FloatArray:
+        """Equivalent loads (model, raceway, lamina) of the loads of the rollers."""
         power = powers[:, None]
-        return np.asarray(((each**power).sum(axis=2) / number) ** (1 / powers))
+        return np.asarray(((roller_loads**power).sum(axis=2) / number) ** (1 / powers))
 
     mean, most = equivalent(loads), equivalent(loads + errors)
-    risks = [((equivalent(each) / rating) ** LIFE_POWER).sum(axis=-1) for each in (loads, loads + common)]
+    risks = [((equivalent(loaded_by) / rating) ** LIFE_POWER).sum(axis=-1) for loaded_by in (loads, loads + common)]
     (of_raceways, shortest), (lives, lower) = (
-        [MILLION * risk ** (-8 / 9) for risk in each] for each in (risks, [risk.sum(axis=-1) for risk in risks])
+        [MILLION * risk ** (-8 / 9) for risk in pair] for pair in (risks, [risk.sum(axis=-1) for risk in risks])
     )
     endless = np.isinf(mean)
     result = xr.Dataset(
@@ -212,51 +204,43 @@ def reference_life(
     return describe(result, "basic reference rating life from laminae")
 
 
-def _cases(name: str, given: object) -> list[Case]:
+def _cases(name: str, argument: object) -> list[Case]:
     """Cases of one raceway."""
-    cases = [given] if isinstance(given, Case) else list(given) if isinstance(given, Sequence) else []
-    if not cases or not all(isinstance(each, Case) for each in cases):
-        raise InvalidInputError(name, given, "a Case, or a sequence of a Case per loaded roller")
+    cases = [argument] if isinstance(argument, Case) else list(argument) if isinstance(argument, Sequence) else []
+    if not cases or not all(isinstance(case, Case) for case in cases):
+        raise InvalidInputError(name, argument, "a Case, or a sequence of a Case per loaded roller")
     return cases
 
 
-def _ratings(ratings: object) -> FloatArray:
-    """Ratings of both raceways."""
-    numbers = checks.coordinates("ratings", ratings, "N")
-    if numbers.size != len(RACEWAYS) or (numbers <= 0).any():
-        raise InvalidInputError("ratings", numbers.tolist(), "two positive numbers, Q_ci and Q_ce (N)")
-    return numbers
+def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> FloatArray:
+    """Solve for loads of every lamina by the four models, N, errors, their common part, and factors with errors.
 
-
-class _OfRoller(NamedTuple):
-    """Arrays (model, lamina): loads with the models' factors, N, their errors, and the factors with theirs."""
-
-    loads: FloatArray
-    errors: FloatArray
-    common: FloatArray
-    risers: FloatArray
-    riser_errors: FloatArray
-
-
-def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> _OfRoller:
-    """Solve for the loads of every lamina by the four models, and their factors."""
+    Array (quantity, model, lamina).
+    """
     # Friction changes no pressure unless it is coupled; stick and slip would only cost time.
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
+    exact = solve(case, stresses=False, accuracy=accuracy)
+    # Models are compared under the same moment: their tilts differ by the compliance of the bodies.
+    position = float(exact["load_position"]) if case.tilt else case.load_position
     endless = replace(
         case,
         body=HalfSpace(material=case.body.material),
         roller=replace(case.roller, ends="none"),
         end_distance=case.roller_start,
+        tilt=0.0,
+        load_position=position,
     )
-    results = [(each, solve(each, stresses=False, accuracy=accuracy)) for each in (endless, case)]
+    results = [(endless, solve(endless, stresses=False, accuracy=accuracy)), (case, exact)]
     solved = [lamina_factors(result, laminae=laminae) for _, result in results]
     width, plain = solved[1]["width"].values, solved[1]["load_per_length"].values
     factor, unknown = solved[1]["edge_factor"].values, [np.full_like(plain, np.nan)] * 2
-    hertz = [hertz_loads(result, each, np.linspace(*each.contact_range, plain.size + 1)) for each, result in results]
-    return _OfRoller(
-        width * np.array([plain, plain * factor, *(each.load for each in hertz)]),
-        width * np.array([*unknown, *(each.error for each in hertz)]),
-        width * np.array([*unknown, *(each.common for each in hertz)]),
-        np.array([np.ones_like(plain), factor, *(each["stress_riser"].values for each in solved)]),
-        np.array([*unknown, *(each["stress_riser_error"].values for each in solved)]),
+    hertz = [hertz_loads(result, model, np.linspace(*model.contact_range, plain.size + 1)) for model, result in results]
+    return np.array(
+        [
+            width * np.array([plain, plain * factor, *(loads.load for loads in hertz)]),
+            width * np.array([*unknown, *(loads.error for loads in hertz)]),
+            width * np.array([*unknown, *(loads.common for loads in hertz)]),
+            [np.ones_like(plain), factor, *(factors["stress_riser"].values for factors in solved)],
+            [*unknown, *(factors["stress_riser_error"].values for factors in solved)],
+        ]
     )

@@ -2,10 +2,17 @@
 
 from contactstudy.bodies import materials
 from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace, QuarterSpace
-from contactstudy.near_names import suggest
 
-__all__ = ["Body", "Counterbody", "FiniteLengthSpace", "HalfSpace", "Material", "QuarterSpace", "materials"]
-
-suggest(__name__, __all__)
+__all__ = [
+    "Body",
+    "Counterbody",
+    "FiniteLengthSpace",
+    "HalfSpace",
+    "Lubricant",
+    "Material",
+    "QuarterSpace",
+    "materials",
+]

@@ -11,18 +11,17 @@ from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-ALIGNED = 1e-6
-"""Part of a cell within which an end of the counterbody lies on a border between cells. Accuracy."""
+ALIGNED = 1e-6  # Part of a cell within which an end of the counterbody lies on a border between cells
 
 
 @dataclass(frozen=True)
 class Counterbody:
-    """The second body, seen from its own end I: what presses on the first.
+    """The second body, in coordinates from its end I: it presses on the first.
 
     Parameters
     ----------
     body : Body
-        A half-space, or a finite-length space with ends of its own.
+        A half-space, or a finite-length space.
     start : float
         Position of its end I on the first body's x axis, metres.
     """
@@ -31,14 +30,13 @@ class Counterbody:
     start: float = 0.0
 
     def __post_init__(self) -> None:
-        """Refuse bodies that cannot be placed."""
         if not isinstance(self.body, HalfSpace | FiniteLengthSpace):
             raise InvalidInputError("counterbody", self.body, "a HalfSpace or a FiniteLengthSpace")
 
     def own_grid(self, grid: Grid) -> Grid:
         """Cells in the counterbody's own coordinate that span it if it has ends.
 
-        On uniform cells they are about as large as those of `grid`; else they are those of `grid`, which then has
+        On uniform cells they are about as large as the cells of `grid`; else they equal the cells of `grid`, with
         borders at the ends of both bodies, and few more where the counterbody overhangs.
         """
         if not isinstance(self.body, FiniteLengthSpace):

@@ -9,24 +9,12 @@ import numpy as np
 
 
 def line_half_width(max_pressure: float, radius: float, modulus: float) -> float:
-    """Half-width ``a = 2 p0 R / E*`` of the line contact with peak pressure `max_pressure`, metres.
-
-    Examples
-    --------
-    >>> round(1e6 * line_half_width(1.5e9, 5e-3, 230.77e9), 2)
-    65.0
-    """
+    """Half-width ``a = 2 p0 R / E*`` of the line contact with peak pressure `max_pressure`, metres."""
     return 2 * max_pressure * radius / modulus
 
 
 def line_max_pressure(load_per_length: float, radius: float, modulus: float) -> float:
-    """Peak pressure ``p0 = sqrt(q E* / (pi R))`` of the line contact under `load_per_length` (N/m), Pa.
-
-    Examples
-    --------
-    >>> round(line_max_pressure(line_load(1.5e9, 5e-3, 230.77e9), 5e-3, 230.77e9) / 1e9, 6)
-    1.5
-    """
+    """Peak pressure ``p0 = sqrt(q E* / (pi R))`` of the line contact under `load_per_length` (N/m), Pa."""
     return float(np.sqrt(load_per_length * modulus / (np.pi * radius)))
 
 

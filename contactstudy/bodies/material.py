@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
-from contactstudy.arrays.html_table import html_table
-from contactstudy.bodies.words import material_rows
 from contactstudy.errors import InvalidInputError
 
 
@@ -42,7 +40,6 @@ class Material:
     poisson: float
 
     def __post_init__(self) -> None:
-        """Check the constants."""
         checks.store(self, young=checks.positive("young", self.young, "Pa"))
         poisson = checks.finite("poisson", self.poisson)
         if not -1 < poisson <= 0.5:
@@ -51,9 +48,6 @@ class Material:
 
     def __repr__(self) -> str:
         return f"Material(E = {quantity(self.young, 'Pa')}, nu = {self.poisson:g})"
-
-    def _repr_html_(self) -> str:
-        return html_table([("Material", material_rows(self))])
 
     @property
     def shear_modulus(self) -> float:
@@ -67,13 +61,6 @@ class Material:
 
 
 def contact_modulus(first: Material, second: Material | None = None) -> float:
-    """Contact modulus ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2`` of two bodies, Pa; the second rigid if None.
-
-    Examples
-    --------
-    >>> steel = Material(young=210e9, poisson=0.3)
-    >>> round(contact_modulus(steel, steel) / contact_modulus(steel), 6)
-    0.5
-    """
-    own = first.plane_strain_modulus
-    return own if second is None else 1 / (1 / own + 1 / second.plane_strain_modulus)
+    """Contact modulus ``1 / E* = (1 - nu1**2) / E1 + (1 - nu2**2) / E2``, Pa; the second body is rigid if None."""
+    modulus = first.plane_strain_modulus
+    return modulus if second is None else 1 / (1 / modulus + 1 / second.plane_strain_modulus)

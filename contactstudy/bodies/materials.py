@@ -1,7 +1,7 @@
 """Elastic constants of materials that rolling contacts are made of, each with its source in `SOURCES`.
 
-Moduli of steels differ by one or two percent between sources, and pressures by half of that. What a test certificate or
-a supplier states for the steel at hand goes before these.
+Moduli of steels differ by one or two percent between sources, and pressures by half of this difference. Prefer
+the test certificate of the steel at hand.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ SOURCES = {
     "GEAR_STEEL": "steel of gears. ISO 6336-2, elasticity factor of steel on steel, 189.8 (N/mm2)**0.5",
     "STRUCTURAL_STEEL": "structural steel. EN 1993-1-1, 3.2.6",
 }
-"""What each material is, and where its constants are from."""
+"""Description and source of each material."""
 
 
 def documented() -> str:
@@ -40,10 +40,3 @@ def documented() -> str:
         material: Material = globals()[name]
         rows.append(f"| `cs.materials.{name}` | {1e-9 * material.young:g} | {material.poisson:g} | {source} |")
     return "\n".join(rows)
-
-
-def __getattr__(name: str) -> Material:
-    """Say which materials there are when another is asked for."""
-    raise AttributeError(
-        f"no material {name!r}; there are {', '.join(SOURCES)}, and Material(young, poisson)", name=name
-    )

@@ -1,6 +1,6 @@
 """The elastic bodies: where they have free end faces.
 
-Axes are those of the whole package: x along the roller's axis, y the rolling and sliding direction, z into the
+Axes of the package: x along the roller's axis, y the rolling and sliding direction, z into the
 body from its loaded top ``z = 0``. No body has a boundary in y or at depth.
 """
 
@@ -14,53 +14,29 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.html_table import html_table
 from contactstudy.bodies.material import Material
-from contactstudy.bodies.words import body_words, material_rows
 from contactstudy.errors import InvalidInputError
 
 Extent = tuple[float, float]
 
 
 class FreedEnds(NamedTuple):
-    """Ends from which the normal stress is removed that mirroring leaves there.
+    """Ends whose normal stress, left by the mirrored loads, is removed."""
 
-    Attributes
-    ----------
-    length : float
-        Distance between the ends, metres; infinite for one end.
-    mirrored_once : bool
-        Whether the loads have one pair of images only, instead of all.
-    """
-
-    length: float
-    mirrored_once: bool = False
+    length: float  # m; infinite for one end
+    mirrored_once: bool = False  # one pair of images instead of all
 
 
 class Part(NamedTuple):
-    """One of the solutions whose weighted sum is a body's: a half-space with the load mirrored in its ends.
-
-    Attributes
-    ----------
-    weight : float
-        Its share.
-    extent : tuple of float
-        Where the mirrors stand; infinite for none.
-    freed : FreedEnds or None
-        The ends that are freed along with this part, if any.
-    """
+    """One of the solutions whose weighted sum is a body's: a half-space with the load mirrored in its ends."""
 
     weight: float
-    extent: Extent
+    extent: Extent  # positions of the mirrors; infinite for none
     freed: FreedEnds | None = None
 
 
-END_TOLERANCE = 1e-3
-"""Distance, over a cell, between the grid's edge and the body's end that rounding may leave. Accuracy."""
-
+# Ratio of a cell's sides, and width of the window over the body's length, beyond which a unit is wrong
 LONGEST_CELL, WIDEST_WINDOW = 1e6, 1e4
-"""Ratio of a cell's sides, and width of the window over the body's length, beyond which a unit is wrong."""
-
 WHOLE_LINE: Extent = (-np.inf, np.inf)
 
 
@@ -71,26 +47,31 @@ class Body:
     Parameters
     ----------
     material : Material
-        What the body is made of.
+        Material of the body.
+    reference_depth : float, optional
+        Depth (m) of the material line along x, below the load, to which approach and tilt of a contact refer, such as
+        the axis of a roller or the thickness of a ring. Default: one length between two free ends, else far away.
     """
 
     material: Material
+    reference_depth: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the material, and that it is one of the kinds: this one has no ends and no model."""
         if type(self) in (Body, EndedBody):
             raise InvalidInputError("body", type(self).__name__, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
         checks.instance("material", self.material, Material, "a Material")
+        if self.reference_depth is not None:
+            depth = checks.positive("reference_depth", self.reference_depth, "metres")
+            checks.store(self, reference_depth=depth)
 
     def __repr__(self) -> str:
         low, high = self.extent
-        said = [f"L = {quantity(high, 'm')}"] if np.isfinite(high - low) else []
-        said.append(f"E = {quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
+        values = [f"L = {quantity(high, 'm')}"] if np.isfinite(high - low) else []
+        values.append(f"E = {quantity(self.material.young, 'Pa')}, nu = {self.material.poisson:g}")
+        if self.reference_depth is not None:
+            values.append(f"reference depth {quantity(self.reference_depth, 'm')}")
         model = getattr(self, "model", "exact")
-        return f"{type(self).__name__}({', '.join(said if model == 'exact' else [*said, f'model={model!r}'])})"
-
-    def _repr_html_(self) -> str:
-        return html_table([("Body", [("kind", body_words(self))]), ("Material", material_rows(self.material))])
+        return f"{type(self).__name__}({', '.join(values if model == 'exact' else [*values, f'model={model!r}'])})"
 
     @property
     def extent(self) -> Extent:
@@ -106,7 +87,8 @@ class Body:
         """Raise unless a grid covers the body's x from its end, or from end to end, and is in proportion."""
         low, high = self.extent
         start, stop = grid.x_range
-        tolerance = END_TOLERANCE * grid.dx
+        # Distance, over a cell, between the grid's edge and the body's end that rounding may leave
+        tolerance = 1e-3 * grid.dx
         if np.isfinite(low) and abs(start - low) > tolerance:
             raise InvalidInputError("x", f"cells from {start:g} m", f"cells that begin at the free end, {low:g} m")
         if np.isfinite(high) and abs(stop - high) > tolerance:
@@ -120,10 +102,17 @@ class Body:
             raise InvalidInputError("y", f"a window of {window:.3g} m", allowed)
 
     @property
+    def depth(self) -> float:
+        """Depth of the line to which approach and tilt refer, metres; infinite far away."""
+        if self.reference_depth is not None:
+            return self.reference_depth
+        return self.extent[1] - self.extent[0]
+
+    @property
     def unbounded_row(self) -> float:
         """Distance between the ends of a row of images without end, metres; infinite if the images are finite.
 
-        Far from such a row the displacement grows like a logarithm, so it has no absolute value.
+        Far from such a row the displacement grows like a logarithm, without an absolute value.
         """
         return min(part.extent[1] - part.extent[0] for part in self.parts)
 
@@ -159,7 +148,6 @@ class EndedBody(Body):
     model: str = "exact"
 
     def __post_init__(self) -> None:
-        """Check material and model."""
         super().__post_init__()
         checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
@@ -179,15 +167,9 @@ class EndedBody(Body):
 
 
 def guilbault_factor(poisson: float) -> float:
-    """Guilbault's factor on mirrored loads, ``1.29 - (0.08 - 0.5 nu) / (1 - nu)``.
+    """Guilbault's factor on mirrored loads, ``1.29 - (0.08 - 0.5 nu) / (1 - nu)`` (J. Tribology 133 (2011) 031402).
 
-    Quoted second-hand from R. Guilbault, A fast correction for elastic quarter-space applied to 3D modeling of edge
-    contact problems, J. Tribology 133 (2011) 031402; compare with the exact ends before relying on it.
-
-    Examples
-    --------
-    >>> round(guilbault_factor(0.3), 3)
-    1.39
+    Quoted second-hand: compare with the exact ends before relying on it.
     """
     return 1.29 - (0.08 - 0.5 * poisson) / (1 - poisson)
 
@@ -199,7 +181,7 @@ class QuarterSpace(EndedBody):
     Parameters
     ----------
     material : Material
-        What the body is made of.
+        Material of the body.
     model : str
         How the end is treated, see `EndedBody`; "exact" unless a comparison is wanted.
 
@@ -210,7 +192,6 @@ class QuarterSpace(EndedBody):
     """
 
     def __post_init__(self) -> None:
-        """Check material and model."""
         super().__post_init__()
         if self.model == "single-mirror":
             raise InvalidInputError(
@@ -232,7 +213,7 @@ class FiniteLengthSpace(EndedBody):
     length : float
         Distance between the free ends (``L_f``), metres.
     material : Material
-        What the body is made of.
+        Material of the body.
     model : str
         How the ends are treated, see `EndedBody`; "exact" unless a comparison is wanted.
 
@@ -250,7 +231,6 @@ class FiniteLengthSpace(EndedBody):
     length: float
 
     def __post_init__(self) -> None:
-        """Check length and material."""
         super().__post_init__()
         checks.store(self, length=checks.positive("length", self.length, "metres"))
 

@@ -8,38 +8,41 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies import hertz
 from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.bodies.material import contact_modulus
 from contactstudy.bodies.models import Body
-from contactstudy.case.doubts import question
-from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
-from contactstudy.case.gap import gap_on_cells
-from contactstudy.case.motion import KINDS, MOTIONS, Motion, Sliding
-from contactstudy.case.roller import Roller
-from contactstudy.case.words import as_html, in_lines
+from contactstudy.case.motion import (
+    KINDS,
+    MOTIONS,
+    AxialFriction,
+    Friction,
+    Motion,
+    Sliding,
+    check_coupled,
+    checked_friction,
+    on_columns,
+)
+from contactstudy.case.roller import Roller, gap_on_cells
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import SlopeJumps, as_shape
+from contactstudy.profiles.straight import Chamfer, Cylinder
 
-LARGEST_TILT = 0.1
-"""Largest of the small angles for which a tilt is a height proportional to the distance, radians."""
-
-INCLINED_POINTS = 41
-"""Points along the axis from which the mean inclination of the roller is taken."""
-
+LARGEST_TILT = 0.1  # Largest tilt, radians: its height is proportional to the distance
+INCLINED_POINTS = 41  # Points along the axis that determine the mean inclination of the roller
 SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-7, 0.5
-"""Hertz half-widths over the roller's radius outside which a unit is wrong rather than the load low or high: the first
-means 10 kPa on steel."""
+"""Hertz half-widths over the roller's radius beyond which a unit is wrong: the first is 10 kPa on steel."""
 
 SHALLOWEST = 1e-12
-"""Depth of the approach beyond first touch, over the roller's radius, below which rounding decides what touches."""
+"""Depth of the approach beyond first touch, over the roller's radius, below which rounding determines the contact."""
 
-TOUCH_POINTS = 2001
-"""Points along the axis among which first touch is sought."""
-
+TOUCH_POINTS = 2001  # Points along the axis among which first touch is sought
 SHORTEST, LONGEST = 1e-4, 1e7
-"""Lengths of contact and body over the Hertz half-width outside which, likewise, a unit is wrong."""
+"""Lengths of contact and body over the Hertz half-width outside the usual range: a unit is wrong."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,7 +50,7 @@ class Case:
     """A roller pressed on a body, rolling and sliding along y.
 
     Exactly one of `max_pressure`, `load` and `approach` is given. Pressure and load follow from one another by the
-    Hertz line contact of the same load per length of contact. Under an approach both follow from the solution.
+    Hertz line contact of the same load per length of contact; under an approach both follow from the solution.
 
     Parameters
     ----------
@@ -60,8 +63,9 @@ class Case:
     load : float, optional
         Normal load ``W``, N.
     approach : float, optional
-        How far the roller is pressed down at its mid-length, from where its profile's drop of 0 touches the undeformed
-        top, metres; between free ends relative to the top far away along y, see `reference` of `approach` in results.
+        Displacement of the roller towards the body at its mid-length, from where its profile's drop of 0 touches the
+        undeformed top, metres; between free ends relative to the top far away along y, see `reference` of `approach` in
+        results.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``q = f p`` along +y; in any other motion ``f p`` is the bound on it.
@@ -71,24 +75,24 @@ class Case:
     coupled : bool
         Whether the friction also displaces the surface normally and so changes the pressure.
     tilt : float
-        Misalignment, radians: by how much the roller is inclined about its mid-length against the undeformed top,
-        positive if larger x is pressed deeper. Whatever moment holds it there is applied.
+        Misalignment about the roller's mid-length against the undeformed top, radians, positive if larger x is pressed
+        deeper. The moment that holds it is applied.
     load_position : float, optional
-        Position x on which the load acts, metres: a roller that is free to tilt takes the inclination at which the
-        pressure balances it, so `tilt` is left out. Default: the roller keeps its tilt.
+        Position x on which the load acts, metres: the roller takes the inclination at which the pressure balances it,
+        so `tilt` is left out. Default: the roller keeps its tilt.
     motion : Sliding, Shift or Rolling
-        How the roller moves against the body. Default: full sliding.
+        Motion and speed of the roller against the body. Default: full sliding.
+    body_edge : Cylinder or Chamfer, optional
+        Edge radius or chamfer of the body's top at its free ends, for the gap; default: sharp. Where the roller
+        overhangs, this edge is pressed.
+    lubricant : Lubricant, optional
+        Lubricant between the surfaces, for `solve_film`; the dry contact does not depend on it.
 
     Raises
     ------
     InvalidInputError
         If a value is out of range, not exactly one of pressure, load and approach is given, or the roller misses the
-        body. What needs the load raises it for a case that prescribes the approach.
-
-    Warns
-    -----
-    MagnitudeWarning
-        If a value is of a size that is mostly a mistake in the unit, such as a length in millimetres.
+        body. Functions that require the load raise it for a case with a prescribed approach.
 
     Examples
     --------
@@ -110,6 +114,8 @@ class Case:
     load_position: float | None = None
     motion: Motion = field(default=Sliding())
     approach: float | None = None
+    lubricant: Lubricant | None = None
+    body_edge: Cylinder | Chamfer | None = None
 
     def __post_init__(self) -> None:
         """Check the parameters."""
@@ -119,21 +125,39 @@ class Case:
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
         checks.instance("motion", self.motion, KINDS, MOTIONS)
+        if self.lubricant is not None:
+            checks.instance("lubricant", self.lubricant, Lubricant, "a Lubricant(...), or None")
+        if self.body_edge is not None:
+            kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
+            checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer), kinds)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         friction = checked_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)
         checks.store(self, friction=friction, tilt=small_tilt(self.tilt))
-        self._check_place()
+        self._check_position()
         self._check_load()
-        question(self)
 
     def __repr__(self) -> str:
-        return in_lines(self)
+        if self.approach is not None:
+            sizes = {"approach": (self.approach, "m")}
+        else:
+            p0, a = self.hertz_max_pressure, self.hertz_half_width
+            sizes = {"W": (self.normal_load, "N"), "p0": (p0, "Pa"), "a": (a, "m")}
+        amounts = ", ".join(f"{name} = {quantity(*size)}" for name, size in sizes.items())
+        motion = "full sliding along +y" if isinstance(self.motion, Sliding) else repr(self.motion)
+        if isinstance(self.friction, AxialFriction):
+            friction = f"friction from {min(self.friction.values):g} to {max(self.friction.values):g}"
+        else:
+            friction = f"friction {self.friction:g}"
+        details = [f"{friction}{', coupled' if self.coupled else ''}, {motion}"]
+        if self.tilt:
+            details.append(f"tilt {quantity(self.tilt, 'rad')}")
+        if self.load_position is not None:
+            details.append(f"load at x = {quantity(self.load_position, 'm')}")
+        heading = f"Case: {amounts}, e = {quantity(self.roller_start, 'm')}"
+        return "\n  ".join([heading, repr(self.roller), repr(self.body), "; ".join(details)])
 
-    def _repr_html_(self) -> str:
-        return as_html(self)
-
-    def _check_place(self) -> None:
+    def _check_position(self) -> None:
         """Raise unless the roller lies over the body, and the load on both."""
         if self.end_distance is not None:
             checks.store(self, end_distance=checks.finite("end_distance", self.end_distance, "metres"))
@@ -183,9 +207,9 @@ class Case:
 
     def _check_load(self) -> None:
         """Raise unless one of pressure, load and approach is given, and of a size that a contact can have."""
-        given = (self.max_pressure, self.load, self.approach)
-        if sum(value is not None for value in given) != 1:
-            raise InvalidInputError("max_pressure, load, approach", given, "exactly one of the three, the others None")
+        loads = (self.max_pressure, self.load, self.approach)
+        if sum(value is not None for value in loads) != 1:
+            raise InvalidInputError("max_pressure, load, approach", loads, "exactly one of the three, the others None")
         if self.approach is not None:
             self._check_approach()
             return
@@ -215,8 +239,8 @@ class Case:
 
     def _check_approach(self) -> None:
         """Raise unless the approach is one number that presses the roller, and no more than its radius."""
-        given: object = self.approach
-        if isinstance(given, (list, tuple)) or (isinstance(given, (np.ndarray, xr.DataArray)) and given.ndim):
+        value: object = self.approach
+        if isinstance(value, (list, tuple)) or (isinstance(value, (np.ndarray, xr.DataArray)) and value.ndim):
             raise InvalidInputError(
                 "approach",
                 self.approach,
@@ -248,6 +272,29 @@ class Case:
         """Return the gap before deformation along the roller's axis, metres, at positions `x`; beyond it as there."""
         half = 0.5 * self.roller.length
         return self._clearance(np.clip(x - self.roller_middle, -half, half), np.zeros(1))[:, 0]
+
+    @property
+    def slope_jumps(self) -> SlopeJumps:
+        """Corners of the roller's generatrix where it faces the body: positions x, metres, and jumps of the slope."""
+        corners = as_shape(self.roller.profile).slope_jumps(self.roller.length)
+        corners = SlopeJumps(self.roller_middle + corners.positions, corners.jumps)
+        if self.body_edge is not None:
+            middle, length = self._top
+            edges = as_shape(self.body_edge).slope_jumps(length)
+            corners = SlopeJumps.merged(corners, SlopeJumps(middle + edges.positions, edges.jumps))
+        start, stop = self.contact_range
+        facing = (corners.positions > start) & (corners.positions < stop)
+        return SlopeJumps(corners.positions[facing], corners.jumps[facing])
+
+    @property
+    def nodes(self) -> FloatArray:
+        """Positions x between which the generatrix is smooth, metres, where it faces the body."""
+        x = self.roller_middle + as_shape(self.roller.profile).nodes(self.roller.length)
+        if self.body_edge is not None:
+            middle, length = self._top
+            x = np.union1d(x, middle + as_shape(self.body_edge).nodes(length))
+        start, stop = self.contact_range
+        return np.asarray(x[(x > start) & (x < stop)])
 
     def friction_on(self, x: FloatArray) -> float | FloatArray:
         """Return the coefficient of friction on columns of cells at `x`: a number or an array (x, 1)."""
@@ -322,16 +369,23 @@ class Case:
         return self.contact_length * hertz.line_load(self.hertz_max_pressure, self.roller.radius, self.modulus)
 
     def gap(self, grid: Grid) -> FloatArray:
-        """Return the gap before deformation on the cells of `grid`, metres; infinite beyond the roller.
-
-        It is that at the centres of uniform cells, and the mean along x over others. A tilted roller turns about its
-        mid-length, where its clearance stays as it is.
-        """
+        """Return the gap before deformation, metres: at centres of uniform cells, else means along x."""
         return gap_on_cells(self._clearance, grid, self.roller_middle, 0.5 * self.roller.length)
+
+    @property
+    def _top(self) -> tuple[float, float]:
+        """Middle and length of the body's top, metres; the far end of a quarter-space lies beyond the roller."""
+        low, high = self.body.extent
+        high = high if np.isfinite(high) else 3 * (self.roller_start + self.roller.length)
+        return 0.5 * (low + high), high - low
 
     def _clearance(self, from_middle: FloatArray, y: FloatArray) -> FloatArray:
         """Height of the roller at distances from its mid-length."""
         clearance = self.roller.clearance(from_middle, y)
+        if self.body_edge is not None and np.isfinite(self.body.extent[0]):
+            middle, length = self._top
+            x = np.clip(self.roller_middle + from_middle - middle, -0.5 * length, 0.5 * length)
+            clearance = clearance + self.body_edge.drop(x, length)[:, None]
         return clearance - self.tilt * from_middle[:, None] if self.tilt else clearance
 
 

@@ -1,4 +1,4 @@
-"""The cells that suit a case."""
+"""Settings of the solution of a case, without the solver: plans of studies use them."""
 
 from __future__ import annotations
 
@@ -14,16 +14,30 @@ from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError, WindowError
 
-Result = TypeVar("Result")
-GridOrNone = TypeVar("GridOrNone")
-"""A grid, or None for columns that the solver refines."""
+ACCURACY, TOLERANCE = 0.01, 1e-6  # Default error of the contact over the peak, and default tolerance of its iteration
+ACCURACIES = (1e-3, 0.1)  # Accuracies that the refinement reaches and that mean something
 
+
+def check_accuracy(value: object) -> float:
+    """Return an accuracy that the refinement can reach, or raise."""
+    accuracy = checks.positive("accuracy", value)
+    least, most = ACCURACIES
+    if not least <= accuracy <= most:
+        raise InvalidInputError("accuracy", accuracy, f"from {least:g} to {most:g} of the peak pressure")
+    return accuracy
+
+
+def solver_settings(*, tolerance: float = TOLERANCE, stresses: bool = True) -> None:
+    """Take the keywords of :func:`contactstudy.solve` that a study's case may set, with the same defaults."""
+
+
+Result = TypeVar("Result")
+GridOrNone = TypeVar("GridOrNone")  # A grid, or None for columns that the solver refines
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn where none is given: a short or a tilted
 contact is wider than the line contact of the same load. The first is the default of :func:`choose_grid`."""
 
-MOST_EXTRA = 1.25
-"""How many times the cells asked for a grid may have to meet the ends of an elastic roller."""
+MOST_EXTRA = 1.25  # Ratio of the cells to the requested cells, up to which the ends of an elastic roller are met
 
 
 def columns_of(case: Case, edges: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
@@ -40,9 +54,10 @@ def choose_grid(
 ) -> Grid:
     """Grid that suits a case.
 
-    A finite body is tiled from end to end; where a body has no end the grid stops `margin` half-widths beyond the
-    roller. The numbers of cells are rounded up to sizes that the fast Fourier transform likes; of these, for an elastic
-    roller with ends of its own, the one that puts its ends nearest to borders between cells.
+    A finite body is tiled from end to end; beyond an open end the grid stops `margin` half-widths beyond the roller.
+    The numbers of cells are rounded up to sizes that the fast Fourier transform likes; of these, for an elastic roller
+    of finite length, the number with its ends nearest to borders between cells. A rigid roller's end between two
+    borders of cells is moved to the nearer one, by at most half a cell.
 
     Parameters
     ----------
@@ -63,11 +78,6 @@ def choose_grid(
     ------
     InvalidInputError
         If a setting is not positive, or so many cells would be needed that a unit must be wrong.
-
-    Notes
-    -----
-    A rigid roller's end between two borders of cells is moved to the nearer one, by at most half a cell. Where that
-    matters, as in a fine sweep over the end distance, take more cells per half-width or a `Grid` of your own.
 
     Examples
     --------
@@ -106,49 +116,25 @@ def choose_grid(
         candidates = [counts[0]]
         while candidates[-1] < MOST_EXTRA * counts[0]:
             candidates.append(next_fast_len(candidates[-1] + 1))
-        at = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
-        counts[0] = min(candidates, key=lambda cells: float(np.abs(at * cells - np.round(at * cells)).max().round(3)))
+        ends = (np.array(case.contact_range) - x_range[0]) / (x_range[1] - x_range[0])
+        counts[0] = min(
+            candidates, key=lambda cells: float(np.abs(ends * cells - np.round(ends * cells)).max().round(3))
+        )
     return Grid(x_range, (-half_window, half_window), *counts)
 
 
 def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> Iterator[Grid]:
-    """Grids of wider and wider windows, of which the first that holds the contact is to be taken.
-
-    Parameters
-    ----------
-    case : Case
-        The case.
-    cells_x, cells_y : float
-        As for :func:`choose_grid`.
-
-    Yields
-    ------
-    Grid
-
-    Examples
-    --------
-    >>> from contactstudy import FiniteLengthSpace, Material, Roller
-    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
-    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9)
-    >>> [round(grid.y_range[1] / case.hertz_half_width) for grid in widening_grids(case)]
-    [2, 3, 5, 8]
-    """
+    """Grids of increasing windows; the first that contains the contact is the right one."""
     for window in WINDOWS:
         yield choose_grid(case, cells_x=cells_x, cells_y=cells_y, window=window, margin=2 * window)
 
 
-def first_that_holds(grids: Iterable[GridOrNone], solved: Callable[[GridOrNone], Result]) -> Result:
-    """Return ``solved(grid)`` of the first grid whose window the contact does not leave.
-
-    Raises
-    ------
-    WindowError
-        Of the last grid, if no window holds the contact.
-    """
-    left = WindowError("there is no grid to solve the contact on")
+def first_sufficient(grids: Iterable[GridOrNone], solved: Callable[[GridOrNone], Result]) -> Result:
+    """Return ``solved(grid)`` of the first grid whose window the contact does not leave; else raise its last error."""
+    error_of_last = WindowError("there is no grid to solve the contact on")
     for grid in grids:
         try:
             return solved(grid)
         except WindowError as error:
-            left = error
-    raise left
+            error_of_last = error
+    raise error_of_last

@@ -3,20 +3,71 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.variables import in_si
+from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
+
+
+class SurfaceSpeeds(NamedTuple):
+    """Speeds of both surfaces along +y relative to the contact, m/s."""
+
+    body: float
+    roller: float
+
+    @property
+    def entrainment(self) -> float:
+        """Mean of both speeds, m/s: positive if the lubricant enters at negative y."""
+        return 0.5 * (self.body + self.roller)
+
+    @property
+    def slide_roll_ratio(self) -> float:
+        """Difference of the speeds over their mean."""
+        return (self.roller - self.body) / self.entrainment
 
 
 @dataclass(frozen=True, kw_only=True)
 class Sliding:
     """Full sliding: the traction is the friction times the pressure, along +y.
 
+    Parameters
+    ----------
+    body_speed, roller_speed : float, optional
+        Speeds of the surfaces along +y relative to the contact, m/s: both or neither. Heat and film depend on them, the
+        contact does not. A roller that slides over a body which rolls past at V has ``body_speed = -V``.
+
+    Raises
+    ------
+    InvalidInputError
+        If a speed is not a finite number, or one is missing.
+
     Examples
     --------
-    >>> Sliding()
-    Sliding()
+    >>> Sliding(body_speed=2.0, roller_speed=3.0).speeds.slide_roll_ratio
+    0.4
     """
+
+    body_speed: float | None = None
+    roller_speed: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the speeds."""
+        speeds = {name: getattr(self, name) for name in ("body_speed", "roller_speed")}
+        if all(value is None for value in speeds.values()):
+            return
+        checks.store(self, **{name: checks.finite(name, value, "m/s") for name, value in speeds.items()})
+
+    @property
+    def speeds(self) -> SurfaceSpeeds | None:
+        """Speeds of the surfaces."""
+        if self.body_speed is None or self.roller_speed is None:
+            return None
+        return SurfaceSpeeds(self.body_speed, self.roller_speed)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -59,13 +110,17 @@ class Shift:
         """Axes along which the force is prescribed."""
         return tuple(name for name in ("x", "y") if getattr(self, f"force_{name}") is not None)
 
+    @property
+    def speeds(self) -> None:
+        """Speeds of the surfaces: a shift has none."""
+
 
 MODELS = ("exact", "fastsim")
 
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling:
-    """Steady rolling along y, in which the contact moves along +y over both surfaces, with Coulomb friction.
+    """Steady rolling: the contact moves along +y over both surfaces, with Coulomb friction.
 
     A creepage is the velocity of the roller's surface relative to the body's, over the rolling speed; the spin turns
     x to y, about the roller's middle. Each is prescribed, or the force or moment that it makes.
@@ -80,9 +135,10 @@ class Rolling:
         Force on the body, N, instead of the creepage along that axis.
     moment_z : float, optional
         Moment on the body about the roller's middle, N m, instead of the spin.
-    model : str
-        "exact", or "fastsim" for a comparison: strips without an influence of neighbours and free ends. It takes
-        creepages only.
+    speed : float, optional
+        Speed with which the contact moves over both surfaces, m/s; for heat and film only.
+    model : {"exact", "fastsim"}
+        "fastsim", for a comparison: strips without an influence of neighbours and free ends, under creepages only.
 
     Raises
     ------
@@ -101,12 +157,15 @@ class Rolling:
     force_x: float | None = None
     force_y: float | None = None
     moment_z: float | None = None
+    speed: float | None = None
     model: str = "exact"
 
     def __post_init__(self) -> None:
         """Check the values."""
         checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
+        if self.speed is not None:
+            checks.store(self, speed=checks.positive("speed", self.speed, "m/s"))
         _check_either(self, "longitudinal_creepage", "force_y", "", "N")
         _check_either(self, "lateral_creepage", "force_x", "", "N")
         _check_either(self, "spin", "moment_z", "rad/m", "N m")
@@ -115,20 +174,28 @@ class Rolling:
 
     @property
     def modes(self) -> tuple[str, ...]:
-        """What is prescribed by its force: "x", "y" or "spin"."""
-        given = {"x": self.force_x, "y": self.force_y, "spin": self.moment_z}
-        return tuple(name for name, value in given.items() if value is not None)
+        """Motions with a prescribed force: "x", "y" or "spin"."""
+        forces = {"x": self.force_x, "y": self.force_y, "spin": self.moment_z}
+        return tuple(name for name, value in forces.items() if value is not None)
+
+    @property
+    def speeds(self) -> SurfaceSpeeds | None:
+        """Speeds of the surfaces, opposite to the contact's; a free creepage counts as 0."""
+        return None if self.speed is None else self.speeds_at(self.longitudinal_creepage or 0.0)
+
+    def speeds_at(self, creepage: float) -> SurfaceSpeeds:
+        """Speeds of the surfaces at a longitudinal creepage."""
+        speed = checks.positive("motion.speed", self.speed, "m/s")
+        return SurfaceSpeeds(-speed * (1 + 0.5 * creepage), -speed * (1 - 0.5 * creepage))
 
 
-Motion = Sliding | Shift | Rolling
-"""Any of them."""
-
+Motion = Sliding | Shift | Rolling  # Any motion
 KINDS, MOTIONS = (Sliding, Shift, Rolling), "a Sliding(), a Shift(...) or a Rolling(...)"
-"""What a motion can be, and how messages say it."""
+"""Classes of motions, and their text in messages."""
 
 
 def _check_either(motion: Shift | Rolling, moved: str, force: str, unit: str, force_unit: str) -> None:
-    """Check a motion and its force, of which one is given at most; without either it does not move so."""
+    """Check a motion and its force, at most one of them; the motion is 0 without both."""
     amount, resultant = getattr(motion, moved), getattr(motion, force)
     if amount is not None and resultant is not None:
         raise InvalidInputError(
@@ -138,3 +205,55 @@ def _check_either(motion: Shift | Rolling, moved: str, force: str, unit: str, fo
         checks.store(motion, **{force: checks.finite(force, resultant, force_unit)})
     else:
         checks.store(motion, **{moved: checks.finite(moved, 0.0 if amount is None else amount, unit)})
+
+
+@dataclass(frozen=True)
+class AxialFriction:
+    """Friction that varies along the axis: linear between positions (m), constant beyond the first and the last."""
+
+    x: tuple[float, ...]
+    values: tuple[float, ...]
+
+    def at(self, x: FloatArray) -> FloatArray:
+        """Coefficient at positions `x`: array (x, 1)."""
+        return np.asarray(np.interp(x, self.x, self.values))[:, None]
+
+    @property
+    def least(self) -> float:
+        """Smallest coefficient."""
+        return min(self.values)
+
+
+Friction = float | AxialFriction  # Friction of a case
+
+
+def checked_friction(friction: object) -> Friction:
+    """Return a number or an `AxialFriction` from a number or a DataArray along x."""
+    if isinstance(friction, AxialFriction):
+        return friction
+    if not isinstance(friction, xr.DataArray) or not friction.dims:
+        return checks.finite("friction", friction)
+    if friction.dims != ("x",) or "x" not in friction.coords:
+        raise InvalidInputError("friction.dims", friction.dims, "('x',) with the coordinate x, metres, or a number")
+    friction = in_si("friction", friction, "1")
+    x = checks.coordinates("friction.x", friction["x"].values)
+    values = checks.coordinates("friction", friction.values, "1")
+    if (np.diff(x) <= 0).any():
+        raise InvalidInputError("friction.x", x.tolist(), "increasing (metres)")
+    return AxialFriction(tuple(x.tolist()), tuple(values.tolist()))
+
+
+def on_columns(friction: Friction, x: FloatArray) -> float | FloatArray:
+    """Coefficient on columns of cells at `x`: a number or an array (x, 1)."""
+    return friction.at(x) if isinstance(friction, AxialFriction) else friction
+
+
+def check_coupled(friction: Friction, motion: Motion, *, coupled: bool) -> None:
+    """Raise if a motion cannot have this friction, or if it cannot displace the surface normally."""
+    least = friction.least if isinstance(friction, AxialFriction) else friction
+    if not isinstance(motion, Sliding):
+        if least < 0:
+            allowed = "not below zero with stick and slip: the slip turns the traction round"
+            raise InvalidInputError("friction", least, allowed)
+    elif coupled and isinstance(friction, AxialFriction):
+        raise InvalidInputError("coupled", True, "False in full sliding with friction that varies along the axis")

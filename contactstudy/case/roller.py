@@ -1,20 +1,48 @@
-"""The roller that is pressed into the body."""
+"""Gap before deformation on cells: at the centres of uniform ones, the mean along x over others."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace, HalfSpace
-from contactstudy.case.words import roller_as_html
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Cylinder, Profile, local_radius
 from contactstudy.profiles.base import checked_drop, in_words
+
+GAP_NODES = 6  # Gauss points over the width of a cell for the mean gap. Accuracy
+ROUNDING = 1e-9  # Part of a cell that is rounding. Accuracy
+Clearance = Callable[[FloatArray, FloatArray], FloatArray]
+"""Height of a roller (x, y) at distances from its mid-length and from its centre line; infinite beyond its ends."""
+
+
+def onto_ends(from_middle: FloatArray, half: float, width: float) -> FloatArray:
+    """Distances of cells' centres from mid-length; those within rounding of the roller's ends lie under it."""
+    at_end = np.abs(np.abs(from_middle) - half) <= ROUNDING * width
+    return np.where(at_end, np.copysign(half, from_middle), from_middle)
+
+
+def gap_on_cells(clearance: Clearance, grid: Grid, middle: float, half: float) -> FloatArray:
+    """Return the gap on the cells of a grid, metres, of a roller with its mid-length and half of its length."""
+    from_middle = grid.x - middle
+    if not grid.observes_means:
+        return clearance(onto_ends(from_middle, half, grid.dx), grid.y)
+    nodes, weights = np.polynomial.legendre.leggauss(GAP_NODES)
+    within = from_middle[:, None] + 0.5 * grid.widths[:, None] * nodes
+    axial = clearance(within.ravel(), np.zeros(1)).reshape(within.shape)
+    under = np.isfinite(axial)
+    shares = np.maximum(under @ weights, weights.min())
+    mean = np.where(under, axial, 0.0) @ weights / shares
+    at_centre = clearance(from_middle, np.zeros(1))[:, 0]
+    moved = np.where(np.isfinite(at_centre), mean - np.where(np.isfinite(at_centre), at_centre, 0.0), 0.0)
+    return np.asarray(clearance(from_middle, grid.y) + moved[:, None])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,11 +56,14 @@ class Roller:
     length : float
         Length ``L_c`` from end to end, metres.
     profile : Profile
-        How the generatrix departs from the cylinder.
+        Departure of the generatrix from the cylinder.
     material : Material, optional
-        What the roller is made of; default: it is rigid.
-    ends : str
-        How an elastic roller's ends are treated: "free", as a body of its own length, or "none", as a half-space.
+        Material of the roller; default: rigid.
+    ends : {"free", "none"}
+        An elastic roller is a body of its length with free ends, or a half-space.
+    reference_depth : float, optional
+        Distance (m) from the contact to the line in an elastic roller to which approach and tilt refer, such as its
+        axis. Default: the roller's length with free ends, else far away.
 
     Raises
     ------
@@ -51,6 +82,7 @@ class Roller:
     profile: Profile = field(default_factory=Cylinder)
     material: Material | None = None
     ends: str = "free"
+    reference_depth: float | None = None
 
     def __post_init__(self) -> None:
         """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
@@ -61,6 +93,11 @@ class Roller:
             checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")
         checks.instance("ends", self.ends, str, "a name")
         checks.known_name("ends", self.ends, ("free", "none"))
+        if self.reference_depth is not None:
+            depth = checks.positive("reference_depth", self.reference_depth, "metres")
+            checks.store(self, reference_depth=depth)
+            if self.material is None:
+                raise InvalidInputError("reference_depth", depth, "None for a rigid roller", "or give a material")
         tried = np.array([0.0, 0.25 * self.length])
         local_radius(self.profile, tried, self.length, self.radius)
         if np.isinf(checked_drop(self.profile, tried, self.length)).all():
@@ -68,32 +105,23 @@ class Roller:
 
     def __repr__(self) -> str:
         drop = float(self.profile.drop(np.array([0.5 * self.length]), self.length)[0])
-        made = "rigid" if self.material is None else f"E = {quantity(self.material.young, 'Pa')}"
+        material = "rigid" if self.material is None else f"E = {quantity(self.material.young, 'Pa')}"
         if self.material is not None and self.ends == "none":
-            made += ", as a half-space"
+            material += ", as a half-space"
         sizes = f"R = {quantity(self.radius, 'm')}, L = {quantity(self.length, 'm')}"
-        return f"Roller({sizes}, {in_words(self.profile)}, end drop {quantity(drop, 'm')}, {made})"
-
-    def _repr_html_(self) -> str:
-        return roller_as_html(self)
+        return f"Roller({sizes}, {in_words(self.profile)}, end drop {quantity(drop, 'm')}, {material})"
 
     @staticmethod
     def combined_radius(first: float, second: float) -> float:
-        """Radius that a roller on a flat body has when it stands for two curved bodies with parallel axes.
+        """Radius, metres, of a roller on a flat body with the gap of two curved bodies with parallel axes.
 
-        The gap between them is that of a roller with ``1 / R = 1 / R1 + 1 / R2`` on a plane, as far as the contact is
-        narrow against both radii.
+        ``1 / R = 1 / R1 + 1 / R2``, as far as the contact is narrow against both radii.
 
         Parameters
         ----------
         first, second : float
             Radii of curvature where they touch, metres: positive if convex, as of a roller, an inner raceway, a cam or
             a tooth's flank; negative if hollow, as of an outer raceway.
-
-        Returns
-        -------
-        float
-            Radius, metres.
 
         Raises
         ------
@@ -122,24 +150,14 @@ class Roller:
         if self.material is None:
             return None
         if self.ends == "free":
-            return FiniteLengthSpace(length=self.length, material=self.material)
-        return HalfSpace(material=self.material)
+            return FiniteLengthSpace(length=self.length, material=self.material, reference_depth=self.reference_depth)
+        return HalfSpace(material=self.material, reference_depth=self.reference_depth)
 
     def clearance(self, x: FloatArray, y: FloatArray) -> FloatArray:
-        """Height of the roller over the plane that its cylinder touches.
+        """Height (x, y) of the roller over the plane that its cylinder touches, metres; infinite beyond its ends.
 
-        The circle is taken as the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a
-        tapered roller.
-
-        Parameters
-        ----------
-        x, y : array
-            Distances from the roller's mid-length and from its centre line, metres.
-
-        Returns
-        -------
-        array of shape (x.size, y.size)
-            Metres; infinite beyond the roller's ends, where it cannot touch.
+        The circle is the parabola ``y**2 / (2 radius)``, as in Hertz' theory, with the local radius of a taper.
+        `x` and `y` are distances from the roller's mid-length and from its centre line, metres.
         """
         inside = np.abs(x) <= self.length / 2
         drop = np.full(x.shape, np.inf)

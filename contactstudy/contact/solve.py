@@ -3,35 +3,88 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from functools import partial
 from numbers import Real
 
 import numpy as np
 import xarray as xr
+from scipy.sparse.linalg import LinearOperator
 
 from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
-from contactstudy.arrays.units import in_si
-from contactstudy.arrays.variables import describe, without_error
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe, in_si, without_error
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
-from contactstudy.case.friction import Friction, check_coupled, checked_friction, on_columns
-from contactstudy.case.motion import KINDS, MOTIONS, Motion, Shift, Sliding
+from contactstudy.case.motion import (
+    KINDS,
+    MOTIONS,
+    Friction,
+    Motion,
+    Shift,
+    Sliding,
+    check_coupled,
+    checked_friction,
+    on_columns,
+)
 from contactstudy.checks import FloatArray
-from contactstudy.contact.contact import Contact, Settings, Shape, contact_of
-from contactstudy.contact.frictional import frictional_contact, labelled
-from contactstudy.contact.prescribed import Prescribed
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.rolling.frictional_contact import FrictionRequest, frictional_contact, with_tractions
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.part import REFERENCE_LENGTHS
-from contactstudy.fields.prescribed import prescribed_loads
-from contactstudy.fields.surface import displacement_reference
-from contactstudy.interrupts import BriefInterrupt
+from contactstudy.fields.loads import prescribed_loads
 from contactstudy.kernels.load import Load
 
-FULL_SLIDING = Sliding()
-"""The default motion."""
+FULL_SLIDING = Sliding()  # the default motion
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ContactSettings:
+    """Settings of :func:`solve_contact`.
+
+    Parameters
+    ----------
+    coupled : bool
+        Physics: whether the friction also displaces the surfaces normally, which changes pressure and contact, except
+        at a Poisson's ratio of 1/2 and between half-spaces of one material.
+    load_position : float, optional
+        Physics: position x of the load, metres; the shape tilts until the pressure balances the load. Default: the
+        shape keeps its inclination.
+    after : Dataset, optional
+        Physics: result of the preceding step on the same cells; a `Shift` continues from its pressure and tractions
+        instead of from rest.
+    tolerance : float
+        Tolerance: bound on the violation of the gap conditions, over the variation of the displacement, and on the last
+        change of the pressure, over its sum.
+    max_iterations : int
+        Speed: bound on the iterations.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is of the wrong kind or out of range.
+
+    Examples
+    --------
+    >>> ContactSettings(coupled=True).tolerance
+    1e-06
+    """
+
+    coupled: bool = False
+    load_position: float | None = None
+    after: xr.Dataset | None = None
+    tolerance: float = 1e-6
+    max_iterations: int = 500
+
+    def __post_init__(self) -> None:
+        checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
+        object.__setattr__(self, "tolerance", checks.positive("tolerance", self.tolerance))
+        object.__setattr__(self, "max_iterations", checks.count("max_iterations", self.max_iterations))
+
+
+DEFAULTS = ContactSettings()  # the default settings
 
 
 def solve_contact(
@@ -39,15 +92,12 @@ def solve_contact(
     gap: xr.DataArray,
     load: float | None = None,
     friction: Friction | xr.DataArray = 0.0,
-    coupled: bool = False,
     *,
     approach: float | Sequence[float] | None = None,
-    load_position: float | None = None,
     counterbody: Counterbody | None = None,
+    surface: LinearOperator | None = None,
     motion: Motion = FULL_SLIDING,
-    after: xr.Dataset | None = None,
-    tolerance: float = 1e-6,
-    max_iterations: int = 500,
+    settings: ContactSettings = DEFAULTS,
 ) -> xr.Dataset:
     """Press a rigid shape, or a second elastic body, on a body.
 
@@ -56,35 +106,28 @@ def solve_contact(
     body : Body
         The elastic body.
     gap : DataArray (x, y)
-        Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite where there is nothing
-        to touch. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
+        Initial gap at the cell centres of a uniform grid, metres: 0 at first touch, infinite beside the
+        shape. On a finite-length space the cells span the body from end to end; elsewhere they must leave room
         around the contact.
     load : float, optional
-        Normal load, N. Either this or `approach` is given.
+        Normal load, N. Either this or `approach` is previous.
     friction : float or DataArray (x)
         Coefficient ``f``, a number or values at positions along x with lines between: in full sliding the shear
         traction on the body is ``f`` times the pressure along +y; in any other motion that is the bound on it.
-    coupled : bool
-        Whether the friction also displaces the surfaces normally, which changes pressure and contact (it cannot when
-        Poisson's ratio is 1/2, nor between half-spaces of one material).
     approach : float or sequence of float, optional
-        How far the shape is pressed down from first touch, metres, relative to the reference of `displacement_z`. With
+        Displacement of the shape from first touch, metres, relative to the reference of `displacement_z`. With
         several, the result has a dimension `approach`.
-    load_position : float, optional
-        Position x on which the load acts, metres: the shape tilts until the pressure balances it. Default: the shape
-        keeps its inclination, whatever moment that takes.
     counterbody : Counterbody, optional
         Second elastic body, of which `gap` is the shape. Default: the shape is rigid.
+    surface : LinearOperator, optional
+        Symmetric positive operator from a pressure (x, y) in Pa to the displacement of the surfaces towards each other
+        in metres, both raveled, instead of the body's: a coating, a measured compliance, sums of
+        `contactstudy.operators.surface_displacement`. `body` then determines the window, the preconditioner and
+        the reference of the approach. Full sliding, uncoupled and without `counterbody`.
     motion : Sliding, Shift or Rolling
-        How the shape moves against the body. Default: full sliding.
-    after : Dataset, optional
-        Result of the step before, on the same cells: a `Shift` then goes on from its pressure and tractions instead of
-        from rest. Loads and shifts of a history are solved one after the other.
-    tolerance : float
-        Bound on the violation of the gap conditions, over the variation of the displacement, and on the last change
-        of the pressure, over its sum.
-    max_iterations : int
-        Bound on the iterations.
+        Motion of the shape against the body. Default: full sliding.
+    settings : ContactSettings
+        Coupled friction, position of the load, history, tolerance and bound of the iteration.
 
     Returns
     -------
@@ -102,7 +145,7 @@ def solve_contact(
     InvalidInputError
         If an argument is of the wrong kind or out of range, or the grid does not fit a body.
     WindowError
-        If the contact reaches an edge of the grid where the body goes on.
+        If the contact reaches an edge of the grid inside the body.
 
     Warns
     -----
@@ -111,9 +154,9 @@ def solve_contact(
 
     Notes
     -----
-    A finite-length body has no absolute displacement, nor an absolute tilt: an eccentric load tilts it by an amount
-    that grows like the logarithm of the distance from which it is seen. `approach` and `tilt` are those of the shape
-    relative to the top at the distance along y stated in their attribute `reference`.
+    The displacement of a body between two free ends grows with the logarithm of the distance. `approach`, `tilt` and
+    `displacement_z` refer to a material line of each body along x, below the load at the depth
+    ``body.reference_depth``: the approach to its point below the load, the tilt to its least-squares slope.
 
     Examples
     --------
@@ -128,23 +171,23 @@ def solve_contact(
     (True, 0.64)
     """
     if not isinstance(approach, (Real, str, type(None))):
-        if after is not None:
-            raise InvalidInputError("after", "a result", "left out with several approaches, which are no history")
+        if isinstance(settings, ContactSettings) and settings.after is not None:
+            raise InvalidInputError(
+                "after", "a result", "omitted with several approaches: solve a history step by step"
+            )
         steps = checks.coordinates("approach", approach, "metres").tolist()
-        each = partial(
+        solve_step = partial(
             solve_contact,
             body,
             gap,
             load,
             friction,
-            coupled,
-            load_position=load_position,
             counterbody=counterbody,
+            surface=surface,
             motion=motion,
-            tolerance=tolerance,
-            max_iterations=max_iterations,
+            settings=settings,
         )
-        results = [each(approach=step).set_coords("approach") for step in steps]
+        results = [solve_step(approach=step).set_coords("approach") for step in steps]
         return xr.concat(results, "approach", data_vars="all", coords="minimal", compat="override", join="exact")
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     if counterbody is not None:
@@ -155,55 +198,77 @@ def solve_contact(
         raise InvalidInputError("gap", "infinite everywhere", "finite where the shape can touch the body")
     # Where nothing can be pressed, cells may be as narrow as the room that is left to an end.
     grid.check_growth(np.asarray(np.isfinite(clearance).any(axis=1)))
-    checks.instance("coupled", coupled, (bool, np.bool_), "True or False")
+    checks.instance("settings", settings, ContactSettings, "a ContactSettings")
+    coupled, after = bool(settings.coupled), settings.after
     checks.instance("motion", motion, KINDS, MOTIONS)
     coefficient = checked_friction(friction)
-    check_coupled(coefficient, motion, coupled=bool(coupled))
+    check_coupled(coefficient, motion, coupled=coupled)
     on_cells = on_columns(coefficient, grid.x)
+    if surface is not None:
+        _check_surface(surface, grid, counterbody, motion, coupled=coupled)
     shape = Shape(
         body,
         grid,
         ArrayKey(clearance),
-        Prescribed(load, load_position, approach).checked(clearance, grid),
+        Prescribed(load, settings.load_position, approach).checked(clearance, grid),
         counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
         on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
+        surface,
     )
-    settings = Settings(checks.positive("tolerance", tolerance), checks.count("max_iterations", max_iterations))
+    iteration = Settings(settings.tolerance, settings.max_iterations)
     x, y = gap["x"].values, gap["y"].values
-    with BriefInterrupt():
-        if isinstance(motion, Sliding):
-            contact = contact_of(shape, settings)
-            contact.warn_unless_converged()
-            return contact_dataset(contact, on_cells, x=x, y=y)
-        before = None if after is None else _before(after, motion, gap, body)
-        facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
-        middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
-        found = frictional_contact(shape, settings, motion, on_cells, middle, coupled=bool(coupled), before=before)
-        found.warn_unless_converged()
-        return labelled(contact_dataset(found.contact, on_cells, x=x, y=y), found)
+    if isinstance(motion, Sliding):
+        contact = contact_of(shape, iteration)
+        contact.warn_unless_converged()
+        return contact_dataset(contact, on_cells, x=x, y=y)
+    start = None if after is None else _start_loads(after, motion, gap, body)
+    facing = np.flatnonzero(np.isfinite(clearance).any(axis=1))
+    middle = 0.5 * float(grid.x_edges[facing[0]] + grid.x_edges[facing[-1] + 1])
+    request = FrictionRequest(motion=motion, friction=on_cells, middle=middle, coupled=coupled, start=start)
+    frictional = frictional_contact(shape, iteration, request)
+    frictional.warn_unless_converged()
+    return with_tractions(contact_dataset(frictional.contact, on_cells, x=x, y=y), frictional)
 
 
-def _before(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:
-    """Pressure and tractions of the step before, checked."""
+def _check_surface(
+    surface: LinearOperator, grid: Grid, counterbody: Counterbody | None, motion: Motion, *, coupled: bool
+) -> None:
+    """Raise unless a user's operator fits the grid and the other arguments."""
+    checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
+    cells = grid.cells_x * grid.cells_y
+    if surface.shape != (cells, cells):
+        raise InvalidInputError("surface.shape", surface.shape, f"{(cells, cells)}, the cells of the gap")
+    if counterbody is not None:
+        raise InvalidInputError("counterbody", counterbody, "None with surface, the compliance of both bodies")
+    if coupled or not isinstance(motion, Sliding):
+        raise InvalidInputError("motion, coupled", (motion, coupled), "full sliding, uncoupled, with surface")
+
+
+def _start_loads(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:
+    """Pressure and tractions of the preceding step, checked."""
     checks.instance("after", after, xr.Dataset, "a result of solve_contact")
     if not isinstance(motion, Shift):
-        raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady, it has no step before")
+        raise InvalidInputError("motion", motion, "a Shift(...) with after: rolling is steady")
     names = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load.ALONG_Y}
     missing = [name for name in names if name not in after]
     if missing:
         raise InvalidInputError("after", f"without {missing[0]}", "a result with stick and slip")
     grid = labelled_cells("gap", gap, extent=body.extent, infinite=True)[1]
-    given = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
-    if given.grid.shape != grid.shape or not np.allclose(given.grid.x, grid.x) or not np.allclose(given.grid.y, grid.y):
-        raise InvalidInputError("after", f"on {given.grid.shape} cells", "on the cells of the gap")
-    return {load: top.values for load, top in given.loads.items()}
+    previous = prescribed_loads(body, after["pressure"], 0.0, after["traction_x"], after["traction_y"])
+    if (
+        previous.grid.shape != grid.shape
+        or not np.allclose(previous.grid.x, grid.x)
+        or not np.allclose(previous.grid.y, grid.y)
+    ):
+        raise InvalidInputError("after", f"on {previous.grid.shape} cells", "on the cells of the gap")
+    return {load: top.values for load, top in previous.loads.items()}
 
 
 def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatArray, y: FloatArray) -> xr.Dataset:
-    """Label a contact; `x` and `y` are the cell centres as the caller wrote them."""
+    """Label a contact; `x` and `y` are the labels of the cell centres."""
     shape = contact.shape
-    # The contact may be kept for other cases: what the caller does to a result must not change it.
+    # The cache may share the contact: results are copies.
     fields = {
         "pressure": contact.pressure.copy(),
         "traction_y": friction * contact.pressure,
@@ -223,21 +288,19 @@ def contact_dataset(contact: Contact, friction: float | FloatArray, *, x: FloatA
         {name: (("x", "y"), values) for name, values in fields.items()} | scalars,
         coords={"x": x, "y": y} | cell_coordinates(shape.grid),
     )
-    result["displacement_z"].attrs |= displacement_reference(contact.reference)
-    for name in ("approach", "tilt"):
-        result[name].attrs["reference"] = motion_reference(shape.body, shape.counterbody)
+    for name in ("approach", "tilt", "displacement_z"):
+        other = None if name == "displacement_z" else shape.counterbody
+        result[name].attrs["reference"] = reference_lines(shape.body, other)
     prescribed = {"approach": shape.prescribed.approach, "load_position": shape.prescribed.load_position}
     result = without_error(result, *(name for name, value in prescribed.items() if value is None))
     return describe(result, "contact of a shape with an elastic body")
 
 
-def motion_reference(body: Body, counterbody: Counterbody | None) -> str:
-    """Say what approach and tilt are relative to."""
-    tops = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
-    places = [
-        f"{name} at |y| = {REFERENCE_LENGTHS * (each.extent[1] - each.extent[0]):g} m"
-        if np.isfinite(each.extent).all()
-        else f"{name} far away"
-        for name, each in tops.items()
+def reference_lines(body: Body, counterbody: Counterbody | None) -> str:
+    """Material lines to which approach and tilt refer, in words."""
+    bodies = {"body": body} if counterbody is None else {"body": body, "counterbody": counterbody.body}
+    lines = [
+        f"{name} at a depth of {part.depth:g} m" if np.isfinite(part.depth) else f"{name} far away"
+        for name, part in bodies.items()
     ]
-    return f"undeformed top: {', '.join(places)}"
+    return f"material line below the load: {', '.join(lines)}"

@@ -1,70 +1,212 @@
-"""The least measure over the parameters, and how far each may move before the measure changes beyond its errors."""
+"""Search over the parameters of a profile: evaluated designs, the optimum, and its flat range."""
 
 from __future__ import annotations
 
+import logging
+import warnings
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
 import numpy as np
+import xarray as xr
+from scipy import optimize
 
+from contactstudy import checks
+from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
-from contactstudy.design.evaluations import SAME, Design, Evaluations
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import ContactStudyError, InvalidInputError, MagnitudeWarning, WindowError
+from contactstudy.profiles.base import Profile
+from contactstudy.solution import solve
 
-SCAN, SPREAD = 7, 8
-"""Designs that are looked at first: along one parameter, and per further one in powers of two. Speed."""
+LOGGER = logging.getLogger(__name__)
 
+# A variable of the result, or a function of the result: a number, or a number and its error
+Measure = str | Callable[[xr.Dataset], object]
+RESOLUTION = 1e-9  # Part of a parameter's range within which two designs count as one
+SCAN, SPREAD = 7, 8  # Designs of the first scan: along one parameter, and per further parameter in powers of two
+# Parts of the range: accuracy of the optimum, and size of the first simplex. Speed and accuracy
 CLOSE, SIMPLEX = 0.01, 0.15
-"""Part of the range to which the optimum is sought, and the size of the first simplex. Speed and accuracy."""
-
-EDGE = 0.02
-"""Part of the range to which the end of a flat part is known. Accuracy."""
-
-FAR = 1e3
-"""Factor on the least measure that stands for an infinite one in the search. Speed."""
-
-CUT = 20.0
-"""Errors beyond which a difference from the optimum is not told apart while its end is sought. Speed."""
-
+END_ACCURACY = 0.02  # Accuracy of the end of a flat range, as a part of the parameter's range
+CUT = 20.0  # Errors at which a difference from the optimum is cut off in the search for an end
+# Advice where no design of the scan has a finite measure
 SHARP = (
-    "a pressure or stress is infinite where an end of the contact is sharp: widen the bounds until the ends drop "
-    "enough, take a profile with rounded ends, or a measure that is finite there, such as 'end_load_last'"
+    "a pressure or stress is infinite at a sharp end of the contact: widen the bounds until the ends drop enough, take "
+    "a profile with rounded ends, or a measure that is finite there, such as 'end_load_last'"
 )
-"""What to do where nothing that is looked at has a finite measure."""
+
+
+@dataclass(frozen=True, eq=False)
+class Range:
+    """Range of a parameter, mapped to parts from 0 to 1."""
+
+    low: float  # if both bounds are positive, equal steps of the part are equal ratios
+    high: float
+
+    def value(self, part: float) -> float:
+        """Return the parameter at a part of the range."""
+        if self.low > 0:
+            return float(np.clip(self.low * (self.high / self.low) ** part, self.low, self.high))
+        return float(np.clip(self.low + (self.high - self.low) * part, self.low, self.high))
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """One evaluated design."""
+
+    parts: FloatArray  # (parameter), parts of the ranges
+    values: FloatArray  # (case), measure; infinite if invalid
+    errors: FloatArray  # (case)
+
+    @property
+    def value(self) -> float:
+        """Measure in the worst case."""
+        return float(self.values.max())
+
+    @property
+    def error(self) -> float:
+        """Largest error of the cases whose error interval reaches the worst case."""
+        if not np.isfinite(self.value):
+            return np.inf
+        candidates = self.values + self.errors >= self.value - self.errors[int(self.values.argmax())]
+        return float(self.errors[candidates].max())
+
+
+@dataclass(eq=False, kw_only=True)
+class Evaluations:
+    """Evaluates designs, each once, and at most `most` designs."""
+
+    cases: list[Case]
+    profile: Callable[..., Profile]
+    ranges: dict[str, Range]
+    measure: Measure
+    accuracy: float  # of the contacts; relative error of a measure without an error
+    settings: Mapping[str, object]  # further arguments of solve
+    most: int  # bound on the number of designs
+    designs: list[Design] = field(default_factory=list)
+    units: str = ""  # from the first result
+    refused: ContactStudyError | None = None  # of the last invalid design
+
+    @property
+    def remaining(self) -> int:
+        """Number of further designs."""
+        return self.most - len(self.designs)
+
+    @property
+    def best(self) -> Design:
+        """Design of the least measure."""
+        return min(self.designs, key=lambda design: design.value)
+
+    def evaluated(self, parts: FloatArray) -> Design | None:
+        """Return an earlier design at these parts of the ranges, if there is one."""
+        return next((design for design in self.designs if np.abs(design.parts - parts).max() <= RESOLUTION), None)
+
+    def __call__(self, parts: FloatArray) -> Design:
+        """Return the design at these parts of the ranges."""
+        clipped = np.clip(np.asarray(parts, dtype=np.float64), 0.0, 1.0)
+        design = self.evaluated(clipped)
+        if design is None:
+            design = self._solved(clipped)
+            self.designs.append(design)
+            LOGGER.info("%s: %.5g", self.parameters(clipped), design.value)
+        return design
+
+    def parameters(self, parts: FloatArray) -> dict[str, float]:
+        """Return the parameters at parts of their ranges."""
+        return {
+            name: bounds.value(float(part)) for (name, bounds), part in zip(self.ranges.items(), parts, strict=True)
+        }
+
+    def _solved(self, parts: FloatArray) -> Design:
+        """Solve every case of a design."""
+        pairs = np.full((len(self.cases), 2), np.inf)
+        try:
+            profile = self._profile(self.parameters(parts))
+            cases = [replace(case, roller=replace(case.roller, profile=profile)) for case in self.cases]
+            with warnings.catch_warnings():
+                if self.designs:  # the first design has warned of magnitudes
+                    warnings.simplefilter("ignore", MagnitudeWarning)
+                for index, case in enumerate(cases):
+                    pairs[index] = self._measured(case)
+        except (InvalidInputError, WindowError) as error:
+            if isinstance(error, InvalidInputError) and error.parameter in ("measure", "bounds"):
+                raise
+            # The bounds may contain invalid profiles, or profiles that do not carry the load.
+            self.refused = error
+        return Design(parts, pairs[:, 0], pairs[:, 1])
+
+    def _profile(self, parameters: dict[str, float]) -> Profile:
+        """Profile of the parameters."""
+        try:
+            return self.profile(**parameters)
+        except TypeError as error:
+            raise InvalidInputError(
+                "bounds", list(parameters), "of the keywords that profile takes", str(error)
+            ) from None
+
+    def _measured(self, case: Case) -> tuple[float, float]:
+        """Measure of one case and its error."""
+        uniform = bool({"grid", "roughness"} & self.settings.keys())
+        result = solve(case, accuracy=None if uniform else self.accuracy, **self.settings)  # type: ignore[arg-type]
+        if isinstance(self.measure, str):
+            scalars = [str(name) for name, variable in result.data_vars.items() if variable.ndim == 0]
+            if self.measure not in scalars:
+                if self.measure in result:
+                    hint = f"an array; a function makes a number of it: lambda result: result.{self.measure}.max()"
+                    raise InvalidInputError("measure", self.measure, "a scalar of the result, or a function", hint)
+                checks.known_name("measure", self.measure, scalars)
+            measured: object = result[self.measure]
+            self.units = str(result[self.measure].attrs.get("units", ""))
+            if f"{self.measure}_error" in result:
+                measured = (measured, result[f"{self.measure}_error"])
+        else:
+            measured = self.measure(result)
+        number, error = _number_and_error(measured)
+        if np.isnan(number):
+            raise InvalidInputError("measure", number, "a number in every case", f"NaN for {case!r}")
+        return number, self.accuracy * abs(number) if error is None or np.isnan(error) else error
+
+
+def _number_and_error(measured: object) -> tuple[float, float | None]:
+    """Split the return value of a measure into number and error."""
+    try:
+        value, error = measured if isinstance(measured, tuple) else (measured, None)
+        if isinstance(value, str) or isinstance(error, str):
+            raise TypeError
+        return float(value), None if error is None else float(error)
+    except (TypeError, ValueError):
+        shape = getattr(measured, "shape", ())
+        value = f"an array of shape {shape}" if shape else measured
+        raise InvalidInputError("measure", value, "a function that returns a number, or (number, error)") from None
 
 
 def fewest(parameters: int) -> int:
-    """Least number of designs of a search: those that are looked at first, and one more."""
+    """Least number of designs of a search: the first scan and one more."""
     return (SCAN if parameters == 1 else SPREAD * 2 ** (parameters - 2)) + 1
 
 
-def optimum(evaluations: Evaluations, most: int) -> Design:
-    """Return the best design that at most so many evaluations find.
-
-    Raises
-    ------
-    InvalidInputError
-        If the measure is finite for none of those that are looked at first.
-    """
+def optimum(evaluations: Evaluations) -> Design:
+    """Return the best design of the search; some evaluations are left for the ends of the flat range."""
     count = len(evaluations.ranges)
-    first = min((evaluations(parts) for parts in _spread(count)), key=lambda design: design.value)
+    first = min((evaluations(parts) for parts in _first_scan(count)), key=lambda design: design.value)
     if not np.isfinite(first.value):
         if evaluations.refused is not None:
             raise evaluations.refused
-        bounds = {name: (each.low, each.high) for name, each in evaluations.ranges.items()}
+        bounds = {name: (limits.low, limits.high) for name, limits in evaluations.ranges.items()}
         raise InvalidInputError("bounds", bounds, "such that the measure is finite somewhere within them", SHARP)
-    ceiling = FAR * max(abs(first.value), np.finfo(np.float64).tiny)
+    # Factor on the least measure that replaces an infinite measure in the search
+    ceiling = 1e3 * max(abs(first.value), np.finfo(np.float64).tiny)
 
-    def least(parts: FloatArray) -> float:
+    def bounded(parts: FloatArray) -> float:
         return min(evaluations(np.atleast_1d(parts)).value, ceiling)
 
-    left = max(most - len(evaluations.known), 1)
-    if count == 1:
-        _along_one(least, float(first.parts[0]), left)
-    else:
-        _along_several(least, first, left)
-    return min(evaluations.known, key=lambda design: design.value)
+    # Evaluations per parameter that are reserved for the ends of the flat range
+    most = max(evaluations.remaining - 4 * count, 1)
+    (_along_one if count == 1 else _along_several)(bounded, first, most)
+    return evaluations.best
 
 
-def _spread(count: int) -> FloatArray:
-    """Designs to look at first: array (design, parameter)."""
+def _first_scan(count: int) -> FloatArray:
+    """First designs: array (design, parameter)."""
     if count == 1:
         return np.linspace(0.0, 1.0, SCAN)[:, None]
     from scipy.stats.qmc import Sobol
@@ -72,70 +214,81 @@ def _spread(count: int) -> FloatArray:
     return np.asarray(Sobol(count, scramble=False).random(fewest(count) - 1))
 
 
-def _along_one(least: object, start: float, most: int) -> None:
-    """Search between the neighbours of the best of the scan."""
-    from scipy.optimize import minimize_scalar
-
-    step = 1 / (SCAN - 1)
+def _along_one(function: Callable[[FloatArray], float], first: Design, most: int) -> None:
+    """Minimise between the neighbours of the best design of the scan (Brent)."""
+    if most < 2:  # the least number of Brent's method
+        return
+    start, step = float(first.parts[0]), 1 / (SCAN - 1)
     bounds = (max(start - step, 0.0), min(start + step, 1.0))
-    minimize_scalar(least, bounds=bounds, method="bounded", options={"xatol": CLOSE, "maxiter": most})
+    optimize.minimize_scalar(function, bounds=bounds, method="bounded", options={"xatol": CLOSE, "maxiter": most})
 
 
-def _along_several(least: object, first: Design, most: int) -> None:
-    """Search from the best of the spread by a simplex, which errors of the measure and kinks do not mislead."""
-    from scipy.optimize import minimize
-
+def _along_several(function: Callable[[FloatArray], float], first: Design, most: int) -> None:
+    """Minimise from the best design of the scan by Nelder and Mead's simplex, which tolerates errors and kinks."""
     count = first.parts.size
     corners = np.tile(first.parts, (count + 1, 1))
     # Away from the nearer bound, so that no corner is cut off.
     corners[1:] += np.diag(np.where(first.parts > 0.5, -SIMPLEX, SIMPLEX))
     options = {"initial_simplex": corners, "xatol": CLOSE, "fatol": first.error, "maxfev": most}
-    minimize(least, first.parts, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count, options=options)
+    optimize.minimize(function, first.parts, method="Nelder-Mead", bounds=[(0.0, 1.0)] * count, options=options)
 
 
 def flat_range(evaluations: Evaluations, best: Design, parameter: int) -> tuple[float, float]:
     """Return the part of the range within which a parameter alone changes the measure by less than the errors."""
-    low, high = (_end(evaluations, best, parameter, bound) for bound in (0.0, 1.0))
-    return low, high
+    sides = 2 * (len(evaluations.ranges) - parameter)
+    low = _flat_end(evaluations, best, parameter, 0.0, most=evaluations.remaining // sides)
+    return low, _flat_end(evaluations, best, parameter, 1.0, most=evaluations.remaining // (sides - 1))
 
 
-def _end(evaluations: Evaluations, best: Design, parameter: int, bound: float) -> float:
-    """End of the flat part towards one bound."""
-    from scipy.optimize import brentq
-
-    here = float(best.parts[parameter])
-    if abs(here - bound) <= SAME:
+def _flat_end(evaluations: Evaluations, best: Design, parameter: int, bound: float, *, most: int) -> float:
+    """End of the flat part towards one bound, from at most `most` further designs."""
+    centre = float(best.parts[parameter])
+    if abs(centre - bound) <= RESOLUTION:
         return bound
 
-    def worse(part: float) -> float:
-        """By how much a design is worse than the best, beyond what the errors may make."""
+    def parts_at(part: float) -> FloatArray:
         parts = best.parts.copy()
         parts[parameter] = part
-        design = evaluations(parts)
+        return parts
+
+    def excess(part: float) -> float:
+        """Difference of a design from the best beyond the errors of both."""
+        design = evaluations(parts_at(part))
         if not np.isfinite(design.value):
             return CUT * best.error
         return float(min(design.value - best.value - design.error - best.error, CUT * best.error))
 
-    # What is known already on this line, from the best on; the first that is worse ends it.
-    inside, outside = here, None
-    for part in sorted(_on_line(evaluations, best, parameter), key=lambda part: abs(part - here)):
-        if (part - here) * (bound - here) <= 0:
+    # Earlier designs on this line, from the best on; the first worse one ends the flat part.
+    inside, outside = centre, None
+    for part in sorted(_parts_on_line(evaluations, best, parameter), key=lambda part: abs(part - centre)):
+        if (part - centre) * (bound - centre) <= 0:
             continue
-        if worse(part) > 0:
+        if excess(part) > 0:
             outside = part
             break
         inside = part
     if outside is None:
-        if worse(bound) <= 0:
+        if evaluations.evaluated(parts_at(bound)) is None:
+            if most < 1:
+                return inside
+            most -= 1
+        if excess(bound) <= 0:
             return bound
         outside = bound
-    if abs(outside - inside) <= EDGE:
+    if abs(outside - inside) <= END_ACCURACY or most < 1:
         return inside
-    return float(brentq(worse, inside, outside, xtol=EDGE, rtol=1e-3))
+    end, state = optimize.brentq(
+        excess, inside, outside, xtol=END_ACCURACY, rtol=1e-3, maxiter=most, full_output=True, disp=False
+    )
+    if state.converged:
+        return float(end)
+    low, high = sorted((inside, outside))
+    within = [part for part in _parts_on_line(evaluations, best, parameter) if low <= part <= high]
+    return max((part for part in within if excess(part) <= 0), key=lambda part: abs(part - centre))
 
 
-def _on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
+def _parts_on_line(evaluations: Evaluations, best: Design, parameter: int) -> list[float]:
     """Parts of the designs that differ from the best in this parameter alone."""
-    others = np.delete(np.array([design.parts for design in evaluations.known]), parameter, axis=1)
-    same = (np.abs(others - np.delete(best.parts, parameter)) <= SAME).all(axis=1)
-    return [float(design.parts[parameter]) for design, on in zip(evaluations.known, same, strict=True) if on]
+    further = np.delete(np.array([design.parts for design in evaluations.designs]), parameter, axis=1)
+    aligned = (np.abs(further - np.delete(best.parts, parameter)) <= RESOLUTION).all(axis=1)
+    return [float(design.parts[parameter]) for design, on in zip(evaluations.designs, aligned, strict=True) if on]

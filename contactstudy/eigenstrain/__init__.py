@@ -1,15 +1,12 @@
-"""Stress of strains that do not depend on y and do not fit together: what plastic flow under many passes leaves.
+"""Stress of incompatible strains that do not depend on y: the residual stress of plastic flow under many passes.
 
-In a body that is infinite along y and in which nothing depends on y, the strain along y vanishes, and the stresses in
-the plane (x, z) and those across it are two problems. Stress functions solve both: whatever the function, the stress
-from it is in equilibrium, and free faces are free, to rounding. Only how well the strains fit together is approximate,
-and of all functions the one with the least complementary energy is taken.
+In a body infinite along y with fields of (x, z), the strain along y vanishes, and the stresses in the plane (x, z) and
+across it are two problems. Stress functions solve both: every stress function is in equilibrium and leaves faces free,
+to rounding; the compatibility of the strains is approximate, by the least complementary energy.
 
 =================  ===================================================================================================
-splines.py         piecewise polynomials along one axis that vanish, with their slope, on both sides
-stress_function.py stress functions of (x, z) as their products: stresses, and the equations of least energy
-body.py            elements for a body with two ends, one or none, and the stresses under eigenstrains on cells
-influence.py       stress in some cells per eigenstrain in the same cells
-along.py           layers with eigenstrains that change along y, by their waves
+stress_function.py piecewise polynomials along one axis, their products, and the equations of least energy
+body.py            elements for a body with two ends, one or none, stresses of eigenstrains on cells, influence matrices
+layers.py          layers with eigenstrains uniform along y, or in waves along y
 =================  ===================================================================================================
 """

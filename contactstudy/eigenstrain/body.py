@@ -1,7 +1,8 @@
 """Residual stress of eigenstrains on cells, in a body with two free ends, one or none.
 
-Elements are the cells, split where asked for, and beyond them elements that grow away from the cells: to the
-ends, to a depth where nothing is left, and where there is no end to a distance where little is left.
+Elements are the cells or equal parts of them, and beyond the cells elements that grow: to the ends, to a depth of
+negligible stress, and without an end to a distance of little stress.
+
 """
 
 from __future__ import annotations
@@ -11,31 +12,25 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
+from scipy import sparse
 
 from contactstudy.bodies.material import Material
-from contactstudy.checks import FloatArray
-from contactstudy.eigenstrain.splines import Splines
-from contactstudy.eigenstrain.stress_function import StressFunction
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 
-DEGREE = 4
-"""Of the polynomials of Airy's function. Accuracy."""
-
-WIDEST = 0.2
-"""Largest element near the cells, over the distance of two ends. Accuracy."""
-
-GROWTH = 1.5
-"""Ratio of neighbouring elements beyond the cells. Accuracy."""
+DEGREE = 4  # of the polynomials of Airy's function. Accuracy.
+WIDEST = 0.2  # largest element near the cells, over the distance of two ends. Accuracy.
+GROWTH = 1.5  # ratio of neighbouring elements beyond the cells. Accuracy.
 
 FAR = 1000.0
-"""Where there is no end: distance, over the extent of the cells, at which the elements end. Accuracy: what the free
-face there adds to the stress falls with its square, to the displacement of the top with itself."""
+"""Without an end: distance of the last element, over the extent of the cells. Accuracy: the error of the stress falls
+with its square, of the top's displacement with its first power."""
 
 DEEP_LENGTHS = 8.0
 """Between two ends: depth below the cells at which the elements end, over the length. Accuracy: stress without
 resultant decays like exp(-4.2 z / L) there."""
 
-XX, YY, ZZ, XY, XZ, YZ = range(6)
-"""Components in the order of every array of stresses."""
+XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of stresses
 
 
 class CellAverages(NamedTuple):
@@ -46,13 +41,7 @@ class CellAverages(NamedTuple):
 
 
 def grown(start: float, stop: float, first: float) -> FloatArray:
-    """Edges from `start` (left out) to `stop`, the first element of about width `first` and growing.
-
-    Examples
-    --------
-    >>> grown(0.0, 10.0, 1.0).round(2).tolist()
-    [0.76, 1.9, 3.6, 6.16, 10.0]
-    """
+    """Edges from `start` (left out) to `stop`, the first element of about width `first` and growing."""
     distance = abs(stop - start)
     if distance <= 0:
         return np.zeros(0)
@@ -64,13 +53,7 @@ def grown(start: float, stop: float, first: float) -> FloatArray:
 
 
 def towards_face(start: float, face: float, first: float) -> FloatArray:
-    """Edges from `start` (left out) to a free face, fine at both.
-
-    Examples
-    --------
-    >>> towards_face(0.0, 2.0, 0.3).round(2).tolist()
-    [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]
-    """
+    """Edges from `start` (left out) to a free face, fine at both."""
     middle = 0.5 * (start + face)
     if start == face:
         return np.zeros(0)
@@ -80,28 +63,14 @@ def towards_face(start: float, face: float, first: float) -> FloatArray:
 
 @dataclass(frozen=True, eq=False)
 class EigenstrainBody:
-    """A body, and cells of (x, z) in which eigenstrains are uniform.
-
-    Attributes
-    ----------
-    material : Material
-        Elastic constants.
-    extent : tuple of float
-        Ends of the body along x, metres; infinite for none.
-    x_edges, z_edges : array
-        Edges of the cells, metres.
-    splits : int
-        Elements per cell along either axis.
-    degree : int
-        Of the polynomials of Airy's function.
-    """
+    """A body, and cells of (x, z) with uniform eigenstrains."""
 
     material: Material
-    extent: tuple[float, float]
-    x_edges: FloatArray
+    extent: tuple[float, float]  # ends of the body along x, metres; infinite for none
+    x_edges: FloatArray  # edges of the cells, metres
     z_edges: FloatArray
-    splits: int = 1
-    degree: int = DEGREE
+    splits: int = 1  # elements per cell along either axis
+    degree: int = DEGREE  # of the polynomials of Airy's function
 
     @cached_property
     def elements(self) -> tuple[FloatArray, FloatArray]:
@@ -110,9 +79,9 @@ class EigenstrainBody:
         x, z = (_split(edges, self.splits, WIDEST * length) for edges in (self.x_edges, self.z_edges))
         far = FAR * max(np.ptp(x), z[-1])
         sides = []
-        for end, own, width, sign in zip(self.extent, x[[0, -1]], np.diff(x)[[0, -1]], (-1, 1), strict=True):
+        for end, edge, width, sign in zip(self.extent, x[[0, -1]], np.diff(x)[[0, -1]], (-1, 1), strict=True):
             free = np.isfinite(end)
-            sides.append(towards_face(own, end, width) if free else grown(own, own + sign * far, width))
+            sides.append(towards_face(edge, end, width) if free else grown(edge, edge + sign * far, width))
         above = towards_face(z[0], 0.0, z[1] - z[0])[::-1]
         deep = z[-1] + (min(DEEP_LENGTHS * length, far) if np.isfinite(length) else far)
         below = grown(z[-1], deep, z[-1] - z[-2])
@@ -145,7 +114,7 @@ class EigenstrainBody:
         nu, young = self.material.poisson, self.material.young
         e = eigenstrain
         x, z = self.airy_integrals
-        right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T
+        right = x[0] @ (e[XX] + nu * e[YY]) @ z[2].T + x[2] @ (e[ZZ] + nu * e[YY]) @ z[0].T  # eq. (503)
         right -= 2 * x[1] @ e[XZ] @ z[1].T
         airy = self.in_plane.solve(-young / (1 - nu**2) * right)
         shear: FloatArray = np.zeros((self.across.x.count, self.across.z.count))
@@ -158,21 +127,11 @@ class EigenstrainBody:
 
 @dataclass(frozen=True, eq=False)
 class EigenstrainSolution:
-    """Stress functions of some eigenstrains.
+    """Stress functions of some eigenstrains."""
 
-    Attributes
-    ----------
-    body : EigenstrainBody
-        Body and cells.
-    eigenstrain : array (6, cell x, cell z)
-        The eigenstrains.
-    airy, shear : array (function x, function z)
-        Coefficients of the stress functions.
-    """
-
-    body: EigenstrainBody
-    eigenstrain: FloatArray
-    airy: FloatArray
+    body: EigenstrainBody  # body and cells
+    eigenstrain: FloatArray  # (6, cell x, cell z): the eigenstrains
+    airy: FloatArray  # (function x, function z): coefficients of the stress functions
     shear: FloatArray
 
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
@@ -185,15 +144,15 @@ class EigenstrainSolution:
             [splines.values(points, derivative) for derivative in range(2)]
             for splines, points in ((self.body.across.x, x), (self.body.across.z, z))
         )
-        return self._assembled((along_x, along_z), (across_x, across_z), self.at(x, z))
+        return self._assembled((along_x, along_z), (across_x, across_z), self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
         body = self.body
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
         airy, across = (
-            ([matrix.T / widths for matrix in own.x], [matrix.T / heights for matrix in own.z])
-            for own in (body.airy_integrals, body.across_integrals)
+            ([matrix.T / widths for matrix in integrals.x], [matrix.T / heights for matrix in integrals.z])
+            for integrals in (body.airy_integrals, body.across_integrals)
         )
         return self._assembled(airy, across, self.eigenstrain)
 
@@ -216,7 +175,7 @@ class EigenstrainSolution:
         stress[YZ] = -x[1] @ self.shear @ z[0].T
         return stress
 
-    def at(self, x: FloatArray, z: FloatArray) -> FloatArray:
+    def eigenstrain_at(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Eigenstrains at the tensor product of positions: array (6, x, z); zero beyond the cells."""
         body = self.body
         numbers, inside = [], []
@@ -225,27 +184,25 @@ class EigenstrainSolution:
             number[points == edges[-1]] = edges.size - 2
             inside.append((number >= 0) & (number < edges.size - 1))
             numbers.append(np.clip(number, 0, edges.size - 2))
-        found = self.eigenstrain[:, numbers[0][:, None], numbers[1]]
-        return np.where(inside[0][:, None] & inside[1], found, 0.0)
+        strain = self.eigenstrain[:, numbers[0][:, None], numbers[1]]
+        return np.where(inside[0][:, None] & inside[1], strain, 0.0)
 
     def top_displacement(self, x: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth.
-
-        They are the integrals of the strains zz and yz, eigenstrains included, over the depth.
-        """
+        """Displacements z (into the body) and y of the top at positions x, metres, relative to the depth."""
+        # They are the integrals of the strains zz and yz, eigenstrains included, over the depth.
         body, material = self.body, self.body.material
         nu, young = material.poisson, material.young
         z_elements = body.elements[1]
-        whole = z_elements[[0, -1]]
-        airy_z = [body.in_plane.z.integrals(whole, d)[:, 0] for d in range(3)]
+        depth_range = z_elements[[0, -1]]
+        airy_z = [body.in_plane.z.integrals(depth_range, d)[:, 0] for d in range(3)]
         airy_x = [body.in_plane.x.values(x, d) for d in range(3)]
         s_xx, s_zz = airy_x[0] @ self.airy @ airy_z[2], airy_x[2] @ self.airy @ airy_z[0]
         heights = np.diff(body.z_edges)
         centres = 0.5 * (body.z_edges[1:] + body.z_edges[:-1])
-        e = self.at(x, centres) @ heights
+        e = self.eigenstrain_at(x, centres) @ heights
         # e_zz = (1 + nu) / E ((1 - nu) s_zz - nu s_xx) + eigenstrain zz + nu eigenstrain yy
         strain_zz = (1 + nu) / young * ((1 - nu) * s_zz - nu * s_xx) + e[ZZ] + nu * e[YY]
-        across_z = body.across.z.integrals(whole, 0)[:, 0]
+        across_z = body.across.z.integrals(depth_range, 0)[:, 0]
         s_yz = -body.across.x.values(x, 1) @ self.shear @ across_z
         return -strain_zz, -(s_yz / material.shear_modulus + 2 * e[YZ])
 
@@ -264,3 +221,58 @@ def _integrals(function: StressFunction, x_edges: FloatArray, z_edges: FloatArra
         [function.x.integrals(x_edges, derivative) for derivative in range(last + 1)],
         [function.z.integrals(z_edges, derivative) for derivative in range(last + 1)],
     )
+
+
+COLUMNS = 256  # Right-hand sides that are solved for at once. Speed.
+
+
+@dataclass(frozen=True, eq=False)
+class Influence:
+    """Residual stress averaged over cells, from eigenstrains that are uniform in the same cells."""
+
+    poisson: float
+    young: float
+    in_plane: FloatArray  # (3 cells, 3 cells): stresses xx, zz, xz per eigenstrains xx + nu yy, zz + nu yy, xz
+    across: FloatArray  # (2 cells, 2 cells): stresses xy, yz per eigenstrains xy, yz
+
+    @classmethod
+    def of(cls, body: EigenstrainBody, along_x: IntArray, along_z: IntArray) -> Influence:
+        """Influence of the cells with these numbers along x and along z on each other."""
+        areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
+
+        def columns(of: CellAverages, i: int, j: int) -> sparse.csc_matrix:
+            """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
+            x, z = (sparse.csc_matrix(m) for m in (of.x[i][:, along_x], of.z[j][:, along_z]))
+            return sparse.csc_matrix(
+                sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
+            )
+
+        def matrix(function: StressFunction, parts: list[sparse.csc_matrix], counts: FloatArray) -> FloatArray:
+            """Averages of the stresses per eigenstrains times `counts`, over minus the modulus."""
+            together = sparse.csc_matrix(sparse.hstack(parts))
+            averages = sparse.csr_matrix(together.T)
+            influence = np.empty((together.shape[1],) * 2)
+            for start in range(0, influence.shape[1], COLUMNS):
+                right = together[:, start : start + COLUMNS].toarray()
+                influence[:, start : start + COLUMNS] = averages @ function.solve_columns(right)
+            return influence / np.tile(areas, len(parts))[:, None] * np.repeat(counts, areas.size)
+
+        of = body.airy_integrals
+        airy = [columns(of, 0, 2), columns(of, 2, 0), -columns(of, 1, 1)]
+        in_plane = matrix(body.in_plane, airy, np.array([1.0, 1.0, 2.0]))
+        of = body.across_integrals
+        shear = [columns(of, 0, 1), -columns(of, 1, 0)]
+        across = matrix(body.across, shear, np.array([2.0, 2.0]))
+        material = body.material
+        modulus = material.plane_strain_modulus
+        return cls(material.poisson, material.young, -modulus * in_plane, -material.shear_modulus * across)
+
+    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
+        """Residual stresses (6, cell) from eigenstrains (6, cell): xx, yy, zz, xy, xz, yz."""
+        e, nu = eigenstrain, self.poisson
+        stress = np.empty_like(e)
+        strain = np.concatenate([e[XX] + nu * e[YY], e[ZZ] + nu * e[YY], e[XZ]])
+        stress[[XX, ZZ, XZ]] = (self.in_plane @ strain).reshape(3, -1)
+        stress[[XY, YZ]] = (self.across @ np.concatenate([e[XY], e[YZ]])).reshape(2, -1)
+        stress[YY] = nu * (stress[XX] + stress[ZZ]) - self.young * e[YY]
+        return stress

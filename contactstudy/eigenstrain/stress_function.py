@@ -1,4 +1,4 @@
-"""Stress functions of (x, z): stresses that are in equilibrium and leave all faces free, and their least energy.
+"""Stress functions of (x, z) from piecewise polynomials: equilibrium, free faces, least energy.
 
 In the plane Airy's function gives ``s_xx = f,zz``, ``s_zz = f,xx``, ``s_xz = -f,xz``; across the plane
 ``t_xy = g,z``, ``t_yz = -g,x`` (S. P. Timoshenko, J. N. Goodier, Theory of Elasticity, 3rd ed. 1970, sections 17 and
@@ -20,23 +20,66 @@ from functools import cached_property
 
 import numpy as np
 from scipy import sparse
+from scipy.interpolate import BSpline
 from scipy.sparse.linalg import splu
 
 from contactstudy.checks import FloatArray
-from contactstudy.eigenstrain.splines import Splines
+
+
+@dataclass(frozen=True, eq=False)
+class Splines:
+    """Basis of piecewise polynomials."""
+
+    edges: FloatArray  # edges of the elements, metres, increasing
+    degree: int  # of the polynomials
+    continuity: int  # derivatives that are continuous between elements
+    vanishing: int  # how many of value, slope, ... vanish on both sides.
+
+    @property
+    def count(self) -> int:
+        """Number of functions."""
+        return self._knots.size - self.degree - 1 - 2 * self.vanishing
+
+    @cached_property
+    def _knots(self) -> FloatArray:
+        first, inner, last = self.edges[0], self.edges[1:-1], self.edges[-1]
+        outer = np.ones(self.degree + 1)
+        return np.concatenate([first * outer, np.repeat(inner, self.degree - self.continuity), last * outer])
+
+    def values(self, points: FloatArray, derivative: int = 0) -> FloatArray:
+        """Functions, or a derivative of them, at points: array (point, function). Between elements the right one's."""
+        count = self._knots.size - self.degree - 1
+        values = BSpline(self._knots, np.eye(count), self.degree)(points, nu=derivative)
+        return np.asarray(values[:, self.vanishing : count - self.vanishing])
+
+    @cached_property
+    def _gauss(self) -> tuple[FloatArray, FloatArray]:
+        """Points and weights that integrate products of two functions exactly: arrays (element, point)."""
+        node, weight = np.polynomial.legendre.leggauss(self.degree + 1)
+        half = 0.5 * np.diff(self.edges)[:, None]
+        return self.edges[:-1, None] + half * (1 + node), half * weight
+
+    def products(self, derivative: int) -> sparse.csr_matrix:
+        """Integrals of products of two functions' derivatives: array (function, function)."""
+        points, weights = self._gauss
+        values = sparse.csr_matrix(self.values(points.ravel(), derivative))
+        return sparse.csr_matrix(values.T @ sparse.diags(weights.ravel()) @ values)
+
+    def integrals(self, cell_edges: FloatArray, derivative: int) -> FloatArray:
+        """Integrals of functions or their derivatives over cells with edges of elements: array (function, cell)."""
+        points, weights = self._gauss
+        by_point = self.values(points.ravel(), derivative) * weights.reshape(-1, 1)
+        by_element = by_point.reshape(*points.shape, -1).sum(axis=1)
+        sums = np.concatenate([np.zeros((1, self.count)), np.cumsum(by_element, axis=0)])
+        elements = np.abs(self.edges[:, None] - cell_edges).argmin(axis=0)
+        return np.asarray(np.diff(sums[elements], axis=0).T)
 
 
 @dataclass(frozen=True, eq=False)
 class StressFunction:
-    """Products of splines along x and z, and their energy.
+    """Products of splines along x and z, and their energy."""
 
-    Attributes
-    ----------
-    x, z : Splines
-        With their slopes, they vanish on the faces for Airy's function; without, for that across the plane.
-    """
-
-    x: Splines
+    x: Splines  # with their slopes, they vanish on the faces for Airy's function; without, for that across the plane
     z: Splines
 
     @cached_property

@@ -1,9 +1,8 @@
-"""A page to look through a study: choices for what was swept, figures that follow, two cases side by side.
+"""Interactive page of a study: choices of swept parameters, figures and numbers of a case, and of a second one.
 
 It needs the extra ``explore``: ``pip install "contactstudy[explore]"``.
 """
 
-from contactstudy.explorer.server import serve
-from contactstudy.explorer.show import explore
+from contactstudy.explorer.server import explore, serve
 
 __all__ = ["explore", "serve"]

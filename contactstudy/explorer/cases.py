@@ -1,4 +1,4 @@
-"""The cases of a study as the page needs them: scalars of all in memory, surfaces of one when it is looked at."""
+"""Cases of a study for the page: scalars of all cases in memory, fields of a case on demand."""
 
 from __future__ import annotations
 
@@ -14,44 +14,61 @@ import xarray as xr
 from contactstudy.analysis import single_case
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity
-from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import STRESSES, require, variable_of
 from contactstudy.errors import InvalidInputError
-from contactstudy.explorer.looked import Looked
-from contactstudy.study.lazy_fields import Place
-from contactstudy.study.opened import summaries
-from contactstudy.study.store import load_variables
+from contactstudy.explorer.images import CaseFields
+from contactstudy.study import collect
+from contactstudy.study.folder import Folder
 
-LOOKED_AT = ("pressure", "gap", "initial_gap", "von_mises")
-"""Variables that the page draws."""
+Place = tuple[int, ...]  # Index of a case along the study's dimensions
+FIELDS = ("pressure", "gap", "initial_gap", "von_mises")  # Fields of each case in memory
 
-NOT_SOLVED = {
+STATUS = {
     "failed": "This case failed.",
     "skipped": "This case cannot be solved.",
     "excluded": "The study leaves this case out.",
     "missing": "This case is not solved yet.",
 }
-"""What a case's status means, for the reader of a page without figures."""
+"""Sentence for each status without figures."""
 
-KEPT = 64
-"""Cases that stay in memory. Speed."""
+CACHED = 64  # Cases in memory. Speed
+
+SUBJECTS: dict[str, tuple[str, ...]] = {
+    "pressure": ("peak_pressure", "peak_pressure_first", "peak_pressure_last", "peak_pressure_x", "peak_pressure_y"),
+    "stresses": ("peak_von_mises", "peak_von_mises_z", "peak_von_mises_x", "peak_von_mises_y", "peak_"),
+    "film": (
+        *("central_film", "least_film", "end_film_ratio", "least_film_ratio", "least_film_middle"),
+        *("least_film_first", "least_film_last", "asperity_load_share"),
+    ),
+    "ends": (
+        *("end_pressure_over_p0", "end_pressure_over_p0_first", "end_pressure_over_p0_last"),
+        *("end_pressure_first", "end_pressure_last", "end_load_first", "end_load_last"),
+        *("end_intensity", "end_intensity_first", "end_intensity_last"),
+        *("end_exponent", "end_exponent_first", "end_exponent_last"),
+    ),
+    "load and approach": (
+        *("normal_load", "hertz_max_pressure", "hertz_half_width", "approach", "tilt", "load_position"),
+        *("contact_length", "contact_width", "half_width_middle"),
+    ),
+    "friction": (
+        *("force_y", "force_x", "moment_z", "longitudinal_creepage", "lateral_creepage", "spin", "shift_y", "shift_x"),
+        *("sticking_part", "friction_work"),
+    ),
+    "cells and iteration": ("end_traction_residual", "converged", "iterations", "friction_steps"),
+    "solution": ("seconds",),
+}
+"""Subjects with their numbers in order; a name with a final underscore is a prefix."""
+
+REMAINING = "further numbers"  # Subject of all numbers without one, before the cells
+ORDER = [*list(SUBJECTS)[:-2], REMAINING, *list(SUBJECTS)[-2:]]
 
 
 @dataclass(frozen=True, eq=False)
 class Cases:
-    """Cases of a study.
-
-    Parameters
-    ----------
-    scalars : Dataset
-        Scalars over the swept parameters.
-    load : callable
-        Takes the place of a case; returns it, or raises InvalidInputError.
-    title : str
-        Name of the study.
-    """
+    """Cases of a study: scalars over the swept parameters, and fields of one case on demand."""
 
     scalars: xr.Dataset
-    load: Callable[[Place], Looked]
+    load: Callable[[Place], CaseFields]
     title: str
 
     @property
@@ -61,112 +78,130 @@ class Cases:
         return tuple(str(dim) for dim in status.dims if status.sizes[dim] > 1)
 
     def choices(self, dim: str) -> list[str]:
-        """Values of a swept parameter as they are shown, all different."""
+        """Values of a swept parameter as distinct texts."""
         values = self.scalars[dim].values
         units = str(self.scalars[dim].attrs.get("units", "1"))
-        together = [
+        grouped = [
             str(name)
             for name, entry in self.scalars.coords.items()
             if entry.dims == (dim,) and name != dim and "comment" not in entry.attrs
         ]
-        found = []
-        for at, value in enumerate(values):
-            text = shown(value, units)
-            if dim == "case" and together:
-                text = ", ".join(f"{name}={self.scalars[name].values[at]}" for name in together)
-            found.append(text)
-        return found if len(set(found)) == len(found) else [f"{at + 1}: {text}" for at, text in enumerate(found)]
+        if dim == "case" and grouped:
+            columns = {name: self.scalars[name].values for name in grouped}
+            texts = [", ".join(f"{name}={columns[name][i]}" for name in grouped) for i in range(values.size)]
+        else:
+            texts = [_value_text(value, units) for value in values]
+        return texts if len(set(texts)) == len(texts) else [f"{i}: {text}" for i, text in enumerate(texts, start=1)]
 
-    def place(self, chosen: dict[str, int]) -> Place:
-        """Place of the case with these values of the swept parameters, by their number."""
+    def index(self, chosen: dict[str, int]) -> Place:
+        """Index of the case with these values of the swept parameters, by number."""
         return tuple(chosen.get(str(dim), 0) for dim in self.scalars["status"].dims)
 
     def first_solved(self) -> dict[str, int]:
-        """Place of the first case that is solved, by swept parameter."""
+        """Index of the first solved case, by swept parameter."""
         solved = np.argwhere(np.isin(self.scalars["status"].values, ("ok", "stale")))
-        place = solved[0] if len(solved) else np.zeros(self.scalars["status"].ndim, dtype=int)
-        return {str(dim): int(at) for dim, at in zip(self.scalars["status"].dims, place, strict=True)}
+        index = solved[0] if len(solved) else np.zeros(self.scalars["status"].ndim, dtype=int)
+        return {str(dim): int(i) for dim, i in zip(self.scalars["status"].dims, index, strict=True)}
 
-    def state(self, place: Place) -> str:
-        """Status of a case with its reason."""
-        at = dict(zip(self.scalars["status"].dims, place, strict=True))
-        status, message = (str(self.scalars[name].isel(at).item()) for name in ("status", "message"))
-        return f"{status}: {message}" if message else status
-
-
-def sentence(state: str) -> str:
-    """Why there is nothing to draw of a case, from its status with its reason.
-
-    Examples
-    --------
-    >>> sentence("skipped: profile: must fit the length"), sentence("missing")
-    ('This case cannot be solved. profile: must fit the length', 'This case is not solved yet.')
-    """
-    status, _, reason = state.partition(": ")
-    return f"{NOT_SOLVED.get(status, f'This case is {status}.')} {reason}".rstrip()
+    def status(self, index: Place) -> tuple[str, str]:
+        """Status of a case, and its reason."""
+        entry = self.scalars[["status", "message"]].isel(dict(zip(self.scalars["status"].dims, index, strict=True)))
+        return str(entry["status"].item()), str(entry["message"].item())
 
 
-def shown(value: Any, units: str) -> str:
-    """Value of a swept parameter in the units of engineers.
+def status_sentence(status: str, reason: str) -> str:
+    """Return why a case has no figures."""
+    return f"{STATUS.get(status, f'This case is {status}.')} {reason}".rstrip()
 
-    Examples
-    --------
-    >>> shown(1.5e9, "Pa"), shown("cylinder", ""), shown(0.1, "1")
-    ('1.5 GPa', 'cylinder', '0.1')
-    """
+
+def _value_text(value: Any, units: str) -> str:
+    """Value of a swept parameter in engineers' units."""
     if isinstance(value, (bool, np.bool_, str)):
         return str(value)
     return quantity(float(value), units, 6)
 
 
-def of_folder(folder: str | Path) -> Cases:
-    """Cases in a study's folder, read from their files one by one when they are looked at."""
-    scalars, files = summaries(folder)
-
-    @lru_cache(maxsize=KEPT)
-    def load(place: Place) -> Looked:
-        if place not in files:
-            raise InvalidInputError("case", place, "one that is solved")
-        return Looked(load_variables(files[place], LOOKED_AT))
-
-    return Cases(scalars, load, _title(scalars, Path(folder).name))
+def open_cases(study: xr.Dataset | str | Path) -> Cases:
+    """Return the cases of an opened study, of a result, or of a study's folder."""
+    if not isinstance(study, xr.Dataset):
+        return _cases_of_folder(Path(study))
+    return _cases_of_study(study) if "status" in study else _case_of_result(study)
 
 
-def of_dataset(opened: xr.Dataset) -> Cases:
-    """Cases of an opened study; a result of one case is a study of that one.
+def _cases_of_folder(folder: Path) -> Cases:
+    """Cases in a study's folder; each file is read on demand."""
+    scalars, results = collect(folder), Folder(folder).results()
 
-    Raises
-    ------
-    InvalidInputError
-        If the Dataset is neither.
-    """
-    if "status" not in opened:
-        require(opened, "pressure")
-        one = single_case(opened)
-        made = one[[name for name, entry in one.data_vars.items() if entry.ndim == 0]].reset_coords(drop=True)
-        made = made.assign(status=xr.DataArray("ok"), message=xr.DataArray(""))
-        looked = Looked(one)
-        return Cases(made, lambda place: looked, str(opened.attrs.get("title", "result")))
-    dims = opened["status"].dims
-    kept = [name for name, entry in opened.data_vars.items() if set(entry.dims) <= set(dims)]
-    scalars = opened[kept]
+    @lru_cache(maxsize=CACHED)
+    def load(index: Place) -> CaseFields:
+        identity = str(scalars["case_id"].values[index])
+        return CaseFields(results.case(identity, FIELDS), lambda: results.case(identity, STRESSES))
+
+    return Cases(scalars, load, _title(scalars, folder.name))
+
+
+def _case_of_result(result: xr.Dataset) -> Cases:
+    """Return a result of one case as a study."""
+    require(result, "pressure")
+    case = single_case(result)
+    scalars = case[[name for name, entry in case.data_vars.items() if entry.ndim == 0]].reset_coords(drop=True)
+    scalars = scalars.assign(status=xr.DataArray("ok"), message=xr.DataArray(""))
+    fields = CaseFields(case)
+    return Cases(scalars, lambda index: fields, str(result.attrs.get("title", "result")))
+
+
+def _cases_of_study(study: xr.Dataset) -> Cases:
+    """Cases of an opened study."""
+    dims = study["status"].dims
+    scalars = study[[name for name, entry in study.data_vars.items() if set(entry.dims) <= set(dims)]]
     scalars = scalars.drop_vars([name for name in scalars.coords if not set(scalars[name].dims) <= set(dims)])
-    names = [name for name in opened.data_vars if name in LOOKED_AT or name in scalars]
 
-    @lru_cache(maxsize=KEPT)
-    def load(place: Place) -> Looked:
-        at = dict(zip(dims, place, strict=True))
-        if str(opened["status"].isel(at).item()) not in ("ok", "stale"):
-            raise InvalidInputError("case", place, "one that is solved")
-        one = opened[names].isel(at)
-        words = [name for name in one.data_vars if one[name].dtype.kind in "UO"]
-        return Looked(single_case(one.drop_vars(words)).compute())
+    @lru_cache(maxsize=CACHED)
+    def load(index: Place) -> CaseFields:
+        entry = study.isel(dict(zip(dims, index, strict=True)))
+        if str(entry["status"].item()) not in ("ok", "stale"):
+            raise InvalidInputError("case", index, "a solved case")
 
-    return Cases(scalars.load(), load, _title(opened, "study"))
+        def part(names: list[Any]) -> xr.Dataset:
+            numbers = [name for name in names if entry[name].dtype.kind not in "UO"]
+            return single_case(entry[numbers]).compute()
+
+        fields = [name for name in study.data_vars if name in FIELDS or name in scalars]
+        stresses = [name for name in study.data_vars if name in STRESSES or name in scalars]
+        return CaseFields(part(fields), lambda: part(stresses))
+
+    return Cases(scalars.load(), load, _title(study, "study"))
 
 
 def _title(dataset: xr.Dataset, name: str) -> str:
-    """Name of a study, from what its Dataset says of it."""
+    """Name and description of a study."""
     study = attribute(dataset, STUDY_ATTRIBUTE)
-    said = str(study.get("name", name))
-    return f"{said}: {study['description']}" if study.get("description") else said
+    title = str(study.get("name", name))
+    return f"{title}: {study['description']}" if study.get("description") else title
+
+
+def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:
+    """Return the names of the numbers of all cases, by subject and meaning."""
+    names = [
+        str(name)
+        for name, entry in scalars.data_vars.items()
+        if entry.dtype.kind == "f" and not str(name).endswith("_error") and bool(entry.notnull().any())
+    ]
+    meanings = [variable_of(name, scalars[name].attrs).long_name for name in names]
+    groups: dict[str, dict[str, str]] = {}
+    for (subject, _), name, meaning in sorted(
+        (_rank(name), name, meaning) for name, meaning in zip(names, meanings, strict=True)
+    ):
+        # The texts of all groups are distinct.
+        text = meaning if meanings.count(meaning) == 1 else f"{meaning}, {name}"
+        groups.setdefault(ORDER[subject], {})[text] = name
+    return groups
+
+
+def _rank(name: str) -> tuple[int, int]:
+    """Subject of a number and its rank within it."""
+    for subject, names in SUBJECTS.items():
+        for rank, entry in enumerate(names):
+            if name == entry or (entry.endswith("_") and name.startswith(entry)):
+                return ORDER.index(subject), rank
+    return ORDER.index(REMAINING), 0

@@ -1,8 +1,8 @@
-"""Figures of the page: made once, and given new data when another case is chosen."""
+"""Bokeh figures of the page: created once, with new data for each choice."""
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from bokeh.models import (
@@ -18,74 +18,75 @@ from bokeh.models import (
 from bokeh.plotting import figure
 
 from contactstudy.checks import FloatArray
-from contactstudy.explorer.drawn import Image, Line
-from contactstudy.explorer.pixels import Span
+from contactstudy.explorer.images import Image, Line, Span
 
 FIRST, SECOND, NEUTRAL = "#1f4e79", "#c05a00", "#8894a0"
-"""Colours of the case, of the one that it is compared with, and of the others."""
+"""Colours of the first case, of the second, and of all others."""
 
 PALETTE = "Viridis256"
 HEIGHT = 290
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
+TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
+"""Marker of an unbounded value, at the top of the axes."""
 
 
-def _new(**more: Any) -> Any:
-    """Return a figure that takes the width that there is."""
-    made = figure(
+def _new_figure(**options: Any) -> Any:
+    """Return a figure of the available width."""
+    new = figure(
         height=HEIGHT,
         sizing_mode="stretch_width",
         tools=TOOLS,
         toolbar_location="above",
         output_backend="canvas",
         min_border_left=56,
-        **more,
+        **options,
     )
-    made.toolbar.logo = None
-    made.toolbar.autohide = True
-    made.grid.grid_line_color = "#e6eaed"
-    return made
+    new.toolbar.logo = None
+    new.toolbar.autohide = True
+    new.grid.grid_line_color = "#e6eaed"
+    return new
 
 
 class AxialFigure:
-    """Pressure along the axis, of one case or two."""
+    """Pressure along the axis, of one or two cases."""
 
     def __init__(self) -> None:
-        self.figure = _new(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         self._lines = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
         self._marks = [ColumnDataSource({"x": [], "p": []}) for _ in range(2)]
-        drawn = []
+        renderers = []
         for number, (color, dash) in enumerate(((FIRST, "solid"), (SECOND, "dashed"))):
             style = {"color": color, "line_width": 2, "line_dash": dash}
-            drawn.append(self.figure.line("x", "p", source=self._lines[number], **style))
-            mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_color": color, "line_width": 1.5}
-            self.figure.scatter("x", "p", source=self._marks[number], **mark)
-        items = [LegendItem(label=name, renderers=[line]) for name, line in zip(("case", "other"), drawn, strict=True)]
+            renderers.append(self.figure.line("x", "p", source=self._lines[number], **style))
+            self.figure.scatter("x", "p", source=self._marks[number], line_color=color, **TRIANGLE)
+        names = zip(("case", "second case"), renderers, strict=True)
+        items = [LegendItem(label=name, renderers=[renderer]) for name, renderer in names]
         self._legend = Legend(items=items, orientation="horizontal", border_line_color=None, padding=2)
         self.figure.add_layout(self._legend, "above")
 
-    def show(self, lines: list[Line | None], span: tuple[float, float], names: tuple[str, str]) -> None:
-        """Draw the pressure of the cases within a span."""
-        highest = 0.0
+    def show(self, lines: list[Line | None], limits: Span, labels: tuple[str, str]) -> None:
+        """Draw the pressure of the cases between two positions."""
+        top = 0.0
         for line in lines:
             if line is not None:
-                inside = line.pressure[(line.x >= span[0]) & (line.x <= span[1])]
-                highest = max(highest, float(np.nanmax(inside, initial=0.0)))
-        highest = 1.06 * highest if highest > 0 else 1.0
-        for line, own, marks in zip(lines, self._lines, self._marks, strict=True):
-            own.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
-            ends = [] if line is None else [end for end in line.singular if span[0] <= end <= span[1]]
-            marks.data = {"x": ends, "p": [0.96 * highest] * len(ends)}
+                inside = line.pressure[(line.x >= limits[0]) & (line.x <= limits[1])]
+                top = max(top, float(np.nanmax(inside, initial=0.0)))
+        top = 1.06 * top if top > 0 else 1.0
+        for line, source, marks in zip(lines, self._lines, self._marks, strict=True):
+            source.data = {"x": [], "p": []} if line is None else {"x": line.x, "p": line.pressure}
+            ends = [] if line is None else [end for end in line.singular if limits[0] <= end <= limits[1]]
+            marks.data = {"x": ends, "p": [0.96 * top] * len(ends)}
         self._legend.visible = lines[1] is not None
-        self.figure.x_range.update(start=span[0], end=span[1])
-        self.figure.y_range.update(start=0.0, end=highest)
-        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names
+        self.figure.x_range.update(start=limits[0], end=limits[1])
+        self.figure.y_range.update(start=0.0, end=top)
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
 
 class ImageFigure:
-    """A field as a picture with its colour bar."""
+    """Field as an image with a colour bar; a depth increases downwards."""
 
     def __init__(self, *, downwards: bool = False) -> None:
-        self.figure = _new(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
+        self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
         self._downwards = downwards
         self._source = ColumnDataSource({"image": [], "x": [], "y": [], "w": [], "h": []})
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
@@ -95,95 +96,102 @@ class ImageFigure:
         self.figure.grid.visible = False
 
     @property
-    def shows(self) -> bool:
-        """Whether there is a picture."""
+    def has_image(self) -> bool:
+        """Whether the figure has an image."""
         return bool(self._source.data["image"])
 
-    def show(self, image: Image | None, most: float, title: str, up: Span | None = None) -> None:
-        """Draw a picture, its colours up to a largest value; nothing if there is none. `up`: what the axis spans."""
+    def show(self, image: Image | None, limit: float, title: str, vertical: Span) -> None:
+        """Draw an image, or none, with colours up to a limit and the vertical axis between two values."""
         self.figure.title.text = title
         if image is None:
             self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
             return
-        (left, right), (low, high) = image.across, image.up
+        (left, right), (low, high) = image.horizontal, image.vertical
         self._source.data = {"image": [image.values], "x": [left], "y": [low], "w": [right - left], "h": [high - low]}
-        self._mapper.update(high=max(most, 1e-12))
+        self._mapper.update(high=max(limit, 1e-12))
         self.figure.x_range.update(start=left, end=right)
         deep = self._downwards and image.names[1].startswith("depth")
-        low, high = up or image.up
-        self.figure.y_range.update(start=high if deep else low, end=low if deep else high)
+        self.figure.y_range.update(start=vertical[deep], end=vertical[not deep])
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = image.names
 
 
+class Marked(NamedTuple):
+    """A case of the page: number along the swept parameter, value, and colour."""
+
+    number: int
+    value: float
+    color: str
+
+
 class StudyFigure:
-    """A number of all cases over one swept parameter, the cases that are looked at marked."""
+    """Number of all cases over one swept parameter, with the cases of the page."""
 
     def __init__(self) -> None:
-        self.figure = _new()
+        self.figure = _new_figure()
         self._line = ColumnDataSource({"x": [], "v": [], "fill": [], "low": [], "high": []})
-        self._endless = ColumnDataSource({"x": [], "v": []})
-        self._chosen, self._chosen_endless = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
+        self._unbounded = ColumnDataSource({"x": [], "v": []})
+        self._marked, self._marked_unbounded = (ColumnDataSource({"x": [], "v": [], "color": []}) for _ in range(2))
         self.figure.line("x", "v", source=self._line, color=NEUTRAL, line_width=1.5)
         bars = {"base": "x", "lower": "low", "upper": "high", "source": self._line, "line_color": NEUTRAL}
         self.figure.add_layout(Whisker(**bars, level="underlay"))
         self.figure.scatter("x", "v", source=self._line, line_color=NEUTRAL, fill_color="fill", size=6)
-        mark = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
-        self.figure.scatter("x", "v", source=self._endless, line_color=NEUTRAL, **mark)
-        self.figure.scatter("x", "v", source=self._chosen, color="color", size=11)
-        self.figure.scatter("x", "v", source=self._chosen_endless, line_color="color", **(mark | {"line_width": 3}))
+        self.figure.scatter("x", "v", source=self._unbounded, line_color=NEUTRAL, **TRIANGLE)
+        self.figure.scatter("x", "v", source=self._marked, color="color", size=11)
+        triangle = TRIANGLE | {"line_width": 3}
+        self.figure.scatter("x", "v", source=self._marked_unbounded, line_color="color", **triangle)
         self.figure.y_range = Range1d(0, 1)
-        self._plain, self._words = self.figure.xaxis[0].ticker, dict[float, str]()
+        self._ticker, self._ticks = self.figure.xaxis[0].ticker, dict[float, str]()
 
     def show(
         self,
+        x: FloatArray,
         values: FloatArray,
-        places: FloatArray,
-        ticks: dict[float, str] | None,
-        chosen: list[tuple[int, float, str]],
-        names: tuple[str, str],
-        errors: FloatArray | None = None,
+        errors: FloatArray | None,
+        *,
+        marked: list[Marked],
+        labels: tuple[str, str],
+        ticks: dict[float, str] | None = None,
     ) -> None:
-        """Draw values over places; words take the place of numbers where there are `ticks`.
+        """Draw values with bars of errors over a swept parameter; an unbounded value as a triangle at the top.
 
-        A value without a limit is a triangle at the top. `chosen` are the cases looked at: where along the parameter,
-        their value, and their colour. Errors are bars; of a value whose error is NaN none is known, and its mark is
-        open. Without `errors` values are taken as they are.
+        The mark of a value with the error NaN is open; without `errors` the values are exact; `ticks` are texts.
         """
         finite = np.isfinite(values)
-        known = [*values[finite], *(value for _, value, _ in chosen if np.isfinite(value))]
-        spread = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
-        reach = [*known, *(values + spread)[finite], *(values - spread)[finite & (spread > 0)]]
-        low, high = min([0.0, *reach]), max([*reach, 1e-12]) if known else 1.0
+        bars = np.zeros(values.size) if errors is None else np.nan_to_num(errors)
+        numbers = [*values[finite], *(case.value for case in marked if np.isfinite(case.value))]
+        extremes = [*numbers, *(values + bars)[finite], *(values - bars)[finite & (bars > 0)]]
+        low, high = min([0.0, *extremes]), max([*extremes, 1e-12]) if numbers else 1.0
         high += 0.06 * (high - low)
-        unknown = finite & (np.isnan(errors) if errors is not None else False)
-        barred = finite & (spread > 0)
+        without_error = finite & (np.isnan(errors) if errors is not None else False)
+        with_bar = finite & (bars > 0)
         self._line.data = {
-            "x": places,
+            "x": x,
             "v": np.where(finite, values, np.nan),
-            "fill": np.where(unknown, "white", NEUTRAL),
-            "low": np.where(barred, values - spread, np.nan),
-            "high": np.where(barred, values + spread, np.nan),
+            "fill": np.where(without_error, "white", NEUTRAL),
+            "low": np.where(with_bar, values - bars, np.nan),
+            "high": np.where(with_bar, values + bars, np.nan),
         }
-        said = ["bars: stated errors"] * bool(barred.any()) + ["open marks: no error known"] * bool(unknown.any())
-        self.figure.title.text = "; ".join(said)
-        at_top = 0.96 * high
-        self._endless.data = {"x": places[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), at_top)}
-        for source, endless in ((self._chosen, False), (self._chosen_endless, True)):
-            own = [each for each in chosen if np.isposinf(each[1]) == endless]
+        legend = ["bars: estimated errors"] * bool(with_bar.any())
+        legend += ["open marks: error not estimated"] * bool(without_error.any())
+        self.figure.title.text = "; ".join(legend)
+        top = 0.96 * high
+        self._unbounded.data = {"x": x[np.isinf(values)], "v": np.full(int(np.isinf(values).sum()), top)}
+        for source, unbounded in ((self._marked, False), (self._marked_unbounded, True)):
+            cases = [case for case in marked if np.isposinf(case.value) == unbounded]
             source.data = {
-                "x": [places[at] for at, _, _ in own],
-                "v": [at_top if endless else value for _, value, _ in own],
-                "color": [color for _, _, color in own],
+                "x": [x[case.number] for case in cases],
+                "v": [top if unbounded else case.value for case in cases],
+                "color": [case.color for case in cases],
             }
         self.figure.y_range.update(start=low, end=high)
-        self._name_ticks(ticks or {})
-        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = names
+        self._set_ticks(ticks or {})
+        self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
 
-    def _name_ticks(self, words: dict[float, str]) -> None:
-        """Put words in the place of numbers; only where they change, for a new ticker costs as much as all the rest."""
-        if words == self._words:
+    def _set_ticks(self, ticks: dict[float, str]) -> None:
+        """Replace numbers by texts, only if the texts change: a new ticker is slow."""
+        if ticks == self._ticks:
             return
-        axis, self._words = self.figure.xaxis[0], words
-        axis.ticker = list(words) if words else self._plain
-        axis.major_label_overrides = words
-        axis.major_label_orientation = 0.5 if words else "horizontal"
+        axis, self._ticks = self.figure.xaxis[0], ticks
+        axis.ticker = list(ticks) if ticks else self._ticker
+        axis.major_label_overrides = ticks
+        axis.major_label_orientation = 0.5 if ticks else "horizontal"

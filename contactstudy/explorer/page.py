@@ -1,4 +1,4 @@
-"""The page: choices on the left, numbers and figures on the right, everything of one case and of another beside it."""
+"""Page of a study: widgets on the left; numbers and figures of a case, and of a second one, on the right."""
 
 from __future__ import annotations
 
@@ -9,22 +9,36 @@ import numpy as np
 import panel as pn
 import xarray as xr
 
-from contactstudy.analysis import edge_factors, short
-from contactstudy.analysis.certainty import certainty_of
-from contactstudy.analysis.short import NOT_PRESSED, ShortView
+from contactstudy.analysis import edge_factors
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import variable_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.explorer.cases import Cases, sentence
-from contactstudy.explorer.drawn import PLANES, REGIONS, Image, axial, plane, region, scale_of, top
-from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, StudyFigure
-from contactstudy.explorer.looked import Looked
-from contactstudy.explorer.numbers import by_subject
-from contactstudy.plots.study_lines import FOUND
+from contactstudy.explorer.cases import Cases, numbers_by_subject, status_sentence
+from contactstudy.explorer.figures import FIRST, SECOND, AxialFigure, ImageFigure, Marked, StudyFigure
+from contactstudy.explorer.images import (
+    PLANES,
+    REGIONS,
+    CaseFields,
+    Image,
+    axial_line,
+    choose_scale,
+    plane_image,
+    region_limits,
+    top_image,
+)
+from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
+from contactstudy.report.assessment import assess_case
+from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, summary
 
-MOST_STEPS = 60
-"""Values of a swept parameter up to which it has a slider; names have a list to choose from."""
+LONGEST_SLIDER = 60  # Number of values of a swept parameter up to which a slider replaces a list
+
+MEASURES = {
+    "von Mises stress": "von_mises",
+    "largest principal stress": "principal_stress_1",
+    "maximum shear stress": "maximum_shear",
+}
+"""Stress measures of the plane."""
 
 STYLE = """
 table { border-collapse: collapse; font-size: 14px; width: 100%; }
@@ -36,269 +50,253 @@ p.why { border-left: 4px solid #a65f00; background: #f4f6f8; padding: 6px 10px; 
 
 
 class Page:
-    """Widgets and figures of one visitor.
-
-    Parameters
-    ----------
-    cases : Cases
-        The study.
-    """
+    """Widgets and figures of one visitor."""
 
     def __init__(self, cases: Cases) -> None:
         self.cases = cases
         self._columns: dict[tuple[int, ...], dict[str, str]] = {}
-        # What belongs to the other case is made when it is asked for: the page opens sooner without.
-        self.choices: list[dict[str, Any]] = [self._widgets("case"), {}]
-        self._other_choices = pn.Column(visible=False, sizing_mode="stretch_width")
-        self.compare = pn.widgets.Checkbox(label="compare with another case", value=False, visible=bool(cases.dims))
+        # Widgets and figures of the second case are created on demand: the page opens sooner.
+        self.choices: list[dict[str, Any]] = [self._create_choices(""), {}]
+        self._second_choices = pn.Column(visible=False, sizing_mode="stretch_width")
+        self.compare = pn.widgets.Checkbox(label="compare with a second case", value=False, visible=bool(cases.dims))
         self.region = pn.widgets.Select(label="along the axis", options=list(REGIONS))
         self.units = pn.widgets.RadioButtonGroup(options={"mm, MPa": False, "over a, p0": True}, value=False)
-        self.plane = pn.widgets.Select(label="von Mises in the plane", options=list(PLANES))
-        self.where = pn.widgets.FloatSlider(
-            label="where the plane is, from first to last", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
+        self.measure = pn.widgets.Select(label="stress", options=MEASURES)
+        self.plane = pn.widgets.Select(label="in the plane", options=list(PLANES))
+        self.fraction = pn.widgets.FloatSlider(
+            label="position of the plane, from first to last", start=0.0, end=1.0, step=0.01, value=0.5, visible=False
         )
-        groups = by_subject(cases.scalars)
+        groups = numbers_by_subject(cases.scalars)
         first = next((name for names in groups.values() for name in names.values()), None)
         self.number = pn.widgets.Select(
             label="number of all cases", groups=groups, value=first, visible=bool(cases.dims)
         )
-        dims = {_called(cases.scalars[dim]): dim for dim in cases.dims}
-        self.over = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
+        dims = {_label(cases.scalars[dim]): dim for dim in cases.dims}
+        self.parameter = pn.widgets.Select(label="over", options=dims, visible=len(dims) > 1)
         self.table = pn.pane.HTML("", stylesheets=[STYLE], sizing_mode="stretch_width")
         self.axial, self.study = AxialFigure(), StudyFigure()
         self.tops, self.planes = [ImageFigure()], [ImageFigure(downwards=True)]
         figures = (self.axial.figure, self.tops[0].figure, None, self.planes[0].figure, None, self.study.figure)
-        self.panes = [pn.pane.Bokeh(each, sizing_mode="stretch_width") for each in figures]
-        for widget in (self.compare, self.region, self.units, self.plane, self.where, self.number, self.over):
-            widget.param.watch(self._changed, "value")
+        self.panes = [pn.pane.Bokeh(figure, sizing_mode="stretch_width") for figure in figures]
+        self._settings = (self.region, self.measure, self.plane, self.fraction, self.number, self.parameter)
+        for widget in (self.compare, self.units, *self._settings):
+            widget.param.watch(self._follow, "value")
         self.update()
 
-    def _make_other(self) -> None:
-        """Make the choices and the figures of the other case."""
-        self.choices[1] = self._widgets("other")
-        self._other_choices.objects = list(self.choices[1].values())
+    def _create_second(self) -> None:
+        """Create widgets and figures of the second case."""
+        self.choices[1] = self._create_choices("second case: ")
+        self._second_choices.objects = list(self.choices[1].values())
         self.tops.append(ImageFigure())
         self.planes.append(ImageFigure(downwards=True))
         self.panes[2].object, self.panes[4].object = self.tops[1].figure, self.planes[1].figure
 
-    def _widgets(self, side: str) -> dict[str, Any]:
+    def _create_choices(self, prefix: str) -> dict[str, Any]:
         """Return a slider or a list for every swept parameter."""
-        prefix = "other: " if side == "other" else ""
-        start, found = self.cases.first_solved(), dict[str, Any]()
+        start, widgets = self.cases.first_solved(), dict[str, Any]()
         for dim in self.cases.dims:
-            scalars = self.cases.scalars
-            entry = scalars[dim]
-            options = {text: at for at, text in enumerate(self.cases.choices(dim))}
-            words = entry.dtype.kind in "UOb" or len(options) > MOST_STEPS
-            kind = pn.widgets.Select if words else pn.widgets.DiscreteSlider
-            found[dim] = kind(label=f"{prefix}{_called(entry)}", options=options, value=start[dim])
-            found[dim].param.watch(self._changed, "value")
-        return found
+            entry = self.cases.scalars[dim]
+            options = {text: number for number, text in enumerate(self.cases.choices(dim))}
+            names = entry.dtype.kind in "UOb" or len(options) > LONGEST_SLIDER
+            kind = pn.widgets.Select if names else pn.widgets.DiscreteSlider
+            widgets[dim] = kind(label=f"{prefix}{_label(entry)}", options=options, value=start[dim])
+            widgets[dim].param.watch(self._follow, "value")
+        return widgets
 
-    def _changed(self, event: Any) -> None:
-        """Follow a widget; figures in a notebook have to be told."""
+    def _follow(self, event: Any) -> None:
+        """Update after a change of a widget; a notebook needs a push."""
         with pn.io.hold():
             self.update()
         if not (pn.state.curdoc and pn.state.curdoc.session_context):
             pn.io.push_notebook(*self.panes)
 
-    def place(self, side: int) -> tuple[int, ...]:
-        """Place of a chosen case in the study."""
-        return self.cases.place({dim: widget.value for dim, widget in self.choices[side].items()})
+    def index(self, side: int) -> tuple[int, ...]:
+        """Index of the first (0) or second (1) case in the study."""
+        return self.cases.index({dim: widget.value for dim, widget in self.choices[side].items()})
 
     def update(self) -> None:
-        """Draw what is chosen."""
+        """Draw the chosen cases."""
         if self.compare.value and not self.choices[1]:
-            self._make_other()
+            self._create_second()
         sides = [0, 1] if self.compare.value else [0]
-        loaded = [self._loaded(side) if side in sides else None for side in (0, 1)]
-        self._other_choices.visible = bool(self.compare.value)
-        stressed = any(one is not None and one.has_stress for one in loaded)
-        self.plane.visible = stressed
-        self.where.visible = stressed and self.plane.value != PLANES[0]
-        self._show_axial(loaded)
-        self._show_fields(loaded)
+        cases = [self._load(side) if side in sides else None for side in (0, 1)]
+        self._second_choices.visible = bool(self.compare.value)
+        stressed = any(case is not None and case.has_stress for case in cases)
+        self.plane.visible = self.measure.visible = stressed
+        self.fraction.visible = stressed and self.plane.value != PLANES[0]
+        self._show_axial(cases)
+        self._show_fields(cases)
         self._show_study(sides)
-        self._show_table(loaded, sides, self._reasons(loaded, sides))
+        self._show_table(cases, sides, self._hide_empty(cases, sides))
 
-    def _loaded(self, side: int) -> Looked | None:
+    def _load(self, side: int) -> CaseFields | None:
         """Return a chosen case; None if it is not solved."""
         try:
-            return self.cases.load(self.place(side))
+            return self.cases.load(self.index(side))
         except ContactStudyError:
             return None
 
-    def _show_table(self, loaded: list[Looked | None], sides: list[int], reasons: str) -> None:
-        """Show the main numbers of the cases side by side, whether they are real, and why figures are missing."""
-        columns = [self._column(loaded[side], side) for side in sides]
-        rows = list(dict.fromkeys(name for column in columns for name in column))
+    def _show_table(self, cases: list[CaseFields | None], sides: list[int], remarks: str) -> None:
+        """Show the numbers of the cases side by side, and remarks on missing figures."""
+        columns = [self._column(cases[side], side) for side in sides]
+        names = list(dict.fromkeys(name for column in columns for name in column))
         head = "".join(
-            f"<th style='color:{color}'>{'case' if side == 0 else 'other'}</th>"
+            f"<th style='color:{color}'>{'case' if side == 0 else 'second case'}</th>"
             for side, color in zip(sides, (FIRST, SECOND), strict=False)
         )
         body = ""
-        for name in rows:
+        for name in names:
             cells = "".join(f"<td class=n>{column.get(name, '')}</td>" for column in columns)
             body += f"<tr><td>{html.escape(name)}</td>{cells}</tr>"
-        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>{reasons}"
+        self.table.object = f"<table><tr><th></th>{head}</tr>{body}</table>{remarks}"
 
-    def _column(self, one: Looked | None, side: int) -> dict[str, str]:
-        """Numbers of one case, by their meaning."""
-        place = self.place(side)
-        if one is None:
-            return {"state": html.escape(self.cases.state(place).partition(": ")[0])}
-        if place not in self._columns:
-            self._columns[place] = self._numbers_of(one.dataset)
-        return self._columns[place]
+    def _column(self, case: CaseFields | None, side: int) -> dict[str, str]:
+        """Numbers of a case by meaning."""
+        index = self.index(side)
+        if case is None:
+            return {"state": html.escape(self.cases.status(index)[0])}
+        if index not in self._columns:
+            table = summary(case.dataset)
+            assessment = assess_case(case.dataset, table)
+            style = {"yes": "yes", "no": "no"}.get(assessment.overall, "care")
+            verdict = f"<span class={style}>{assessment.overall}</span>"
+            if assessment.overall != "yes":
+                reason = html.escape(assessment.verdict)
+                verdict += f"<div class=soft style='white-space:normal;font-weight:400'>{reason}</div>"
+            numbers = {row.meaning: html.escape(_marked_text(row.text, row.remark)) for row in table.numbers}
+            self._columns[index] = {"is this number real?": verdict} | numbers | _edge_factors(case.dataset, table)
+        return self._columns[index]
 
-    def _numbers_of(self, one: xr.Dataset) -> dict[str, str]:
-        """Numbers of a case that is solved."""
-        numbers = short(one)
-        found = certainty_of(one, numbers)
-        word = {"yes": "yes", "no": "no"}.get(found.overall, "care")
-        said = f"<span class={word}>{found.overall}</span>"
-        if found.overall != "yes":
-            said += f"<div class=soft style='white-space:normal;font-weight:400'>{html.escape(found.summary)}</div>"
-        column = {"is this number real?": said}
-        column |= {row.meaning: html.escape(_marked(row.text, row.remark)) for row in numbers.numbers}
-        return column | self._factors(one, numbers)
-
-    def _factors(self, one: xr.Dataset, numbers: ShortView) -> dict[str, str]:
-        """Edge factors of the pressure: ends over the middle."""
-        if "hertz_half_width" not in one or "pressure" not in one:
-            return {}
-        factors = edge_factors(one[["pressure", "hertz_half_width"]])
-        found = {}
-        for end, place in (("first", "end I"), ("last", "end II")):
-            name = f"end_pressure_{end}"
-            endless = name in numbers and np.isinf(numbers[name].value)
-            value = float(factors[f"end_over_middle_{end}"])
-            text = "singular" if endless else f"{value:.3f} (no error known)"
-            found[f"edge factor of the contact towards {place} (largest within a, over its middle)"] = text
-        return found
-
-    def _show_axial(self, loaded: list[Looked | None]) -> None:
+    def _show_axial(self, cases: list[CaseFields | None]) -> None:
         """Pressure along the axis."""
-        present = [one for one in loaded if one is not None and one.has_pressure]
+        scales = [
+            choose_scale(case, relative=self.units.value) if case is not None and case.has_pressure else None
+            for case in cases
+        ]
+        present = [
+            (case, scale) for case, scale in zip(cases, scales, strict=True) if case is not None and scale is not None
+        ]
         if not present:
             self.axial.show([None, None], (0.0, 1.0), ("", ""))
             return
-        scales = [scale_of(one, relative=self.units.value) for one in present]
-        spans = [region(one, self.region.value) for one in present]
-        span = (
-            min(low / scale.length for (low, _), scale in zip(spans, scales, strict=True)),
-            max(high / scale.length for (_, high), scale in zip(spans, scales, strict=True)),
-        )
-        lines = [
-            None if one is None or not one.has_pressure else axial(one, scale_of(one, relative=self.units.value))
-            for one in loaded
+        limits = [
+            tuple(limit / scale.length for limit in region_limits(case, self.region.value)) for case, scale in present
         ]
-        scale = scales[0]
-        names = (f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}")
-        self.axial.show(lines, span, names)
+        lines = [
+            axial_line(case, scale) if case is not None and scale is not None else None
+            for case, scale in zip(cases, scales, strict=True)
+        ]
+        scale = present[0][1]
+        labels = (f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}")
+        self.axial.show(lines, (min(low for low, _ in limits), max(high for _, high in limits)), labels)
 
-    def _show_fields(self, loaded: list[Looked | None]) -> None:
-        """Pressure on the top and von Mises stress, with one scale of colours for both cases."""
+    def _show_fields(self, cases: list[CaseFields | None]) -> None:
+        """Pressure on the top and stress in the plane, with common colours."""
         tops: list[Image | None] = []
         planes: list[Image | None] = []
-        units = ""
-        for one in loaded:
-            if one is None or not one.has_pressure:
+        unit = ""
+        for case in cases:
+            if case is None or not case.has_pressure:
                 tops.append(None)
                 planes.append(None)
                 continue
-            scale, shown = scale_of(one, relative=self.units.value), region(one, self.region.value)
-            units = scale.stress_name
-            tops.append(top(one, scale, shown))
-            planes.append(plane(one, scale, shown, self.plane.value, self.where.value))
-        for images, figures, what in ((tops, self.tops, "pressure"), (planes, self.planes, "von Mises stress")):
+            scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
+            unit = scale.stress_name
+            tops.append(top_image(case, scale, limits))
+            planes.append(
+                plane_image(case, scale, limits, self.plane.value, self.fraction.value, name=self.measure.value)
+            )
+        measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
+        for images, figures, quantity in ((tops, self.tops, "pressure"), (planes, self.planes, measure)):
             present = [image for image in images if image is not None]
-            most = max((image.most for image in present), default=1.0)
-            lows, highs = zip(*(image.up for image in present), strict=True) if present else ((0.0,), (1.0,))
-            up = (min(lows), max(highs))
-            for side, (one, image, each) in enumerate(zip(loaded, images, figures, strict=False)):
-                name = ("case: " if side == 0 else "other: ") if self.compare.value else ""
-                beyond = ", more beside the singular end" if one is not None and one.has_pressure and one.ends else ""
-                place = image.place if image is not None else ""
-                each.show(image, most, f"{name}{what}{units}{place}{beyond}", up)
+            limit = max((image.limit for image in present), default=1.0)
+            vertical = (
+                min((image.vertical[0] for image in present), default=0.0),
+                max((image.vertical[1] for image in present), default=1.0),
+            )
+            for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
+                name = ("case: " if side == 0 else "second case: ") if self.compare.value else ""
+                singular = case is not None and case.has_pressure and case.singular_ends
+                clipped = ", clipped beside the singular end" if singular else ""
+                position = image.position if image is not None else ""
+                figure.show(image, limit, f"{name}{quantity}{unit}{position}{clipped}", vertical)
 
-    def _reasons(self, loaded: list[Looked | None], sides: list[int]) -> str:
-        """Return in words why figures are missing, and hide their empty axes."""
-        drawn = [each.shows for each in (*self.tops, *self.planes)]
-        tops, planes = drawn[: len(self.tops)], drawn[len(self.tops) :]
-        self._reveal(0, any(tops))
+    def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
+        """Hide figures without data, and return the reasons."""
+        tops, planes = ([figure.has_image for figure in figures] for figures in (self.tops, self.planes))
+        self._set_visible(0, any(tops))
         for pane, images in ((1, tops), (3, planes)):
             for side in (0, 1):
-                self._reveal(pane + side, side in sides and images[side])
-        said = []
+                self._set_visible(pane + side, side in sides and images[side])
+        remarks = []
         for side in sides:
-            if (one := loaded[side]) is None:
-                text = sentence(self.cases.state(self.place(side)))
+            case = cases[side]
+            if case is None:
+                text = status_sentence(*self.cases.status(self.index(side)))
             elif not tops[side]:
-                text = "The study keeps no surfaces of this case, only its numbers."
+                text = "The study stores no surfaces of this case, only its numbers."
             elif not planes[side]:
-                kept = "at too few points for this plane" if one.has_stress else "not computed or not kept"
-                text = f"Its stresses are {kept}."
+                reason = "have too few points in this plane" if case.has_stress else "are not stored"
+                text = f"The stresses {reason}."
             else:
                 continue
-            name = f"<b>{'case' if side == 0 else 'other'}:</b> " if self.compare.value else ""
-            said.append(f"<p class=why>{name}{html.escape(text)}</p>")
+            name = f"<b>{'case' if side == 0 else 'second case'}:</b> " if self.compare.value else ""
+            remarks.append(f"<p class=why>{name}{html.escape(text)}</p>")
         if self.cases.dims and not self.panes[5].visible:
-            said.append(
-                "<p class=why>No case with these values of the other parameters has the number of all cases.</p>"
-            )
-        return "".join(said)
+            remarks.append("<p class=why>No case at these values of the other parameters has this number.</p>")
+        return "".join(remarks)
 
-    def _reveal(self, number: int, shown: bool) -> None:
-        """Show or hide a figure; panel takes what its model says for the truth, so both must agree."""
+    def _set_visible(self, number: int, visible: bool) -> None:
+        """Show or hide a figure: its pane and its model must agree."""
         pane = self.panes[number]
         if pane.object is not None:
-            pane.object.visible = shown
-        pane.visible = shown
+            pane.object.visible = visible
+        pane.visible = visible
 
     def _show_study(self, sides: list[int]) -> None:
-        """One number of all cases over one swept parameter; the others as in the case that is looked at."""
+        """Draw a number of all cases over a swept parameter, the other parameters as in the first case."""
         if not self.cases.dims or not self.number.value:
-            self._reveal(5, False)
+            self._set_visible(5, False)
             return
-        over, name = self.over.value or self.cases.dims[0], self.number.value
+        name, parameter = self.number.value, self.parameter.value or self.cases.dims[0]
         scalars = self.cases.scalars
-        base = variable_of(name, scalars[name].attrs)
-        all_values = scalars[name].transpose(*scalars["status"].dims).values
-        finite = all_values[np.isfinite(all_values)]
-        factor, unit = unit_for(float(np.abs(finite).max(initial=0.0)), base.units)
         dims = [str(dim) for dim in scalars["status"].dims]
-        place = list(self.place(0))
-        line = tuple(slice(None) if dim == over else at for dim, at in zip(dims, place, strict=True))
-        values = np.asarray(all_values[line], dtype=np.float64) / factor
-        entry = scalars[over]
-        ticks, meaning = None, _called(entry)
-        if entry.dtype.kind in "fi":
-            step, own = unit_for(float(np.nanmax(np.abs(entry.values))), str(entry.attrs.get("units", "1")))
-            places = np.asarray(entry.values, dtype=np.float64) / step
-            meaning += f" ({own})" if own else ""
-        else:
-            places = np.arange(entry.size, dtype=np.float64)
-            ticks = {float(at): text for at, text in enumerate(self.cases.choices(over))}
+        numbers = scalars[name].transpose(*dims).values
+        specification = variable_of(name, scalars[name].attrs)
+        factor, unit = unit_for(float(np.abs(numbers[np.isfinite(numbers)]).max(initial=0.0)), specification.units)
+        line = tuple(slice(None) if dim == parameter else i for dim, i in zip(dims, self.index(0), strict=True))
+        values = np.asarray(numbers[line], dtype=np.float64) / factor
+        x, label, ticks = self._parameter_axis(parameter)
+        axis = dims.index(parameter)
+        marked = [
+            Marked(self.index(side)[axis], float(numbers[self.index(side)]) / factor, color)
+            for side, color in zip(sides, (FIRST, SECOND), strict=False)
+        ]
+        number_label = f"{specification.long_name} ({unit})" if unit else specification.long_name
+        self._set_visible(5, not np.isnan(values).all())
         errors = self._errors(name, line, values, factor)
-        chosen = []
-        for side, color in zip(sides, (FIRST, SECOND), strict=False):
-            at = self.place(side)
-            chosen.append((at[dims.index(over)], float(all_values[at]) / factor, color))
-        named = f"{base.long_name} ({unit})" if unit else base.long_name
-        self._reveal(5, not np.isnan(values).all())
-        self.study.show(values, places, ticks, chosen, (meaning, named), errors)
+        self.study.show(x, values, errors, marked=marked, labels=(label, number_label), ticks=ticks)
+
+    def _parameter_axis(self, parameter: str) -> tuple[FloatArray, str, dict[float, str] | None]:
+        """Positions, label and ticks of a swept parameter."""
+        entry = self.cases.scalars[parameter]
+        if entry.dtype.kind not in "fi":
+            ticks = {float(number): text for number, text in enumerate(self.cases.choices(parameter))}
+            return np.arange(entry.size, dtype=np.float64), _label(entry), ticks
+        factor, unit = unit_for(float(np.nanmax(np.abs(entry.values))), str(entry.attrs.get("units", "1")))
+        label = f"{_label(entry)} ({unit})" if unit else _label(entry)
+        return np.asarray(entry.values, dtype=np.float64) / factor, label, None
 
     def _errors(self, name: str, line: tuple[Any, ...], values: FloatArray, factor: float) -> FloatArray | None:
-        """Errors of a number of the cases along a line, NaN where none is known; None of what has no error."""
+        """Errors of a number along a line of cases, NaN if not estimated; None for exact numbers."""
         scalars = self.cases.scalars
         if f"{name}_error" in scalars:
-            stated = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line] / factor
-            return np.where(np.isfinite(stated) & np.isfinite(values), stated, np.nan)
-        return np.full(values.size, np.nan) if name.startswith(FOUND) else None
+            errors = scalars[f"{name}_error"].transpose(*scalars["status"].dims).values[line] / factor
+            return np.where(np.isfinite(errors) & np.isfinite(values), errors, np.nan)
+        return np.full(values.size, np.nan) if name.startswith(ESTIMATED_PREFIXES) else None
 
     def view(self) -> Any:
-        """Everything, side by side on a wide screen and below each other on a narrow one."""
+        """Layout: columns on a wide screen, rows on a narrow one."""
         count = int((self.cases.scalars["status"] != "excluded").sum())
         head = pn.pane.HTML(
             f"<h2 style='margin:0;font-size:20px'>{html.escape(self.cases.title)}</h2>"
@@ -306,16 +304,15 @@ class Page:
             stylesheets=[STYLE],
             sizing_mode="stretch_width",
         )
-        widgets = (self.region, self.plane, self.where, self.number, self.over)
-        for widget in (*self.choices[0].values(), *self.choices[1].values(), *widgets):
-            # Their own width would reach beyond a narrow column.
+        for widget in (*self.choices[0].values(), *self.choices[1].values(), *self._settings):
+            # The default width exceeds a narrow column.
             widget.param.update(width=None, sizing_mode="stretch_width")
         controls = pn.Column(
             *self.choices[0].values(),
             self.compare,
-            self._other_choices,
+            self._second_choices,
             self.units,
-            *widgets,
+            *self._settings,
             styles={"flex": "1 1 15rem", "max-width": "24rem", "min-width": "14rem"},
             sizing_mode="stretch_width",
         )
@@ -332,17 +329,31 @@ class Page:
         )
 
 
-def _called(entry: xr.DataArray) -> str:
-    """Return what a swept parameter is called beside a widget and an axis."""
+def _edge_factors(case: xr.Dataset, table: Summary) -> dict[str, str]:
+    """Edge factors of the pressure."""
+    if "hertz_half_width" not in case or "pressure" not in case:
+        return {}
+    factors = edge_factors(case[["pressure", "hertz_half_width"]])
+    texts = {}
+    for suffix, end in (("first", "end I"), ("last", "end II")):
+        name = f"end_pressure_{suffix}"
+        singular = name in table and np.isinf(table[name].value)
+        text = "singular" if singular else f"{float(factors[f'end_over_middle_{suffix}']):.3f} ({NOT_ESTIMATED})"
+        texts[f"edge factor of the contact towards {end} (largest within a, over its middle)"] = text
+    return texts
+
+
+def _label(entry: xr.DataArray) -> str:
+    """Label of a swept parameter."""
     return str(entry.attrs.get("long_name", entry.name))
 
 
-def _marked(text: str, remark: str) -> str:
-    """Return a number with the mark that it needs."""
+def _marked_text(text: str, remark: str) -> str:
+    """Text of a number with the mark of its remark."""
     if remark.startswith("singular"):
         return "singular: no largest value"
-    if remark == NOT_PRESSED or remark.startswith("p = K"):
+    if remark == OPEN_END or remark.startswith("p = K"):
         return f"{text}: {remark}"
     if remark.startswith("rounding"):
         return f"{text} ({remark})"
-    return f"{text} (no error known)" if "no error known" in remark else text
+    return f"{text} ({NOT_ESTIMATED})" if NOT_ESTIMATED in remark else text

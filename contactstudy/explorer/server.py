@@ -1,41 +1,142 @@
-"""The page on a server of this machine alone; the study is read while the browser loads the page's scripts."""
+"""Page in a notebook, and on a server of this machine alone, which reads the study while the browser loads scripts."""
 
 from __future__ import annotations
 
+import hmac
 import json
+import logging
+import secrets
 import socket
 import sys
 from asyncio import wrap_future
+from collections.abc import Sequence
 from concurrent.futures import Future
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import urlsplit
 
 from contactstudy import checks
-from contactstudy.errors import InvalidInputError
-from contactstudy.explorer.show import cases_of, check_installed
+from contactstudy.errors import ContactStudyError, InvalidInputError
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from contactstudy.explorer.cases import Cases
 
 HOST = "localhost"
-"""Nobody else can open the page: a study's folder is nobody else's business."""
+LOCAL_HOSTS = frozenset({"localhost", "127.0.0.1", "::1"})
+"""Host names of a request to this machine, with any port: users forward ports."""
 
-PORT, PORTS = 5006, 20
-"""First port that is tried, and how many."""
-
+PORT, PORTS = 5006, 20  # First port, and number of ports that are tried
 SWITCH = 2e-4
-"""Seconds after which the thread that reads the study lets the server answer; Python's own 5 ms add up. Speed."""
+"""Switch interval in seconds while a thread reads the study, so that the server answers; Python's default is 5 ms."""
 
 
-class Opening:
-    """A study that is read while browsers load the page's scripts.
+def explore(study: xr.Dataset | str | Path) -> Any:
+    """Return the page of a study for a notebook: the last expression of a cell shows it.
 
     Parameters
     ----------
-    folder : Path
-        The study's folder.
+    study : Dataset, str or Path
+        An opened study, a result, or the folder of a study, whose cases are read on demand.
+
+    Returns
+    -------
+    panel.Column
+        Choices of swept parameters; pressure along the axis and on the top, stresses in planes, main numbers with
+        errors, edge factors, a second case, and any number of all cases over a swept parameter.
+
+    Raises
+    ------
+    ContactStudyError
+        If the extra `explore` is not installed.
+    InvalidInputError
+        If the argument is no study and no result.
+
+    Examples
+    --------
+    >>> import xarray as xr
+    >>> pressure = xr.DataArray([[1e9, 2e9], [2e9, 1e9]], dims=("x", "y"), coords={"x": [0.0, 1e-3], "y": [0.0, 1e-4]})
+    >>> type(explore(xr.Dataset({"pressure": pressure}))).__name__
+    'Column'
     """
+    _check_installed()
+    import panel as pn
+    import xarray as xr
+
+    checks.instance("study", study, (xr.Dataset, str, Path), "an opened study, a result, or a study's folder")
+    from contactstudy.explorer.cases import open_cases
+    from contactstudy.explorer.page import Page
+
+    pn.extension(inline=True)  # without scripts from elsewhere
+    return Page(open_cases(study)).view()
+
+
+def _check_installed() -> None:
+    """Raise unless the packages of the extra are installed."""
+    missing = [name for name in ("panel", "bokeh") if find_spec(name) is None]
+    if missing:
+        raise ContactStudyError(
+            f"the page of a study needs {' and '.join(missing)}, of the extra `explore`: "
+            'pip install "contactstudy[explore]"'
+        )
+
+
+class Access:
+    """Access to the server: the host names of requests, and a token in the first address, then in a cookie.
+
+    The host check defends against a page of another site, with a name that resolves to this machine; the token against
+    other users of this machine.
+    """
+
+    def __init__(self, port: int, hosts: Sequence[str] = ()) -> None:
+        self.token = secrets.token_urlsafe(24)
+        self.address = f"http://{HOST}:{port}/?token={self.token}"
+        self.cookie = f"contactstudy-{port}"
+        self._hosts = LOCAL_HOSTS | {host.lower() for host in hosts}
+
+    def allows_host(self, request: Any) -> bool:
+        """Whether the host of a request is allowed, and its origin, if any, is that host."""
+        origin = request.headers.get("Origin")
+        try:
+            return urlsplit(f"//{request.host}").hostname in self._hosts and (
+                origin is None or urlsplit(origin).netloc.lower() == request.host.lower()
+            )
+        except ValueError:  # an address that is not one
+            return False
+
+    def _is_token(self, text: str) -> bool:
+        return hmac.compare_digest(text.encode(), self.token.encode())
+
+    def protect(self, application: Any) -> None:
+        """Refuse requests to a Tornado application from another host, or without the token."""
+        from tornado.web import ErrorHandler, RequestHandler
+
+        cookie, token, find_handler = self.cookie, self.token, application.find_handler
+
+        class SetCookie(RequestHandler):
+            """Set the cookie and reload the page at the address without the token."""
+
+            def get(self) -> None:
+                self.set_cookie(cookie, token, httponly=True, samesite="Strict")
+                self.redirect("/")
+
+        def find_allowed(request: Any, **arguments: Any) -> Any:
+            texts = [text.decode(errors="replace") for text in request.query_arguments.get("token", [])]
+            sent = request.cookies.get(cookie)
+            if self.allows_host(request) and request.path == "/" and any(map(self._is_token, texts)):
+                return application.get_handler_delegate(request, SetCookie)
+            if self.allows_host(request) and sent is not None and self._is_token(sent.value):
+                return find_handler(request, **arguments)
+            return application.get_handler_delegate(request, ErrorHandler, {"status_code": 403})
+
+        application.find_handler = find_allowed
+
+
+class Opening:
+    """Study that a thread reads while browsers load the page's scripts."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
@@ -43,42 +144,43 @@ class Opening:
         self.error: Exception | None = None
 
     async def read(self) -> None:
-        """Read the study in a thread; keep an error, and stop the server then."""
+        """Read the study in a thread; an error stops the server."""
         from tornado.ioloop import IOLoop
 
-        loop, usual = IOLoop.current(), sys.getswitchinterval()
+        loop, interval = IOLoop.current(), sys.getswitchinterval()
         sys.setswitchinterval(SWITCH)
         try:
-            self._cases.set_result(await loop.run_in_executor(None, self._cases_and_code))
-        except Exception as error:  # raised again where the server was started
+            self._cases.set_result(await loop.run_in_executor(None, self._open))
+        except Exception as error:  # `serve` raises it
             self.error = error
             loop.stop()
         finally:
-            sys.setswitchinterval(usual)
+            sys.setswitchinterval(interval)
 
-    def _cases_and_code(self) -> Cases:
-        """Import what makes the page, and read the study."""
+    def _open(self) -> Cases:
+        """Import the page, and read the study."""
         import_module("contactstudy.explorer.page")
-        return cases_of(self._folder)
+        from contactstudy.explorer.cases import open_cases
+
+        return open_cases(self._folder)
 
     def page(self) -> Any:
-        """Page of a new visitor: empty, and filled once the browser has its scripts and the study is read."""
+        """Page of a new visitor: empty until the browser has its scripts and the study is read."""
         import panel as pn
 
-        shown = pn.Column(sizing_mode="stretch_width")
+        column = pn.Column(sizing_mode="stretch_width")
 
         async def fill() -> None:
             """Put the study into the page."""
             from contactstudy.explorer.page import Page
 
-            cases = await wrap_future(self._cases)
-            shown.objects = [Page(cases).view()]
+            column.objects = [Page(await wrap_future(self._cases)).view()]
 
         pn.state.onload(fill)
-        return shown
+        return column
 
 
-def serve(folder: str | Path, *, port: int | None = None, show: bool = True) -> None:
+def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] = (), show: bool = True) -> None:
     """Serve the page of a study on this machine until Ctrl-C.
 
     Parameters
@@ -87,6 +189,8 @@ def serve(folder: str | Path, *, port: int | None = None, show: bool = True) -> 
         The study's folder.
     port : int, optional
         Port of the page; default: the first free one from 5006 on.
+    hosts : sequence of str
+        Host names, beside localhost, 127.0.0.1 and [::1], that a browser may use, such as the name of a proxy.
     show : bool
         Whether to open it in the browser.
 
@@ -99,65 +203,75 @@ def serve(folder: str | Path, *, port: int | None = None, show: bool = True) -> 
     InvalidInputError
         If the port is taken.
     """
-    check_installed()
+    _check_installed()
     checks.instance("folder", folder, (str, Path), "the path of a study's folder")
-    place = Path(folder)
-    if not (place / "study.json").is_file():
-        cases_of(place)  # says what is wrong with it
-    chosen = _free_port() if port is None else _checked_port(port)
-    # Before the thread that reads the study: the server's packages look in `sys.modules` for a pandas that is complete.
+    path = Path(folder)
+    if not (path / "study.json").is_file():
+        from contactstudy.explorer.cases import open_cases
+
+        open_cases(path)  # raises the reason
+    port = _free_port() if port is None else _checked_port(port)
+    # Before the thread that reads the study: the server's packages look in `sys.modules` for a complete pandas.
     import pandas  # noqa: F401
     import panel as pn
     from tornado.ioloop import IOLoop
 
-    opening = Opening(place.resolve())
-    print(f"http://{HOST}:{chosen} shows the study until Ctrl-C", flush=True)
-    IOLoop.current().add_callback(opening.read)
-    server = pn.serve(
+    opening, access = Opening(path.resolve()), Access(port, hosts)
+    # Access checks host and origin of every request; Bokeh's own list of origins would need the forwarded ports.
+    logging.getLogger("bokeh.server.util").setLevel(logging.ERROR)
+    server = pn.io.server.get_server(
         {"/": opening.page},
-        port=chosen,
+        port=port,
         address=HOST,
-        websocket_origin=[f"{HOST}:{chosen}", f"127.0.0.1:{chosen}"],
-        show=show,
-        title=_title(place),
-        verbose=False,
+        websocket_origin="*",
+        location=False,  # Panel's own cannot parse [::1]
+        title=_title(path),
     )
+    access.protect(server._tornado)
+    print(f"{access.address} shows the study until Ctrl-C", flush=True)
+    IOLoop.current().add_callback(opening.read)
+    if show:
+        import webbrowser
+
+        IOLoop.current().add_callback(webbrowser.open, access.address)
+    server.start()
+    server.io_loop.start()
     if opening.error is not None:
         server.stop()
         raise opening.error
 
 
-def _title(place: Path) -> str:
-    """Name of the study for the browser's tab; of its folder where the study cannot be read, which is said later."""
+def _title(path: Path) -> str:
+    """Name of the study for the browser's tab; of its folder if the study is unreadable."""
     try:
-        study = json.loads((place / "study.json").read_text(encoding="utf-8"))
+        study = json.loads((path / "study.json").read_text(encoding="utf-8"))
         return f"{study['name']}: {study['description']}" if study.get("description") else str(study["name"])
     except (OSError, ValueError, KeyError, TypeError, AttributeError):
-        return place.resolve().name
+        return path.resolve().name
 
 
-def _taken(port: int) -> bool:
-    """Whether something listens on a port of this machine."""
-    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as tried:
-        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # one that was just given back is free
+def _is_free(port: int) -> bool:
+    """Whether no process listens on a port of this machine."""
+    with socket.socket(socket.AF_INET, socket.SOCK_STREAM) as probe:
+        probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)  # a recently closed port is free
         try:
-            tried.bind((HOST, port))
+            probe.bind((HOST, port))
         except OSError:
-            return True
-    return False
+            return False
+    return True
 
 
 def _free_port() -> int:
     """Return the first free port."""
     for port in range(PORT, PORT + PORTS):
-        if not _taken(port):
+        if _is_free(port):
             return port
     raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORTS - 1} are taken")
 
 
 def _checked_port(port: object) -> int:
-    """Return a port that is free, or raise."""
-    wanted = checks.count("port", port)
-    if wanted > 65535 or _taken(wanted):
-        raise InvalidInputError("port", wanted, "a free port, at most 65535", "leave it out to take the next free one")
-    return wanted
+    """Return a free port, or raise."""
+    number = checks.count("port", port)
+    if number > 65535 or not _is_free(number):
+        raise InvalidInputError("port", number, "a free port, at most 65535", "leave it out to take the next free one")
+    return number

@@ -3,8 +3,5 @@
 from contactstudy.export.matlab import to_mat
 from contactstudy.export.table import to_csv, to_table
 from contactstudy.export.vtk import to_vtk
-from contactstudy.near_names import suggest
 
 __all__ = ["to_csv", "to_mat", "to_table", "to_vtk"]
-
-suggest(__name__, __all__)

@@ -1,4 +1,4 @@
-"""What ``contactstudy export`` does: from a file or a study's folder to CSV, VTK or MATLAB."""
+"""Command ``contactstudy export``: from a file or a study's folder to CSV, VTK or MATLAB."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from contactstudy.arrays.named_places import place_of, selection_of
-from contactstudy.arrays.old_names import with_present_names
+from contactstudy.arrays.selections import place_of, selection_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
 from contactstudy.export.table import Line, csv_text, headings, to_csv, to_table
@@ -18,18 +17,7 @@ SUFFIXES = {"csv": ".csv", "vtk": ".vtr", "mat": ".mat"}
 
 
 def parse_line(text: str) -> Line:
-    """Read the ends of a line from ``X,Y,Z:X,Y,Z`` in metres.
-
-    Raises
-    ------
-    InvalidInputError
-        If the text is something else.
-
-    Examples
-    --------
-    >>> parse_line("0,0,0:0,0,2e-4")
-    ([0.0, 0.0, 0.0], [0.0, 0.0, 0.0002])
-    """
+    """Return the ends of a line from ``X,Y,Z:X,Y,Z`` in metres."""
     try:
         start, end = ([float(number) for number in part.split(",")] for part in text.split(":"))
     except ValueError:
@@ -52,7 +40,7 @@ def _open(path: Path) -> xr.Dataset:
         return open_study(path)
     try:
         with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return with_present_names(dataset.load())
+            return dataset.load()
     except (OSError, ValueError) as error:
         missing = isinstance(error, FileNotFoundError)
         reason = "there is no such file" if missing else "this file is not netCDF"
@@ -69,36 +57,7 @@ def export(
     select: Sequence[str] = (),
     out: Path | None = None,
 ) -> Path | None:
-    """Write a field or a line of a case, or for MATLAB a whole case or study, for others' tools.
-
-    Parameters
-    ----------
-    path : Path
-        netCDF file of a case, or folder of a study.
-    kind : {"csv", "vtk", "mat"}
-        Format.
-    variables : sequence of str, optional
-        As for :func:`contactstudy.export.to_table`, :func:`contactstudy.export.to_vtk` and
-        :func:`contactstudy.export.to_mat`; without them, of a study of several cases the summaries go to MATLAB.
-    line : str, optional
-        ``X,Y,Z:X,Y,Z`` in metres, for CSV.
-    points : int
-        Number of points of the line.
-    select : sequence of str
-        ``NAME=VALUE`` of swept parameters: CSV and VTK hold one case.
-    out : Path, optional
-        Default: beside the file, or ``export`` in the folder; ``-`` prints CSV.
-
-    Returns
-    -------
-    Path or None
-        The file; None if it was printed.
-
-    Raises
-    ------
-    InvalidInputError
-        If the path holds no result, or an option does not suit.
-    """
+    """Write a field or a line of a case as CSV or VTK, or a case or a study for MATLAB; None if ``-`` prints it."""
     dataset = _select(_open(path), select)
     swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
     if line is not None and kind != "csv":
@@ -122,22 +81,9 @@ def export(
 
 
 def export_summaries(folder: Path, out: Path | None = None) -> Path | None:
-    """Write the summaries of a study as CSV, one row per case.
-
-    Parameters
-    ----------
-    folder : Path
-        The study's folder.
-    out : Path, optional
-        Default: ``summary.csv`` in the folder; ``-`` prints it.
-
-    Returns
-    -------
-    Path or None
-        The file; None if it was printed.
-    """
+    """Write the summaries of a study as CSV, one row per case; None if ``-`` prints it."""
     from contactstudy.study import collect
-    from contactstudy.study.store import write_text
+    from contactstudy.study.files import write_text
 
     collected = collect(folder)
     table = collected.to_dataframe().reset_index()

@@ -10,9 +10,8 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis import along_line, measure, single_case
-from contactstudy.analysis.fields import points_in_words
-from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import UNBOUNDED, variable_of
+from contactstudy.analysis.cuts import points_hint
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, require, variable_of
 from contactstudy.errors import InvalidInputError
 
 if TYPE_CHECKING:
@@ -22,52 +21,29 @@ Line = tuple[Sequence[float], Sequence[float]]
 
 
 def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
-    """Headings of columns: the names, with their units where they have some.
-
-    Examples
-    --------
-    >>> headings(xr.Dataset({"peak_pressure": 1e9, "friction": 0.1}), ["peak_pressure", "friction", "other"])
-    {'peak_pressure': 'peak_pressure [Pa]', 'friction': 'friction'}
-    """
-    known = [name for name in names if name in dataset.variables]
-    units = {name: variable_of(name, dataset[name].attrs, coordinate=name in dataset.coords).units for name in known}
-    return {name: f"{name} [{unit}]" if unit and unit != "1" else name for name, unit in units.items()}
-
-
-def marked_headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
-    """Headings of columns, with the mark of variables that say of themselves that they have no error.
-
-    A column of errors says it by its empty cells.
-
-    Examples
-    --------
-    >>> marked_headings(xr.Dataset({"half_width": ((), 1e-4, {"comment": "no error known"})}), ["half_width"])
-    {'half_width': 'half_width [m] (no error known)'}
-    """
-    unknown = {
-        name
-        for name in names
-        if name in dataset.variables
-        and not name.endswith("_error")
-        and UNBOUNDED in str(dataset[name].attrs.get("comment", ""))
-    }
-    plain = headings(dataset, names)
-    return {name: f"{heading} ({UNBOUNDED})" if name in unknown else heading for name, heading in plain.items()}
+    """Return headings of columns: names with units, and the mark of numbers without an error."""
+    texts = {}
+    for name in names:
+        if name in dataset.variables:
+            array = dataset[name]
+            unit = variable_of(name, array.attrs, coordinate=name in dataset.coords).units
+            unmarked = name.endswith("_error") or array.attrs.get(ERROR_KIND) != NOT_ESTIMATED
+            texts[name] = f"{name} [{unit}]" if unit and unit != "1" else name
+            texts[name] += "" if unmarked else f" (error {NOT_ESTIMATED})"
+    return texts
 
 
-def _on_the_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
-    """Variables to be listed; all that are no scalars if none is named."""
+def _fields_on_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
+    """Variables of the table; by default all but scalars."""
     if variables is None:
-        chosen = {str(name): array for name, array in dataset.data_vars.items() if array.ndim}
+        arrays = {str(name): array for name, array in dataset.data_vars.items() if array.ndim}
     else:
         names = [variables] if isinstance(variables, str) else list(variables)
-        chosen = {name: measure(dataset, name) for name in names}
-    shapes = [array.dims for array in chosen.values()]
+        arrays = {name: measure(dataset, name) for name in names}
+    shapes = [array.dims for array in arrays.values()]
     if len({frozenset(dims) for dims in shapes}) != 1 or not all(shapes):
-        raise InvalidInputError(
-            "variables", variables or "all", "variables on the same points", points_in_words(chosen)
-        )
-    return xr.Dataset(chosen)
+        raise InvalidInputError("variables", variables or "all", "variables on the same points", points_hint(arrays))
+    return xr.Dataset(arrays)
 
 
 def to_table(
@@ -77,12 +53,12 @@ def to_table(
     line: Line | None = None,
     points: int = 101,
 ) -> pd.DataFrame:
-    """Variables at their points, or interpolated along a line, as a table.
+    """Return variables at their points, or interpolated along a line, as a table.
 
     Parameters
     ----------
     dataset : Dataset
-        One case, or anything that :mod:`contactstudy.analysis` returns.
+        One case, or a Dataset of :mod:`contactstudy.analysis`.
     variables : str or sequence of str, optional
         Variables or measures, see :func:`contactstudy.analysis.measure`, on the same points; default: all, or along a
         line all stresses.
@@ -94,14 +70,14 @@ def to_table(
     Returns
     -------
     pandas.DataFrame
-        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(no error known)`` where the
-        `comment` of a variable says so.
+        Positions first; headings with units, such as ``von_mises [Pa]``, and with ``(error not estimated)`` for a
+        variable with this `error_kind`.
 
     Raises
     ------
     InvalidInputError
-        If there is more than one case, the variables are missing or lie on different points, or the line leaves the
-        result.
+        If the Dataset contains more than one case, the variables are missing or lie on different points, or the line
+        leaves the result.
 
     Examples
     --------
@@ -110,40 +86,32 @@ def to_table(
     ['z [m]', 'von_mises [Pa]']
     """
     require(dataset)
-    one = single_case(dataset)
+    case = single_case(dataset)
     if line is None:
-        chosen = _on_the_same_points(one, variables)
+        fields = _fields_on_same_points(case, variables)
     else:
         if not isinstance(line, Sequence) or len(line) != 2:
             raise InvalidInputError("line", line, "a pair of points, each (x, y, z) or (x, y) in metres")
-        chosen = along_line(one, *line, points=points, variables=variables)
-    dims = list(chosen.sizes)
-    along = [str(name) for name, coordinate in chosen.coords.items() if coordinate.ndim and name not in dims]
-    frame = chosen.to_dataframe().reset_index()
-    names = [name for name in [*dims, *along, *chosen.data_vars] if name in frame]
-    return frame[names].rename(columns=marked_headings(chosen, [str(name) for name in names]))
+        fields = along_line(case, *line, points=points, variables=variables)
+    dims = list(fields.sizes)
+    coordinates = [str(name) for name, array in fields.coords.items() if array.ndim and name not in dims]
+    frame = fields.to_dataframe().reset_index()
+    names = [name for name in [*dims, *coordinates, *fields.data_vars] if name in frame]
+    return frame[names].rename(columns=headings(fields, [str(name) for name in names]))
 
 
-# A spreadsheet takes a cell that begins so for a formula, and would run it.
-FORMULA = ("=", "+", "-", "@", "\t", "\r")
+FORMULA = ("=", "+", "-", "@", "\t", "\r")  # First characters of a formula in a spreadsheet, which would run it
 
 
-def _plain(entry: object) -> object:
-    """Return a cell as it is, but a text that a spreadsheet would calculate with an apostrophe before it."""
+def _escape(entry: object) -> object:
+    """Return a cell with an apostrophe before a formula."""
     return f"'{entry}" if isinstance(entry, str) and entry.startswith(FORMULA) else entry
 
 
 def csv_text(table: pd.DataFrame) -> str:
-    r"""Return a table as CSV whose texts no spreadsheet takes for formulas.
-
-    Examples
-    --------
-    >>> import pandas as pd
-    >>> csv_text(pd.DataFrame({"profile": ["=1+1", "sharp"], "load": [-1.0, 2.0]}))
-    "profile,load\n'=1+1,-1.0\nsharp,2.0\n"
-    """
-    texts = {name: column.map(_plain) for name, column in table.items() if column.dtype.kind not in "fiub"}
-    return str(table.assign(**texts).rename(columns=_plain).to_csv(index=False))
+    """Return a table as CSV, with an apostrophe before texts that a spreadsheet would run as formulas."""
+    texts = {name: column.map(_escape) for name, column in table.items() if column.dtype.kind not in "fiub"}
+    return str(table.assign(**texts).rename(columns=_escape).to_csv(index=False))
 
 
 def to_csv(
@@ -184,6 +152,6 @@ def to_csv(
     checks.instance("path", path, (str, Path), "a path")
     target = Path(path)
     table = to_table(dataset, variables, line=line, points=points)
-    with checks.writing(target):
-        target.write_text(csv_text(table), encoding="utf-8")
+    with checks.writing(target) as part:
+        part.write_text(csv_text(table), encoding="utf-8")
     return target

@@ -1,8 +1,10 @@
-"""VTK files for ParaView and its like: points on a rectilinear grid, or cells of an unstructured mesh."""
+"""VTK files for ParaView: points on a rectilinear grid, or cells of an unstructured mesh."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import base64
+import xml.etree.ElementTree as ET
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -11,19 +13,16 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis import single_case
 from contactstudy.analysis.axes import axis_dimensions, positions
-from contactstudy.analysis.fields import fields_on_one_grid
+from contactstudy.analysis.cuts import fields_on_same_points
 from contactstudy.arrays.cells import labelled_cells
-from contactstudy.arrays.required import require
-from contactstudy.arrays.variables import AXES, STRESSES
-from contactstudy.checks import FloatArray
+from contactstudy.arrays.variables import AXES, STRESSES, require
+from contactstudy.checks import Array, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.export.mesh import write_mesh
 
-SUFFIXES = (".vtr", ".vtu")
-"""Rectilinear grid, and unstructured mesh, which more programs read."""
-
-TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)
-"""Place of xx, xy, xz, yx, ... among the six components of a result."""
+SUFFIXES = (".vtr", ".vtu")  # Rectilinear grid, and unstructured mesh for more programs
+TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)  # Indices of xx, xy, xz, yx, ... among the six components of a result
+QUADRILATERAL, HEXAHEDRON = 9, 12  # VTK's numbers of kinds of cells
+CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # Corners of a cell in VTK's order, along its first two axes
 
 
 def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str] | None = None) -> Path:
@@ -43,15 +42,15 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     -------
     Path
         The file. Its axes are those of the package: z is the depth, so the body lies on the side of larger z.
-        Variables are point data, but for surfaces in an unstructured mesh, such as the pressure: there they are data of
-        the contact's cells, each of its own width. Where all six stress components are among them they are also
-        written together as the tensor `stress` (xx, xy, xz, yx, yy, ...).
+        Variables are point data; surfaces in an unstructured mesh, such as the pressure, are data of the contact's
+        cells. All six stress components are written
+        together as the tensor `stress` (xx, xy, xz, yx, yy, ...).
 
     Raises
     ------
     InvalidInputError
-        If there is more than one case, the path ends otherwise, or the variables are missing or lie on different
-        points, or the file cannot be written.
+        If the Dataset contains more than one case, the path has another suffix, the variables are missing or lie on
+        different points, or the file cannot be written.
 
     Examples
     --------
@@ -67,14 +66,14 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     target = Path(path)
     if target.suffix not in SUFFIXES:
         raise InvalidInputError("path", str(path), f"a file name that ends with {' or '.join(SUFFIXES)}")
-    fields = fields_on_one_grid(single_case(dataset), variables)
+    fields = fields_on_same_points(single_case(dataset), variables)
     if target.suffix == ".vtr":
         _write_rectilinear(target, *_on_points(fields))
     elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
         _write_cells(target, fields)
     else:
         axes, data = _on_points(fields)
-        write_mesh(target, axes, on_points=data)
+        _write_mesh(target, axes, on_points=data)
     return target
 
 
@@ -82,34 +81,96 @@ def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[
     """Increasing positions along x, y and z, and the values there (x, y, z, ...)."""
     first = next(iter(fields.values()))
     along = axis_dimensions(first)
-    # The format asks for increasing positions; an axis that the fields do not have is a plane at 0.
-    place = {axis: positions(first, axis).values if axis in along else np.zeros(1) for axis in AXES}
-    order = {axis: np.argsort(values, kind="stable") for axis, values in place.items()}
+    # The format requires increasing positions; an axis without positions is a plane at 0.
+    points = {axis: positions(first, axis).values if axis in along else np.zeros(1) for axis in AXES}
+    order = {axis: np.argsort(values, kind="stable") for axis, values in points.items()}
     data = {}
     for name, array in fields.items():
         values = array.transpose(*along.values()).values.astype(np.float64)
-        shaped = values.reshape([place[axis].size for axis in AXES])
+        shaped = values.reshape([points[axis].size for axis in AXES])
         data[name] = shaped[np.ix_(*order.values())]
     if all(name in data for name in STRESSES):
         components = np.stack([data[name] for name in STRESSES], axis=-1)
         data["stress"] = components[..., TENSOR].reshape(*components.shape[:-1], 3, 3)
-    return [place[axis][order[axis]] for axis in AXES], data
+    return [points[axis][order[axis]] for axis in AXES], data
 
 
 def _write_rectilinear(target: Path, axes: list[FloatArray], data: dict[str, FloatArray]) -> None:
     """Write point data on a rectilinear grid."""
     from uvw import DataArray, RectilinearGrid
 
-    # Not compressed: uvw 0.7 spoils compressed arrays of a multiple of 32 KiB, and stresses hardly get smaller.
-    with checks.writing(target), RectilinearGrid(str(target), tuple(axes)) as grid:
+    # Without compression: uvw 0.7 corrupts compressed arrays of a multiple of 32 KiB, and stresses compress little.
+    with checks.writing(target) as part, RectilinearGrid(str(part), tuple(axes)) as grid:
         for name, values in data.items():
             grid.addPointData(DataArray(values, range(3), name))
 
 
 def _write_cells(target: Path, fields: dict[str, xr.DataArray]) -> None:
-    """Write data of the contact's cells, each as wide as it is."""
+    """Write data of the contact's cells."""
     first = next(iter(fields.values()))
-    # Only where the cells are: a gap is infinite beyond the roller.
+    # Only the cells of the field matter: a gap is infinite beyond the roller.
     _, grid = labelled_cells("variables", xr.zeros_like(first, dtype=np.float64))
     edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
-    write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
+    _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
+
+
+def _write_mesh(
+    path: Path,
+    axes: list[FloatArray],
+    *,
+    on_points: Mapping[str, FloatArray] | None = None,
+    in_cells: Mapping[str, FloatArray] | None = None,
+) -> None:
+    """Write the cells between points (x, y, z) in XML, with values on the points or in the cells."""
+    kind, corners = _cells([axis.size for axis in axes])
+    nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
+    root = ET.Element(
+        "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
+    )
+    piece = ET.SubElement(
+        ET.SubElement(root, "UnstructuredGrid"),
+        "Piece",
+        NumberOfPoints=str(len(nodes)),
+        NumberOfCells=str(len(corners)),
+    )
+    for section, fields, count in (
+        ("PointData", on_points or {}, len(nodes)),
+        ("CellData", in_cells or {}, len(corners)),
+        ("Points", {"Points": nodes}, len(nodes)),
+    ):
+        data = ET.SubElement(piece, section)
+        for name, values in fields.items():
+            _array(data, name, np.asarray(values, dtype="<f8").reshape(count, -1))
+    cells = ET.SubElement(piece, "Cells")
+    _array(cells, "connectivity", corners.reshape(-1, 1))
+    _array(cells, "offsets", corners.shape[1] * np.arange(1, len(corners) + 1).reshape(-1, 1))
+    _array(cells, "types", np.full((len(corners), 1), kind, dtype="u1"))
+    with checks.writing(path) as part:
+        ET.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
+
+
+def _array(parent: ET.Element, name: str, rows: Array) -> None:
+    """Add an array in base64: the number of bytes, then the bytes."""
+    kinds = {"f": "Float64", "i": "Int64", "u": "UInt8"}
+    element = ET.SubElement(parent, "DataArray", type=kinds[rows.dtype.kind], Name=name, format="binary")
+    if rows.shape[1] > 1:
+        element.set("NumberOfComponents", str(rows.shape[1]))
+    element.text = base64.b64encode(np.uint64(rows.nbytes).tobytes() + np.ascontiguousarray(rows).tobytes()).decode()
+
+
+def _cells(counts: list[int]) -> tuple[int, IntArray]:
+    """Kind of the cells between so many points along each axis, and the numbers of their corners."""
+    wide = [axis for axis, count in enumerate(counts) if count > 1]
+    if len(wide) < 2:
+        raise InvalidInputError(
+            "variables", f"{counts} points", "on at least two points along two of x, y and z", "take .vtr or CSV"
+        )
+    numbers = np.arange(int(np.prod(counts)), dtype="<i8").reshape(counts)
+    cycles = CORNERS if len(wide) == 2 else [(*corner, level) for level in (0, 1) for corner in CORNERS]
+    corners = []
+    for corner in cycles:
+        corner_slices = [slice(None)] * len(counts)
+        for axis, end in zip(wide, corner, strict=True):
+            corner_slices[axis] = slice(1, None) if end else slice(None, -1)
+        corners.append(numbers[tuple(corner_slices)].ravel())
+    return (QUADRILATERAL if len(wide) == 2 else HEXAHEDRON), np.stack(corners, axis=1)

@@ -1,43 +1,46 @@
-"""Stress history of a material point that the contact rolls over.
+"""Stress histories of material points that pass the contact, and the smallest ball around a history.
+
+At most one point more than the dimensions supports the ball. Beginning with one point, the farthest point outside joins
+the support, and the smallest ball around the support is one of the circumscribed balls of its subsets, until all points
+are inside. The radius grows with each step, so the iteration ends with the exact ball.
+Source: E. Welzl, Smallest enclosing disks (balls and ellipsoids), in: New Results and New Trends in Computer Science,
+LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999.
 
 The field along y at one (x, z) is the history of the point there during one passage. A point of the body is unloaded
 before and after: the window of a result shows only part of that. So the unloaded state is added to every history, and
-what the window leaves out between its border and the unloaded state is measured by :func:`window_remainder`.
+:func:`window_remainder` measures the stress at the border of the window.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import product
 
 import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import dimension_along
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import STRESSES, UNBOUNDED, Variable, named
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, Variable, named, required_in_si
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
-OF_POINTS = f"of the stresses at the given points, {UNBOUNDED}"
-"""Comment of what is made of a history."""
-
-FEWEST_POSITIONS = 3
-"""Along y, for a history."""
-
-COMPONENT = "stress_component"
-"""Dimension of the six components while a history is worked on."""
+OF_POINTS = "of the stresses at the given points"  # Comment of values from histories
+FEWEST_POSITIONS = 3  # Along y, for a history
+COMPONENT = "stress_component"  # Dimension of the six components while a history is worked on
 
 
 def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
-    """Six stress components with the rolling direction and the component last, and the name of the former.
-
-    Raises
-    ------
-    InvalidInputError
-        If a component is missing, the rolling direction is, or it has fewer than three positions.
-    """
+    """Six stress components with the rolling direction and the component last, and the name of the former."""
     stress = required_in_si(stress, *STRESSES, argument="stress")
-    rolling = dimension_along(stress["tau_yz"], "y")
+    rolling = rolling_dimension(stress["tau_yz"])
+    tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
+    lead = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
+    return tensor.transpose(*lead, rolling, COMPONENT), rolling
+
+
+def rolling_dimension(stress: xr.DataArray) -> str:
+    """Dimension along y of a stress over a whole passage, at least three positions."""
+    rolling = dimension_along(stress, "y")
     if stress.sizes[rolling] < FEWEST_POSITIONS:
         raise InvalidInputError(
             f"stress.sizes[{rolling!r}]",
@@ -45,29 +48,16 @@ def histories(stress: xr.Dataset) -> tuple[xr.DataArray, str]:
             f"at least {FEWEST_POSITIONS}: the positions along y are the history",
             "solve with y over the whole passage, for example from -3 to 3 half-widths",
         )
-    tensor = xr.concat([stress[name] for name in STRESSES], dim=COMPONENT, coords="minimal", compat="override")
-    lead = [dim for dim in tensor.dims if dim not in (rolling, COMPONENT)]
-    return tensor.transpose(*lead, rolling, COMPONENT), rolling
+    return rolling
 
 
 def over_history(
     function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, sizes: tuple[tuple[str, int] | None, ...]
 ) -> tuple[xr.DataArray, ...]:
-    """Apply a function of histories to every material point of a result.
+    """Apply a function of histories to every material point of a result; NaN where a study is padded.
 
-    Parameters
-    ----------
-    function : callable
-        From an array (point, instant, 6), whose last instant is the unloaded state, to arrays (point,) or (point, n).
-    stress : Dataset
-        With the six components.
-    sizes : tuple
-        For each array that the function returns: None, or name and size of its last dimension.
-
-    Returns
-    -------
-    tuple of DataArray
-        Without the rolling direction; NaN where a study is padded.
+    It maps (point, instant, 6), the last instant unloaded, to arrays (point,) or (point, n); for each of them `sizes`
+    contains None, or name and size of the dimension n.
     """
     tensor, rolling = histories(stress)
 
@@ -75,20 +65,20 @@ def over_history(
         lead = values.shape[:-2]
         flat = values.reshape(-1, *values.shape[-2:]).astype(np.float64)
         absent = np.isnan(flat).any(axis=-1)
-        known = ~absent.all(axis=-1)
+        loaded = ~absent.all(axis=-1)
         # Positions that pad a shorter window are as unloaded as those beyond it.
         flat[absent] = 0.0
-        history = np.concatenate([flat, np.zeros_like(flat[:, :1])], axis=1)[known]
+        history = np.concatenate([flat, np.zeros_like(flat[:, :1])], axis=1)[loaded]
         results = []
-        computed = function(history) if known.any() else None
+        computed = function(history) if loaded.any() else None
         for number, extra in enumerate(sizes):
-            full = np.full((known.size, *(() if extra is None else (extra[1],))), np.nan)
+            full = np.full((loaded.size, *(() if extra is None else (extra[1],))), np.nan)
             if computed is not None:
-                full[known] = computed[number]
+                full[loaded] = computed[number]
             results.append(full.reshape((*lead, *full.shape[1:])))
         return tuple(results) if len(results) > 1 else results[0]
 
-    found = xr.apply_ufunc(
+    results = xr.apply_ufunc(
         apply,
         tensor,
         input_core_dims=[[rolling, COMPONENT]],
@@ -100,27 +90,12 @@ def over_history(
         },
         output_dtypes=[np.float64] * len(sizes),
     )
-    return tuple(found) if len(sizes) > 1 else (found,)
+    return tuple(results) if len(sizes) > 1 else (results,)
 
 
 def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
-    """Return what is made of the histories at points with its name, its unit and the mark that it has no error.
-
-    Parameters
-    ----------
-    name : str
-        In the table of variables.
-    array : DataArray
-        Values.
-    base : Variable, optional
-        As for :func:`contactstudy.arrays.variables.named`.
-
-    Examples
-    --------
-    >>> of_points("dang_van", xr.DataArray(1.0)).attrs["comment"]
-    'of the stresses at the given points, no error known'
-    """
-    return named(name, array, base).assign_attrs(comment=OF_POINTS)
+    """Values from the histories at points with name, unit and the mark of a value without an error estimate."""
+    return named(name, array, base).assign_attrs({"comment": OF_POINTS, ERROR_KIND: NOT_ESTIMATED})
 
 
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
@@ -166,3 +141,88 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     ordered = stress.sortby(rolling) if rolling in stress.indexes else stress
     (result,) = over_history(remainder, ordered, (None,))
     return named("window_remainder", result)
+
+
+ROUNDING = 1e-10  # A point may lie outside a ball by this fraction of its radius
+REGULAR = 1e-15  # Part of the trace added to the diagonal of a system of points, lest it be singular
+MOST_STEPS = 500  # Points that may join a ball before it counts as not found: a safeguard
+
+
+def enclosing_balls(points: Array, heights: Array | None = None) -> tuple[Array, Array]:
+    """Centre (path, axis) and radius (path) of the smallest ball around each path of points (path, instant, axis).
+
+    With `heights` (path, instant) the centre is bound to a plane: points are projections on it, heights distances.
+    """
+    origin = points.mean(axis=1)
+    local = points - origin[:, None]
+    above = np.zeros(points.shape[:2]) if heights is None else heights**2
+    size = np.sqrt((local**2).sum(axis=-1) + above).max(axis=1)
+    centre, radius = origin.copy(), np.zeros(len(points))
+    open_paths = np.flatnonzero(size > 0)
+    path, above = local[open_paths] / size[open_paths, None, None], above[open_paths] / size[open_paths, None] ** 2
+    middle = path[:, 0].copy()
+    reach = np.sqrt(above[:, 0])
+    slots = points.shape[-1] + 1
+    support = np.zeros((open_paths.size, slots), dtype=np.int64)
+    occupied = np.zeros((open_paths.size, slots), dtype=bool)
+    occupied[:, 0] = True
+    for _ in range(MOST_STEPS):
+        distance = np.sqrt(((path - middle[:, None]) ** 2).sum(axis=-1) + above)
+        farthest = distance.argmax(axis=1)
+        enclosed = distance[np.arange(open_paths.size), farthest] <= reach * (1 + ROUNDING) + ROUNDING
+        finished = open_paths[enclosed]
+        centre[finished] += middle[enclosed] * size[finished, None]
+        radius[finished] = reach[enclosed] * size[finished]
+        remaining = ~enclosed
+        open_paths, path, above, support, occupied, farthest = (
+            values[remaining] for values in (open_paths, path, above, support, occupied, farthest)
+        )
+        if not open_paths.size:
+            return centre, radius
+        middle, reach, support, occupied = _join(path, above, support, occupied, farthest)
+    raise ArithmeticError(f"no smallest ball after {MOST_STEPS} steps for {open_paths.size} paths")
+
+
+def _join(path: Array, above: Array, support: Array, used: Array, farthest: Array) -> tuple[Array, Array, Array, Array]:
+    """Smallest balls around their support and one more point, which they touch; `above`: squared heights."""
+    rows = np.arange(len(path))
+    slots = support.shape[1]
+    occupied = int(used.sum(axis=1).max())
+    new, height = path[rows, farthest], above[rows, farthest]
+    offsets = path[rows[:, None], support[:, :occupied]] - new[:, None]
+    gram = np.einsum("pia,pja->pij", offsets, offsets)
+    higher = above[rows[:, None], support[:, :occupied]] - height[:, None]
+    square = np.einsum("pii->pi", gram) + higher
+    present = used[:, :occupied]
+    best = np.full(len(path), np.inf)
+    middle, chosen = np.zeros_like(new), np.zeros_like(present)
+    for subset in product((False, True), repeat=occupied):
+        mask = np.array(subset)
+        if mask.sum() >= slots:  # more points than a ball can be held by
+            continue
+        # Circumcentre new + sum(share * others): equally far from the new point and from the subset.
+        count = int(mask.sum())
+        part = gram[:, mask][:, :, mask]
+        regular = part + REGULAR * np.eye(count) * (1 + np.trace(part, axis1=1, axis2=2))[:, None, None]
+        share = np.linalg.solve(regular, 0.5 * square[:, mask][..., None])[..., 0] if count else square[:, mask]
+        offset = np.einsum("pi,pia->pa", share, offsets[:, mask])
+        squared = (offset**2).sum(axis=1) + height
+        beyond = ((offsets - offset[:, None]) ** 2).sum(axis=-1) + higher + height[:, None]
+        outside = np.where(present, beyond, 0.0).max(axis=1)
+        valid = (outside <= squared * (1 + ROUNDING)) & ~(mask & ~present).any(axis=1) & (squared < best)
+        best = np.where(valid, squared, best)
+        middle[valid] = (new + offset)[valid]
+        chosen[valid] = mask
+    if not np.isfinite(best).all():
+        raise ArithmeticError("no ball around the points that held the last one and a new one")
+    # The points that hold the new ball move to the front, the new one among them.
+    supporting = np.zeros((len(path), slots + 1), dtype=bool)
+    supporting[:, :occupied], supporting[:, slots] = chosen, True
+    order = np.argsort(~supporting, axis=1, kind="stable")[:, :slots]
+    everyone = np.concatenate([support, farthest[:, None]], axis=1)
+    return (
+        middle,
+        np.sqrt(best),
+        np.take_along_axis(everyone, order, axis=1),
+        np.take_along_axis(supporting, order, axis=1),
+    )

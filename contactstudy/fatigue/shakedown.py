@@ -1,72 +1,69 @@
-"""Shakedown of a body that a contact rolls over again and again: Melan's theorem with residual stress along rolling.
+"""Shakedown of a body under many passes of a contact: Melan's theorem.
 
-A perfectly plastic body shakes down, and yields no more, if some residual stress that is in equilibrium by itself
+A perfectly plastic body shakes down, and yields no more, if some residual stress in equilibrium
 keeps the sum of it and the passing contact's elastic stress from yielding at every instant (E. Melan, Zur Plastizitaet
 des raeumlichen Kontinuums, Ingenieur-Archiv 9 (1938) 116-126; for rolling contact K. L. Johnson, A shakedown limit in
 rolling contact, Proc. 4th US National Congress of Applied Mechanics (1962) 971-975). Rolling makes residual stress
 that does not depend on y. Then ``rho_yy(x, z)`` appears in no equation of equilibrium and in no condition on a free
-face: it is free at every point of every body, free ends or not, and what it can do bounds the load rigorously.
+face: it is free at every point of every body and bounds the load rigorously. It changes ``u`` of eq. (501) alone: the
+least of the largest von Mises stress is the radius of the smallest ball around the history centred on its axis.
 
-With ``u = s_yy - (s_xx + s_zz) / 2`` and ``v = sqrt(3) / 2 (s_xx - s_zz)`` the square of von Mises' stress is
-``u**2 + v**2 + 3 (t_xy**2 + t_xz**2 + t_yz**2)``, and ``rho_yy`` adds to ``u`` alone. So the least of the largest von
-Mises stress of the history is the radius of the smallest ball around it whose centre lies on the axis of u.
+`shakedown_in_plane` adds ``rho_xx``, ``rho_zz`` and ``rho_xz`` in equilibrium that leave top and ends free. Airy's
+stress function of (x, z) makes them (eigenstrain/), so they are linear in its coefficients, and the least yield stress
+k solves a second-order cone program:
+
+    minimise t  such that  |(u + w, v + sqrt(3)/2 (rho_xx - rho_zz), sqrt(3) (t_xz + rho_xz), remainder)| <= t
+
+at every point and instant; w is free at every point. Few instants of a history decide: the program begins with the
+unloaded state of every point and the instants of the largest stress, and each solution adds the instants that violate
+it. The result is a bound without convergence as well: the least k follows from the residual stress at all instants.
 """
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Hashable
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 import xarray as xr
+from scipy import sparse
 
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
-from contactstudy.analysis.largest import Peak, labelled_peak, peak_between
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named
-from contactstudy.checks import Array
-from contactstudy.errors import InvalidInputError
-from contactstudy.fatigue.enclosing_ball import enclosing_balls
-from contactstudy.fatigue.history import FEWEST_POSITIONS, histories, of_points, over_history
+from contactstudy.analysis.axes import positions
+from contactstudy.analysis.peaks import Peak, interpolated_peak, label_peak
+from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named, required_in_si
+from contactstudy.bodies.models import Body
+from contactstudy.checks import Array, FloatArray, IntArray
+from contactstudy.eigenstrain.stress_function import Splines
+from contactstudy.errors import ConvergenceWarning, InvalidInputError
+from contactstudy.fatigue.history import FEWEST_POSITIONS, enclosing_balls, histories, of_points, over_history
 
-FEWEST_FOR_ERROR = 2 * FEWEST_POSITIONS
-"""Positions along y of which every second still is a history."""
-
-SAME = 1e-6
-"""Part of the largest stress that makes no difference when it is asked which instant decides."""
+FEWEST_FOR_ERROR = 2 * FEWEST_POSITIONS  # Least number of positions along y for a history of every second position
+EQUAL = 1e-6  # Largest difference of equal instants over the largest stress
 
 
 def in_ball_axes(history: Array) -> tuple[Array, Array, Array]:
-    """Coordinates u and v, and the square of the rest, whose squares sum up to that of von Mises' stress.
-
-    Parameters
-    ----------
-    history : array (..., 6)
-        Stresses xx, yy, zz, xy, xz, yz.
-
-    Examples
-    --------
-    >>> u, v, rest = in_ball_axes(np.array([0.0, -2.0, 0.0, 0.0, 0.0, 0.0]))
-    >>> float(u), float(v), float(rest)
-    (-2.0, 0.0, 0.0)
-    """
+    """Coordinates u and v of stresses (..., 6), and the squared remainder: all squares sum up to von Mises' squared."""
     xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
+    # eq. (501)
     return yy - 0.5 * (xx + zz), 0.5 * np.sqrt(3.0) * (xx - zz), 3 * (xy**2 + xz**2 + yz**2)
 
 
 def _of_history(history: Array, *, axial: bool) -> tuple[Array, ...]:
     """Yield stresses in shear for no yield and for shakedown, and the residual stresses yy and xx."""
-    u, v, rest = in_ball_axes(history)
-    first = np.sqrt((u**2 + v**2 + rest).max(axis=1) / 3)
+    u, v, remainder = in_ball_axes(history)
+    first = np.sqrt((u**2 + v**2 + remainder).max(axis=1) / 3)
     if axial:
-        centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(rest))
+        centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(remainder))
         # A stress xx moves u by -1/2 and v by sqrt(3)/2 of itself.
-        along_x = -2 / np.sqrt(3.0) * centre[:, 1]
+        residual_xx = -2 / np.sqrt(3.0) * centre[:, 1]
     else:
-        centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + rest))
-        along_x = np.zeros(len(radius))
-    return first, radius / np.sqrt(3.0), 0.5 * along_x - centre[:, 0], along_x
+        centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + remainder))  # eq. (502)
+        residual_xx = np.zeros(len(radius))
+    return first, radius / np.sqrt(3.0), 0.5 * residual_xx - centre[:, 0], residual_xx
 
 
 def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
@@ -88,13 +85,13 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         yields in the first passage; `shakedown_stress` (Pa), the k below which it yields in every passage whatever
         residual stress yy (and xx) it has; `residual_sigma_yy` and, if `axial`, `residual_sigma_xx` (Pa), the
         residual stress with which that k suffices. The largest `shakedown_stress` over x and z is a rigorous bound:
-        a perfectly plastic body (von Mises) with a larger k shakes down. Values at points have no error, as a `comment`
-        says; :func:`shakedown_limit` has one.
+        a perfectly plastic body (von Mises) with a larger k shakes down. The error of values at points is not
+        estimated; :func:`shakedown_limit` estimates it.
 
     Raises
     ------
     InvalidInputError
-        If a component or the rolling direction is missing, or `axial` is asked for at several positions along x.
+        If a component or the rolling direction is missing, or `axial` is True with several positions along x.
 
     Examples
     --------
@@ -110,32 +107,32 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         _check_line_contact(stress)
     results = over_history(partial(_of_history, axial=bool(axial)), stress, (None,) * 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
-    found = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
+    result = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
     if not axial:
-        del found["residual_sigma_xx"]
-    return xr.Dataset(found)
+        del result["residual_sigma_xx"]
+    return xr.Dataset(result)
 
 
 def _check_line_contact(stress: xr.Dataset) -> None:
     """Raise unless the stress is known at one position along x."""
     tensor, _ = histories(stress)
-    along = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
-    if any(tensor.sizes[dim] > 1 for dim in along):
+    axial_dims = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
+    if any(tensor.sizes[dim] > 1 for dim in axial_dims):
         raise InvalidInputError(
             "axial",
             True,
-            f"False with {tensor.sizes[along[0]]} positions along x",
+            f"False with {tensor.sizes[axial_dims[0]]} positions along x",
             "residual stress along the axis is free in a line contact, which one position tells",
         )
 
 
 def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
-    """Least yield stress with which the whole body shakes down, where that is decided, and its error.
+    """Least yield stress with which the body shakes down, the deciding position, and its error.
 
     Parameters
     ----------
     stress : Dataset
-        As for :func:`shakedown`: a single case, or an opened study, of which every case is looked at.
+        As for :func:`shakedown`: a single case, or an opened study with all its cases.
     axial : bool
         See :func:`shakedown`.
 
@@ -143,13 +140,13 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     -------
     Dataset
         ``peak_shakedown_stress`` (Pa), the largest over x and z between the samples, its error
-        ``peak_shakedown_stress_error``, and its place ``peak_shakedown_stress_x``, ``_z``; a `comment` tells
-        whether that is on the top or at a free end. The same of `first_yield_stress`. With
+        ``peak_shakedown_stress_error``, and its position ``peak_shakedown_stress_x``, ``_z``; a `comment` states
+        whether it lies on the top or at a free end. The same of `first_yield_stress`. With
         `hertz_max_pressure` in the Dataset also `shakedown_limit` and `first_yield_limit`, the pressure p0 over k that
-        this field allows, with their errors. As in :func:`contactstudy.analysis.largest` an error is infinite where
-        the largest sample lies at the edge of the positions, or the first or the last position along y decides. It has
-        a part from polynomials of two degrees in x and z, and one from every second instant along y, of which the
-        larger number counts. Of a study each has the swept parameters as dimensions, and there are no comments.
+        this field allows, with their errors. As in :func:`contactstudy.analysis.peak` an error is infinite where
+        the largest sample lies at the edge of the positions, or the first or the last position along y decides. It sums
+        the difference of polynomials of two degrees in x and z, and the larger change with every second instant along
+        y. The swept parameters of a study are dimensions, without comments.
 
     Raises
     ------
@@ -168,41 +165,42 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     swept = dict(stress["hertz_half_width"].sizes) if "hertz_half_width" in stress else {}
     if any(size > 1 for size in swept.values()):
         return _of_study(stress, swept, axial=axial)
-    one = single_case(stress)
-    rolling = dimension_along(one["tau_yz"], "y")
+    case = single_case(stress)
+    rolling = dimension_along(case["tau_yz"], "y")
     names = list(STRESSES)
     # One of the two halves of the instants lacks the one that matters most.
-    enough = one.sizes[rolling] >= FEWEST_FOR_ERROR
-    parts = [one, *(one.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if enough)]
-    fields = [shakedown(part, axial=axial).compute() for part in parts]
+    enough = case.sizes[rolling] >= FEWEST_FOR_ERROR
+    samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if enough)]
+    fields = [shakedown(sample, axial=axial).compute() for sample in samples]
     result = xr.Dataset()
     for variable in ("shakedown_stress", "first_yield_stress"):
 
         def between(points: xr.Dataset, variable: str = variable) -> xr.DataArray:
             return shakedown(points, axial=axial)[variable]
 
-        found, *halves = (
-            peak_between(part, names, field[variable], between) for part, field in zip(parts, fields, strict=True)
+        largest, *halves = (
+            interpolated_peak(sample, names, field[variable], between)
+            for sample, field in zip(samples, fields, strict=True)
         )
         if not enough:
-            found = found._replace(error=np.inf, comment="too few positions along y to tell")
-        elif _at_border(one, fields[0], variable):
-            found = found._replace(error=np.inf, comment="the first or the last position along y decides")
+            largest = largest._replace(error=np.inf, comment="too few positions along y to tell")
+        elif _border_decides(case, fields[0], variable):
+            largest = largest._replace(error=np.inf, comment="the first or the last position along y decides")
         else:
-            found = found._replace(error=found.error + found.value - min(half.value for half in halves))
-        peak = labelled_peak(variable, found, VARIABLES[variable])
-        peak[f"peak_{variable}"].attrs["comment"] = _where(one, found)
+            largest = largest._replace(error=largest.error + largest.value - min(half.value for half in halves))
+        peak = label_peak(variable, largest, VARIABLES[variable])
+        peak[f"peak_{variable}"].attrs["comment"] = _where(case, largest)
         result = result.merge(peak)
-        if "hertz_max_pressure" in one and found.value:
+        if "hertz_max_pressure" in case and largest.value:
             name = variable.replace("stress", "limit")
-            limit = float(one["hertz_max_pressure"]) / found.value
+            limit = float(case["hertz_max_pressure"]) / largest.value
             result[name] = named(name, xr.DataArray(limit))
-            result[f"{name}_error"] = named(f"{name}_error", xr.DataArray(limit * found.error / found.value))
+            result[f"{name}_error"] = named(f"{name}_error", xr.DataArray(limit * largest.error / largest.value))
     return result
 
 
 def _of_study(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> xr.Dataset:
-    """Limits of every case of a study; NaN where there are no stresses."""
+    """Limits of every case of a study; NaN without stresses."""
     numbers: dict[str, Array] = {}
     for index in np.ndindex(*swept.values()):
         case = study.isel(dict(zip(swept, index, strict=True))).compute()
@@ -211,30 +209,12 @@ def _of_study(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> 
         for name, number in shakedown_limit(case, axial=axial).items():
             numbers.setdefault(str(name), np.full(tuple(swept.values()), np.nan))[index] = float(number)
     coordinates = {name: study[name] for name in swept if name in study.coords}
-    found = xr.Dataset({name: (tuple(swept), values) for name, values in numbers.items()}, coordinates)
-    return describe(found)
+    result = xr.Dataset({name: (tuple(swept), values) for name, values in numbers.items()}, coordinates)
+    return describe(result)
 
 
 def shakedown_summary(dataset: xr.Dataset) -> xr.Dataset:
-    """Limits of first yield and shakedown of a solved case, as a study keeps them.
-
-    Parameters
-    ----------
-    dataset : Dataset
-        A result of :func:`contactstudy.solve`; stresses may be absent.
-
-    Returns
-    -------
-    Dataset
-        Scalars of :func:`shakedown_limit`; empty without stresses, without load, or where the stresses have fewer
-        than six positions along y: the passage of a material point is not known then, and nor is any bound.
-
-    Examples
-    --------
-    >>> stress = xr.DataArray(np.zeros((1, 1, 2)), dims=("x", "y", "z"), coords={"x": [0], "y": [0], "z": [0, 2]})
-    >>> len(shakedown_summary(xr.Dataset({name: stress for name in STRESSES})))
-    0
-    """
+    """Limits of first yield and shakedown of a solved case; empty without stresses, load, or six positions along y."""
     if not all(name in dataset for name in STRESSES):
         return xr.Dataset()
     if dataset.sizes[dimension_along(dataset["tau_yz"], "y")] < FEWEST_FOR_ERROR:
@@ -244,28 +224,239 @@ def shakedown_summary(dataset: xr.Dataset) -> xr.Dataset:
     return shakedown_limit(dataset).reset_coords(drop=True)
 
 
-def _at_border(one: xr.Dataset, fields: xr.Dataset, variable: str) -> bool:
+def _border_decides(case: xr.Dataset, fields: xr.Dataset, variable: str) -> bool:
     """Whether the first or the last instant alone is as bad as the largest: worse ones may lie beyond."""
-    tensor, _ = histories(one)
+    tensor, _ = histories(case)
     worst = {dim: int(index) for dim, index in fields[variable].argmax(...).items()}
     point = tensor.isel(worst).values
     eased = np.zeros(len(STRESSES))
     if variable == "shakedown_stress":
         eased[1] = float(fields["residual_sigma_yy"].isel(worst))
         eased[0] = float(fields["residual_sigma_xx"].isel(worst)) if "residual_sigma_xx" in fields else 0.0
-    u, v, rest = in_ball_axes(point + eased)
-    size = np.sqrt((u**2 + v**2 + rest) / 3)
-    held = float(fields[variable].isel(worst))
+    u, v, remainder = in_ball_axes(point + eased)
+    size = np.sqrt((u**2 + v**2 + remainder) / 3)
+    largest = float(fields[variable].isel(worst))
     # An unloaded border is as bad as the unloaded state may be, which is known.
-    at_rest = np.abs(point[[0, -1]]).max(axis=-1) <= SAME * held
-    return bool(((size[[0, -1]] >= held * (1 - SAME)) & ~at_rest).any())
+    unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL * largest
+    return bool(((size[[0, -1]] >= largest * (1 - EQUAL)) & ~unloaded).any())
 
 
-def _where(one: xr.Dataset, found: Peak) -> str:
-    """Say whether a place is on the top, and whether at an end of the cells."""
-    words = ["on the top" if found.place.get("z", 1.0) == 0 else "below the top"]
-    if "x" in found.place and "x_bounds" in one.coords:
-        bounds = one["x_bounds"].values
-        if np.isclose(found.place["x"], [bounds.min(), bounds.max()], rtol=0, atol=1e-9 * np.ptp(bounds)).any():
+def _where(case: xr.Dataset, peak: Peak) -> str:
+    """Words for a position on the top, and at an end of the cells."""
+    words = ["on the top" if peak.position.get("z", 1.0) == 0 else "below the top"]
+    if "x" in peak.position and "x_bounds" in case.coords:
+        bounds = case["x_bounds"].values
+        if np.isclose(peak.position["x"], [bounds.min(), bounds.max()], rtol=0, atol=1e-9 * np.ptp(bounds)).any():
             words.append("at an end")
     return ", ".join(words)
+
+
+DEGREE, CONTINUITY = 5, 3  # Of the stress function's polynomials: stresses that are smooth between the points
+# Points per element along either axis. Accuracy: an element has two functions along each axis; with two points it would
+# yield between them
+POINTS_PER_ELEMENT = 4
+FEWEST_POINTS = 5  # Along x and z, for a stress function with something to choose
+LARGEST_GAP = 1e-4  # Gap of the program, over k, at which it has converged
+MOST_PROGRAMS = 20  # Programs that are solved at most; about six suffice
+ROOT = np.sqrt(3.0)
+
+
+def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
+    """Least yield stress with which the body shakes down, with every residual stress that its ends allow.
+
+    Parameters
+    ----------
+    stress : Dataset
+        A single case with the six components along x, y and z, as for :func:`contactstudy.fatigue.shakedown`. The
+        residual stress reaches from the top to the largest z, and from the first to the last x, or to the free ends.
+    body : Body
+        The body, for its free ends.
+
+    Returns
+    -------
+    Dataset
+        As of :func:`contactstudy.fatigue.shakedown`, with the residual stresses in the plane as well:
+        `residual_sigma_xx`, `residual_sigma_zz`, `residual_tau_xz` (Pa). They are in equilibrium and leave top and ends
+        free exactly, and with `shakedown_stress` no point yields at its position. Its largest value over x and z is
+        the bound, `peak_shakedown_stress` (Pa). `program_gap` (1) is the part of it that a better choice of the
+        coefficients could still gain. With more positions along x and z the stress function has more of them.
+
+    Raises
+    ------
+    InvalidInputError
+        If a component or a direction is missing, or there are fewer than five positions along x or z.
+    ImportError
+        Without the package clarabel, which solves the program.
+
+    Warns
+    -----
+    ConvergenceWarning
+        If `program_gap` exceeds 1e-4.
+
+    Examples
+    --------
+    >>> from contactstudy import HalfSpace, Material
+    >>> from contactstudy.arrays.variables import STRESSES
+    >>> y, z, x = np.linspace(-3, 3, 13), np.linspace(0, 2, 9), np.linspace(-2, 2, 7)
+    >>> pull = xr.DataArray(np.exp(-y**2)[:, None] * np.exp(-((z - 1) ** 2) * 4), {"y": y, "z": z}, ("y", "z"))
+    >>> pull = pull * xr.DataArray(np.exp(-x**2), {"x": x}, "x")
+    >>> passage = xr.Dataset({name: pull * (name == "sigma_xx") for name in STRESSES})
+    >>> found = shakedown_in_plane(passage, HalfSpace(material=Material(1.0, 0.3)))
+    >>> bool(found.shakedown_stress.max() < 0.9 * found.first_yield_stress.max())
+    True
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    case = single_case(stress)
+    tensor, rolling = histories(case)
+    dims = [dimension_along(tensor, axis) for axis in ("x", "z")]
+    x, z = (np.asarray(positions(tensor, axis).values, dtype=np.float64) for axis in ("x", "z"))
+    for axis, points in (("x", x), ("z", z)):
+        if points.size < FEWEST_POINTS or (np.diff(points) <= 0).any():
+            raise InvalidInputError(
+                f"stress.{axis}", points, f"at least {FEWEST_POINTS} positions, increasing", "solve with more of them"
+            )
+    values = tensor.transpose(*dims, rolling, ...).values.astype(np.float64)
+    history = values.reshape(-1, *values.shape[2:])
+    history = np.concatenate([history, np.zeros_like(history[:, :1])], axis=1)
+    scale = float(np.abs(history).max()) or 1.0
+    function = _stresses(body.extent, x, z)
+    program = _Program(history / scale, function)
+    airy, attained, bound = program.solve()
+    gap = max(attained - bound, 0.0) / max(attained, 1e-300)
+    if gap > LARGEST_GAP:
+        warnings.warn(
+            f"the shakedown program has a gap of {gap:.2g} after {MOST_PROGRAMS} programs: the bound holds, and a "
+            "larger load may shake down; take fewer positions along x and z",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+    in_plane = [scale * (matrix @ airy) for matrix in function]
+    u, v, remainder = in_ball_axes(history)
+    first = np.sqrt((u**2 + v**2 + remainder).max(axis=1) / 3)
+    centre, radius = program.pointwise(airy)
+    xx, zz, xz = in_plane
+    results = {
+        "first_yield_stress": first,
+        "shakedown_stress": scale * radius / ROOT,
+        "residual_sigma_xx": xx,
+        # The free stress along u is rho_yy - (rho_xx + rho_zz) / 2.
+        "residual_sigma_yy": -scale * centre + 0.5 * (xx + zz),
+        "residual_sigma_zz": zz,
+        "residual_tau_xz": xz,
+    }
+    template = tensor.isel({rolling: 0, tensor.dims[-1]: 0}, drop=True).transpose(*dims)
+    result = xr.Dataset(
+        {name: of_points(name, template.copy(data=flat.reshape(template.shape))) for name, flat in results.items()}
+    )
+    result["peak_shakedown_stress"] = of_points("peak_shakedown_stress", result["shakedown_stress"].max())
+    result["program_gap"] = named("program_gap", xr.DataArray(gap))
+    return result
+
+
+def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list[sparse.csr_matrix]:
+    """Stresses xx, zz and xz at the points per coefficient of Airy's function: arrays (point, coefficient)."""
+    ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, x[[0, -1]], strict=True)]
+    along_x = Splines(_elements(x, *ends), DEGREE, CONTINUITY, vanishing=2)
+    along_z = Splines(_elements(z, 0.0, z[-1]), DEGREE, CONTINUITY, vanishing=2)
+    size = 0.5 * (along_x.edges[-1] - along_x.edges[0]), 0.5 * along_z.edges[-1]
+    # Both sides scaled to a length of about an element make the coefficients stresses.
+    step = [half / max(splines.edges.size - 1, 1) for half, splines in zip(size, (along_x, along_z), strict=True)]
+    values_x, values_z = (
+        [sparse.csr_matrix(splines.values(points, derivative)) for derivative in range(3)]
+        for splines, points in ((along_x, x), (along_z, z))
+    )
+    unit = step[0] * step[1]
+    return [
+        sparse.csr_matrix(sign * unit * sparse.kron(values_x[i], values_z[j]))
+        for i, j, sign in ((0, 2, 1), (2, 0, 1), (1, 1, -1))
+    ]
+
+
+def _elements(points: FloatArray, low: float, high: float) -> FloatArray:
+    """Edges from `low` to `high` with every so many of the points."""
+    inner = points[(points > low) & (points < high)]
+    chosen = inner[POINTS_PER_ELEMENT - 1 : 1 - POINTS_PER_ELEMENT or None : POINTS_PER_ELEMENT]
+    return np.concatenate([[low], chosen, [high]])
+
+
+@dataclass(eq=False)
+class _Program:
+    """The cone program: histories over their largest stress, and the stresses per coefficient."""
+
+    history: Array
+    function: list[sparse.csr_matrix]
+
+    def __post_init__(self) -> None:
+        xx, zz, xz = self.function
+        self._v, self._xz = sparse.csr_matrix(0.5 * ROOT * (xx - zz)), sparse.csr_matrix(ROOT * xz)
+        self.u, self.v, _ = in_ball_axes(self.history)
+        self.xz = ROOT * self.history[..., 4]
+        self.rest = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
+
+    def pointwise(self, airy: FloatArray) -> tuple[Array, Array]:
+        """Free stress along u and least von Mises stress at every point, with the residual stress in the plane."""
+        v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
+        centre, radius = enclosing_balls(self.u[..., None], np.sqrt(v**2 + xz**2 + self.rest**2))
+        return centre[:, 0], radius
+
+    def solve(self) -> tuple[FloatArray, float, float]:
+        """Coefficients, the largest von Mises stress with them, and the program's lower bound of it."""
+        airy = np.zeros(self._v.shape[1])
+        best, least, bound = airy, float(self.pointwise(airy)[1].max()), 0.0
+        # The unloaded state at every point bounds all coefficients.
+        active = np.zeros(self.history.shape[:2], dtype=bool)
+        active[:, -1] = True
+        for _ in range(MOST_PROGRAMS):
+            active |= self._exceeding(airy, *self.pointwise(airy), bound)
+            airy, bound = self._minimise(active)
+            largest = float(self.pointwise(airy)[1].max())
+            if largest < least:
+                best, least = airy, largest
+            if least - bound <= LARGEST_GAP * least:
+                break
+        return best, least, bound
+
+    def _exceeding(self, airy: FloatArray, centre: Array, radius: Array, bound: float) -> Array:
+        """Instants that support the smallest ball at points with a ball above the program's bound."""
+        v, xz = self.v + (self._v @ airy)[:, None], self.xz + (self._xz @ airy)[:, None]
+        size = np.sqrt((self.u - centre[:, None]) ** 2 + v**2 + xz**2 + self.rest**2)
+        critical = radius > max(bound, 0.5 * radius.max())
+        return np.asarray((size >= radius[:, None] * (1 - 0.3 * LARGEST_GAP)) & critical[:, None])
+
+    def _minimise(self, active: Array) -> tuple[FloatArray, float]:
+        """Coefficients and least largest stress over the active instants."""
+        try:
+            import clarabel
+        except ImportError as error:
+            raise ImportError("cone programs need the package clarabel: install contactstudy[shakedown]") from error
+        point, instant = np.nonzero(active)
+        owners, owner = np.unique(point, return_inverse=True)
+        count, free, coefficients = point.size, owners.size, self._v.shape[1]
+        rows = np.arange(count)
+
+        # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, rest of every instant.
+        def placed(row: int, columns: IntArray, width: int) -> sparse.csr_matrix:
+            return sparse.csr_matrix((np.full(count, -1.0), (5 * rows + row, columns)), shape=(5 * count, width))
+
+        spread = [placed(row, rows, count) for row in (2, 3)]
+        of_airy = spread[0] @ self._v[point] + spread[1] @ self._xz[point]
+        matrix = sparse.hstack([placed(0, 0 * rows, 1), placed(1, owner, free), of_airy], format="csc")
+        constants = [
+            0 * self.u[point, instant],
+            *(values[point, instant] for values in (self.u, self.v, self.xz, self.rest)),
+        ]
+        right = np.stack(constants, axis=1).ravel()
+        cost = np.zeros(1 + free + coefficients)
+        cost[0] = 1.0
+        settings = clarabel.DefaultSettings()
+        settings.verbose = False
+        solver = clarabel.DefaultSolver(
+            sparse.csc_matrix((cost.size, cost.size)),
+            cost,
+            matrix,
+            right,
+            [clarabel.SecondOrderConeT(5)] * count,
+            settings,
+        )
+        solution = solver.solve()
+        return np.asarray(solution.x)[1 + free :], float(solution.obj_val_dual)

@@ -1,1 +1,1 @@
-"""What a pressure does to a body: displacement of the top, fields inside, equivalent loads."""
+"""Response of a body to a pressure: displacement of the top, fields inside, equivalent loads."""

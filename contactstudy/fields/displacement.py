@@ -5,19 +5,17 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import Loads, superposed
-from contactstudy.fields.near_top import seen_by_ends
+from contactstudy.fields.loads import UNIFORM, Loads, end_cells, prescribed_loads, superposed
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.fields.prescribed import prescribed_loads
-from contactstudy.kernels.displacement import half_space_displacement
+from contactstudy.kernels.field import half_space_displacement
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.displacement import end_displacement
+from contactstudy.overlapping.field import Points
+from contactstudy.overlapping.harmonics import end_displacement
 from contactstudy.overlapping.problem import EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -34,7 +32,7 @@ def displacement_field(
     *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
-    smooth: bool = True,
+    inside_cells: str | xr.DataArray = UNIFORM,
 ) -> xr.Dataset:
     """Displacements at the tensor product of any x, y and z.
 
@@ -44,9 +42,7 @@ def displacement_field(
         The elastic body.
     pressure : DataArray (x, y)
         Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length. Between the centres the pressure
-        is taken as smooth, each cell keeping its force; a load that does not fall towards its end, such as a uniform
-        one, ends in a step.
+        cells begin at ``x = 0``, and on a finite-length space they end at its length.
     friction : float
         Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
     x, y : sequence of float, optional
@@ -55,9 +51,8 @@ def displacement_field(
         Depths in metres, not negative.
     traction_x, traction_y : DataArray (x, y), optional
         Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
-    smooth : bool
-        Whether the load is smooth near to a point. False: it is uniform in each cell, as for `surface_displacement`.
-        Only then is the displacement under a sum of loads the sum of their displacements near the top.
+    inside_cells : "uniform" or DataArray (x, y)
+        Distribution of the loads inside the cells: uniform, or the shape of a given pressure, as in `stress_field`.
 
     Returns
     -------
@@ -83,10 +78,11 @@ def displacement_field(
     >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
     True
     """
-    grid, loads, own = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    positions = field_positions(body, grid, x, y, z, own)
-    checks.instance("smooth", smooth, (bool, np.bool_), "True or False")
-    displacement = displacement_under(body, loads, grid, *positions.axes, smooth=bool(smooth))
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells)
+    positions = field_positions(body, prescribed.grid, x, y, z, prescribed.labels)
+    displacement = displacement_under(
+        body, prescribed.loads, prescribed.grid, Points(*positions.axes), prescribed.shape
+    )
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     reference = REFERENCE_LENGTHS * body.unbounded_row
     if np.isfinite(reference):
@@ -97,15 +93,16 @@ def displacement_field(
 
 
 def displacement_under(
-    body: Body, loads: Loads, grid: Grid, x: FloatArray, y: FloatArray, z: FloatArray, *, smooth: bool = True
+    body: Body, loads: Loads, grid: Grid, points: Points, shape: FloatArray | None = None
 ) -> FloatArray:
-    """Displacements (3, x, y, z), metres."""
+    """Displacements (3, x, y, z), metres; `shape` as in `stresses_at`."""
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
-        fields: dict[Load, FloatArray] = {load: np.zeros((3, x.size, y.size, z.size)) for load in directions}
+        sizes = (axis.size for axis in points)
+        fields: dict[Load, FloatArray] = dict.fromkeys(directions, np.zeros((3, *sizes)))
         for part in body.parts:
-            for load, field in _part_displacement(body, part, directions, cells, grid, x, y, z, smooth).items():
-                fields[load] += part.weight * field
+            for load, field in _part_displacement(body, part, directions, cells, grid, points, shape).items():
+                fields[load] = fields[load] + part.weight * field
         return {load: [field] for load, field in fields.items()}
 
     (displacement,) = superposed(loads, unit_fields)
@@ -118,26 +115,31 @@ def _part_displacement(
     loads: tuple[Load, ...],
     cells: FloatArray,
     grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    smooth: bool,
+    points: Points,
+    shape: FloatArray | None,
 ) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z) of one part of a body, before its weight."""
     material, extent = body.material, part.extent
     reference = REFERENCE_LENGTHS * (extent[1] - extent[0])
     fields = {
         load: half_space_displacement(
-            load, cells, material, grid, x, y, z, extent=extent, reference=reference, smooth=smooth
+            load, cells, material, grid, *points, extent=extent, reference=reference, shape=shape
         )
         for load in loads
     }
     if part.freed and cells.any():
         length, mirrored_once = part.freed
-        seen, seen_on = seen_by_ends(cells, grid, length, smooth=smooth)
+        distribution = end_cells(cells, shape, grid, length)
         problem = EndProblem(
-            length, material.poisson, seen, loads, seen_on, Resolution(), mirrored_once, finest_cell(grid)
+            length,
+            material.poisson,
+            distribution.cells,
+            loads,
+            distribution.grid,
+            Resolution(),
+            mirrored_once,
+            finest_cell(grid),
         )
-        for load, from_ends in end_displacement(problem, x, y, z, reference=reference).items():
+        for load, from_ends in end_displacement(problem, *points, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

@@ -6,16 +6,17 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
+from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.loads import grouped
+from contactstudy.fields.loads import prescribed_loads
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions
-from contactstudy.fields.prescribed import prescribed_loads
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.equivalent import EquivalentLoads, equivalent_loads_of
+from contactstudy.overlapping.operators import OverlappingOperators
+from contactstudy.overlapping.operators import Positions as LoadPositions
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -29,12 +30,12 @@ def equivalent_loads(
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
 ) -> xr.Dataset:
-    """Compute the loads on the auxiliary bodies whose stresses together are those of a body with free ends.
+    """Compute the loads on the auxiliary bodies; the sum of their stresses equals the stress of a body with free ends.
 
     Parameters
     ----------
     body : Body
-        A quarter space or a finite-length space.
+        The elastic body.
     pressure : DataArray (x, y)
         Pressure in Pa on cells that begin at ``x = 0``, as for `stress_field`.
     friction : float
@@ -47,16 +48,16 @@ def equivalent_loads(
     Returns
     -------
     Dataset
-        `P_h1` (x, y) on the top, `P_v1` and, with a second end, `P_v2` (y, z) on the end planes, in Pa, positive in
-        compression. They grow like a logarithm towards a corner that carries load, where only the stresses that they
-        make together are finite. On a finite-length space those of an eccentric load have a part that makes no
-        stress and grows like the logarithm of the distance along y at which it is zero: see the attribute
-        ``reference_distance``.
+        `P_h1` (x, y) on the top and, for each free end, `P_v1` and `P_v2` (y, z) on the end planes, in Pa, positive in
+        compression; without a free end `P_h1` equals the pressure. Towards a corner that carries load they grow like a
+        logarithm; the stresses that they make together are finite. On a finite-length space the equivalent loads of an
+        eccentric load contain a part without stress, which grows like the logarithm of the distance along y from the
+        attribute ``reference_distance``.
 
     Raises
     ------
     InvalidInputError
-        If the body has no end, or an argument is of the wrong kind or out of range.
+        If an argument is of the wrong kind or out of range.
 
     Examples
     --------
@@ -69,38 +70,52 @@ def equivalent_loads(
     (True, True)
     """
     checks.instance("body", body, Body, "a QuarterSpace or a FiniteLengthSpace")
-    freed = next((part.freed for part in body.parts if part.freed), None)
-    if freed is None:
-        raise InvalidInputError("body", body, "a body with a free end: a half-space needs no equivalent loads")
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    grid, loads, (label_x, label_y) = prescribed
-    body.check_span(grid)
+    grid, loads, (label_x, label_y), _ = prescribed
     depths = checks.coordinates("z", z)
-    if (depths < 0).any():
-        raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
-    length, mirrored_once = freed
-    relative = np.isfinite(length) and not mirrored_once
-    reference = REFERENCE_LENGTHS * length if relative else None
-    poisson, resolution = body.material.poisson, Resolution()
-
-    def unit_loads(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, EquivalentLoads]:
-        problem = EndProblem(length, poisson, cells, directions, grid, resolution, mirrored_once)
-        return equivalent_loads_of(problem, grid.x, grid.y, depths, reference=reference)
-
-    unit = grouped(loads, unit_loads)
-    added, first, second = (
-        np.asarray(sum(top.factor * unit[load][i] for load, top in loads.items())) for i in range(3)
-    )
+    top = np.array(prescribed.pressure)
+    faces: list[FloatArray] = []
+    for load, (cells, factor) in loads.items():
+        operators = overlapping_operators(body, grid, depths, load, cells)
+        if operators is None:
+            coords = {"x": label_x, "y": label_y}
+            return describe(xr.Dataset({"P_h1": (("x", "y"), top)}, coords=coords))
+        added, on_faces = operators.equivalent(load)
+        top += factor * added.matvec(cells.ravel()).reshape(top.shape)
+        parts = [factor * operator.matvec(cells.ravel()).reshape(grid.cells_y, -1) for operator in on_faces]
+        faces = [face + part for face, part in zip(faces, parts, strict=True)] if faces else parts
+    reference = _reference(body)
     attributes: dict[str, str | float] = {}
     if reference is not None:
         attributes = {
             "reference_distance": reference,
             "reference": "the part of an eccentric load that makes no stress is zero at |y| = reference_distance (m)",
         }
-    fields = {
-        "P_h1": (("x", "y"), prescribed.pressure + added, attributes),
-        "P_v1": (("y", "z"), first, attributes),
-    }
-    if np.isfinite(length):
-        fields["P_v2"] = (("y", "z"), second, attributes)
+    fields = {"P_h1": (("x", "y"), top, attributes)}
+    fields |= {f"P_v{end}": (("y", "z"), face, attributes) for end, face in enumerate(faces, start=1)}
     return describe(xr.Dataset(fields, coords={"x": label_x, "y": label_y, "z": depths}))
+
+
+def _reference(body: Body) -> float | None:
+    """Distance along y at which equivalent loads without stress are zero, metres; None without two exact ends."""
+    freed = next((part.freed for part in body.parts if part.freed), None)
+    relative = freed is not None and np.isfinite(freed.length) and not freed.mirrored_once
+    return REFERENCE_LENGTHS * freed.length if freed is not None and relative else None
+
+
+def overlapping_operators(
+    body: Body, grid: Grid, depths: FloatArray, load: Load, cells: FloatArray | None = None
+) -> OverlappingOperators | None:
+    """Operators of the overlapping for a load in one direction, None without a free end; `cells` bound its width."""
+    body.check_span(grid)
+    if (depths < 0).any():
+        raise InvalidInputError("z", float(depths.min()), "not negative (metres below the top)")
+    freed = next((part.freed for part in body.parts if part.freed), None)
+    if freed is None:
+        return None
+    cells = np.zeros(grid.shape) if cells is None else cells
+    resolution = Resolution().for_loads((load,))
+    problem = EndProblem(
+        freed.length, body.material.poisson, cells, (load,), grid, resolution, mirrored_once=freed.mirrored_once
+    )
+    return OverlappingOperators.of(problem, LoadPositions(grid.x, grid.y, depths), reference=_reference(body))

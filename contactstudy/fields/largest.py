@@ -1,251 +1,404 @@
-"""The largest von Mises stress in a body, wherever its stresses are asked for.
+"""The largest von Mises stress in a body.
 
-Points around the peaks of the pressure and along the contact are laid again more closely around the largest values,
-until polynomials through them agree. With much friction, and where the contact reaches a free end, it lies on the top.
+The largest stress lies below a peak of the pressure, at a depth proportional to the width of the peak (some hundredths
+of a half-width for an edge radius), near a free end, or on the top, with much friction and where the contact reaches an
+end. The search evaluates points around the peaks and along the contact, and refines them about the largest values until
+polynomials of two degrees agree. On the top it evaluates the centres of cells inside the contact.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy import ndimage
 
-from contactstudy.arrays.between import refined
-from contactstudy.arrays.grid import ON_TOP
-from contactstudy.arrays.invariants import von_mises_of
-from contactstudy.bodies.models import Extent
+from contactstudy.arrays.grid import ON_TOP, Grid
+from contactstudy.arrays.peaks import interpolate_about, peak_width
+from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.fields.search import RIM, Search, apart
-from contactstudy.overlapping.field import Place
+from contactstudy.fields.loads import Loads
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.field import Points
+from contactstudy.stress import von_mises_of
 
-BETWEEN = 0.25
-"""Share of what polynomials add to the largest point that counts as their error: two degrees may agree by chance."""
+AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width
 
-SETTLED = 3e-3
-"""Relative error of the interpolation at which points are close enough."""
+DEPTHS = np.array([0.1, 0.2, 0.32, 0.48, 0.66, 0.9, 1.3])
+"""Depths below a peak, over its width: the largest stress under a line contact is at 0.70, under a sphere at 0.48."""
 
-AROUND = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
-"""Points about one that a user asks for, over its depth: no load is nearer, so stresses change within that."""
+END_DISTANCES = np.array([0.0, 0.2, 0.45, 0.7, 1.0, 1.4, 2.0, 3.2, 6.0, 12.0, 20.0])
+"""Distances of points on the axis from the ends of the contact, over the half-width."""
 
-NEARLY = 1.25
-"""Factor by which the largest cell of some on the top may miss the largest of all: beside it the search goes on."""
+LATERAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along y, over the half-width of the section
+AXIS_DEPTHS = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0])  # depths below the axis, over the half-width
 
-MOST = 6
-"""Times that points are laid anew."""
+SECOND_PEAK = 0.6
+"""Least peak of a half of the contact that is searched, over the largest: at a free end a lower peak may cause more."""
+
+SLIPPING = 1e-6  # part of its bound by which the traction of a slipping cell may miss it
+RIM = 2  # cells at the rim of the contact without accurate stresses on the top. Accuracy.
+
+
+class Border(NamedTuple):
+    """Border between stick and slip on the top, where the stress has a cusp that no centre of a cell reaches."""
+
+    # The second sticking cell from the border represents it: the values of the first one are too smooth.
+
+    traction: FloatArray  # (2, x, y): tractions of the cells, at the border in the cells that represent it, Pa
+    rise: FloatArray  # (x, y): pressure at the border less that of the cell that represents it, Pa; otherwise 0
+    poisson: float  # Poisson's ratio of the body
+
+    @classmethod
+    def under(cls, loads: Loads, poisson: float) -> Border:
+        """Border of the sticking cells under loads: inside it the traction is below its bound like a square root."""
+        pressure = loads[Load.NORMAL].values
+        none = np.zeros_like(pressure)
+        traction = np.stack([loads[load].values if load in loads else none for load in (Load.ALONG_X, Load.ALONG_Y)])
+        rise = np.zeros_like(pressure)
+        ratio = traction / np.where(pressure > 0, pressure, 1.0)
+        size = np.hypot(*ratio)
+        bound = size.max(axis=1, keepdims=True)
+        missing = 1 - size / np.where(bound > 0, bound, 1.0)
+        sticks = (pressure > 0) & (missing > SLIPPING) & (bound > 0)
+        for step in (1, -1):
+            slips = np.roll((pressure > 0) & ~sticks, step, axis=1)
+            column, first = np.nonzero(sticks & slips & np.roll(sticks, -step, axis=1))
+            second, slipping = first + step, first - step
+            squares = missing[column, first] ** 2, missing[column, second] ** 2
+            distance = np.clip(squares[0] / np.maximum(squares[1] - squares[0], 1e-300), 0.0, 1.0)
+            at_border = (1 - distance) * pressure[column, first] + distance * pressure[column, slipping]
+            traction[:, column, second] = at_border * ratio[:, column, slipping]
+            rise[column, second] = at_border - pressure[column, second]
+        return cls(traction, rise, poisson)
+
+    def stresses(self, cells: tuple[IntArray, ...], stresses: FloatArray) -> FloatArray:
+        """Stresses (6, x, y, 1) of some cells on the top, at the border in the cells that represent it."""
+        limit = stresses.copy()
+        rise = self.rise[cells][..., None]
+        limit[:3] -= np.array([2 * self.poisson, 1.0, 1.0])[:, None, None, None] * rise
+        limit[4:] = np.where(rise != 0, -self.traction[:, cells[0], cells[1], None], limit[4:])
+        return limit
+
+
+class Search(NamedTuple):
+    """Points of the search for the largest stress."""
+
+    grid: Grid
+    extent: Extent  # ends of the body, metres
+    off_rim: BoolArray  # (x, y): cells inside the contact with accurate stresses on the top
+    border: Border  # border between stick and slip
+    samples: list[Points]
+    """Centres of cells on the top and points below: about the peaks, then along the contact. Empty without pressure."""
+
+    @property
+    def shallowest(self) -> float:
+        """Least depth below the top among the points, metres."""
+        return min(float(points.z[1]) for points in self.samples)
+
+    def cells(self, points: Points) -> tuple[IntArray, IntArray]:
+        """Return indices of the columns and rows of the cells nearest to points."""
+        columns, rows = (
+            np.abs(centres - axis[:, None]).argmin(axis=1)
+            for axis, centres in ((points.x, self.grid.x), (points.y, self.grid.y))
+        )
+        return columns, rows
+
+    def off_rim_at(self, points: Points) -> BoolArray:
+        """Whether the cells nearest to points are off the rim: array (x, y)."""
+        return np.asarray(self.off_rim[np.ix_(*self.cells(points))])
+
+    def top_stresses(self, points: Points, stresses: FloatArray) -> FloatArray:
+        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that stand for it."""
+        return self.border.stresses(np.ix_(*self.cells(points)), stresses)
+
+
+def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
+    """Points of the search; they do not depend on the friction."""
+    extent, border = body.extent, Border.under(loads, body.material.poisson)
+    pressure = loads[Load.NORMAL].values
+    line = pressure.max(axis=1)
+    # The body ends at the outermost columns.
+    off_rim = np.asarray(ndimage.binary_erosion(pressure > 0, iterations=RIM, border_value=1))
+    if not line.any():
+        return Search(grid, extent, off_rim, border, [])
+    samples: list[Points] = []
+    symmetric = _symmetric(loads, grid, extent)
+    for peak in _peaks(line, symmetric=symmetric):
+        middle, half_width = _section(pressure[peak], grid)
+        width = peak_width(pressure, grid.x, grid.dy, peak)
+        if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
+            x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
+            samples.append(
+                _nearest_cells(grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, width * DEPTHS)
+            )
+    middle, half_width = _section(pressure[int(line.argmax())], grid)
+    x = _axis_positions(pressure, grid, half_width, symmetric=symmetric)
+    samples.append(
+        _nearest_cells(
+            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, half_width * AXIS_DEPTHS
+        )
+    )
+    return Search(grid, extent, off_rim, border, samples)
+
+
+def _nearest_cells(
+    grid: Grid, off_rim: BoolArray, x: FloatArray, spacing: float, y: FloatArray, depths: FloatArray
+) -> Points:
+    """Centres of the cells nearest to positions, at least `spacing` apart along x, on the top and below."""
+    columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
+    # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
+    inner_rows = np.flatnonzero(off_rim[columns].any(axis=0))
+    candidates = inner_rows if inner_rows.size else np.arange(grid.cells_y)
+    rows = candidates[np.unique(np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1))]
+    centres = grid.x[columns]
+    return Points(centres[separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
+
+
+def _section(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
+    """Middle and half-width of the contact in one column, metres."""
+    return float((pressure * grid.y).sum() / pressure.sum()), 0.5 * grid.dy * np.count_nonzero(pressure)
+
+
+def _axis_positions(pressure: FloatArray, grid: Grid, half_width: float, *, symmetric: bool) -> FloatArray:
+    """Positions from the ends of a contact to its middle, of one half and one more if the contact is symmetric."""
+    columns = np.flatnonzero(pressure.any(axis=1))
+    first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
+    inside = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
+    inside = inside[inside <= 0.5 * (last - first)]
+    # One point of the second half: the middle is inside the range.
+    return np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
+
+
+def separated(positions: FloatArray, spacing: float) -> IntArray:
+    """Return indices of ascending positions more than `spacing` apart: polynomials through closer points oscillate."""
+    indices: list[int] = []
+    for index in np.argsort(positions, kind="stable").tolist():
+        if not indices or positions[index] - positions[indices[-1]] > spacing:
+            indices.append(index)
+    return np.array(indices)
+
+
+def _symmetric(loads: Loads, grid: Grid, extent: Extent) -> bool:
+    """Whether body and loads are symmetric about mid-length."""
+    return bool(
+        np.isinf(extent[0]) == np.isinf(extent[1])
+        and np.allclose(grid.widths, grid.widths[::-1])
+        and all(
+            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            for kind, load in loads.items()
+        )
+    )
+
+
+def _peaks(line: FloatArray, *, symmetric: bool) -> Iterator[int]:
+    """Columns of the largest pressure of either half; of the first half of a symmetric contact."""
+    half = (line.size + 1) // 2
+    first, last = int(line[:half].argmax()), half + int(line[half:].argmax()) if line.size > 1 else 0
+    for peak in (first,) if symmetric else (first, last) if line[first] >= line[last] else (last, first):
+        if line[peak] >= SECOND_PEAK * line.max():
+            yield peak
+
+
+RISE_ERROR = 0.25
+"""Error over the rise of the polynomials above the largest sample: two degrees may agree by chance. Accuracy."""
+
+TOLERANCE = 3e-3  # relative error of the interpolation that ends the refinement. Accuracy.
+
+LOCAL_OFFSETS = np.array([-0.5, -0.25, 0.0, 0.25, 0.5])
+"""Points about a position below the top, over its depth, the distance from the load. Accuracy."""
+
+TOP_MARGIN = 1.25  # factor on the largest sampled cell on the top that starts a search beside it. Accuracy.
+ROUNDS = 6  # largest number of refinements. Speed.
 
 
 class Largest(NamedTuple):
-    """Largest value of the von Mises stress.
+    """Largest value of the von Mises stress."""
 
-    Attributes
-    ----------
-    value, error : float
-        The value, Pa, and by how much polynomials of two degrees differ; on the top what cells may make of it.
-    place : tuple of float
-        Where it is: x, y and z, metres.
-    """
-
-    value: float
+    value: float  # the value, Pa, and the difference of polynomials of two degrees; on the top the error of the cells
     error: float
-    place: tuple[float, float, float]
+    position: tuple[float, float, float]  # x, y and z, metres
 
 
-class _Top(NamedTuple):
-    """The largest value among some points and between them; `at`: number of the largest point along each axis."""
+class _Maximum(NamedTuple):
+    """The largest value among points and between them, and the indices of the largest point."""
 
-    found: Largest
-    points: Place
-    at: tuple[int, ...]
+    largest: Largest
+    points: Points
+    indices: tuple[int, ...]
 
 
 def largest_stress(
     search: Search,
     stresses: Sequence[FloatArray],
-    asked: tuple[Place, FloatArray],
-    stress: Callable[[Place], FloatArray],
+    stress: Callable[[Points], FloatArray],
 ) -> Largest:
-    """Largest von Mises stress; 0 nowhere without pressure.
-
-    Parameters
-    ----------
-    search : Search
-        Where it is looked for.
-    stresses : sequence of array (6, x, y, z)
-        Stresses at the places of `search`.
-    asked : (Place, array (6, x, y, z))
-        Other points that are known: if one has more, it is looked for about that.
-    stress : callable
-        Stresses at other places.
-    """
-    if not search.places:
+    """Largest von Mises stress; 0 at NaN without pressure."""
+    if not search.samples:
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
-    known = list(zip(search.places, stresses, strict=True))
-    *at_peaks, along = [(place._replace(z=place.z[1:]), field[..., 1:]) for place, field in known]
-    shallowest = min(float(place.z[0]) for place, _ in (*at_peaks, along))
-    largest = _highest(_settled(_top(*peak), search, shallowest, stress) for peak in at_peaks)
-    elsewhere = _sampled(*along)
-    if elsewhere.found.value > largest.value:
-        largest = _highest([largest, _settled(elsewhere, search, shallowest, stress)])
-    for place, field in known:
-        sample = _sampled(place._replace(z=place.z[:1]), field[..., :1], search.off_rim_at(place))
-        if sample.found.value * NEARLY > largest.value:
-            largest = _highest([largest, _of_cells(sample, search, stress)])
-    return _with_asked(largest, asked, search, shallowest, stress)
+    samples = list(zip(search.samples, stresses, strict=True))
+    *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
+    shallowest = search.shallowest
+    largest = _largest_of(_refined(_interpolated(*peak), search, shallowest, stress) for peak in peaks)
+    axis_sample = _sampled(*axis)
+    if axis_sample.largest.value > largest.value:
+        largest = _largest_of([largest, _refined(axis_sample, search, shallowest, stress)])
+    for points, field in samples:
+        top = search.top_stresses(points, field[..., :1])
+        sample = _sampled(points._replace(z=points.z[:1]), top, search.off_rim_at(points))
+        if sample.largest.value * TOP_MARGIN > largest.value:
+            largest = _largest_of([largest, _top_maximum(sample, search, stress)])
+    return largest
 
 
-def _with_asked(
-    known: Largest,
-    asked: tuple[Place, FloatArray],
-    search: Search,
-    shallowest: float,
-    stress: Callable[[Place], FloatArray],
+def largest_with_points(
+    largest: Largest, points: Points, stresses: FloatArray, search: Search, stress: Callable[[Points], FloatArray]
 ) -> Largest:
-    """Return what is known, or the largest value about points that a user asks for, if that is more."""
-    points, stresses = asked
+    """Largest von Mises stress, and of the neighbourhood of points with a larger stress."""
+    if not search.samples:
+        return largest
+    shallowest = search.shallowest
     deep = points.z >= shallowest
-    of_depths = [deep] if deep.any() else []
-    of_depths += [points.z == depth for depth in points.z[~deep]]
-    for depths in of_depths:
-        place = points._replace(z=points.z[depths])
-        off_rim = None if depths is deep else search.off_rim_at(place)
-        sample = _sampled(place, stresses[..., depths], off_rim)
-        value = sample.found.value
-        if known.value < value <= known.value + known.error:
-            known = known._replace(value=value, place=sample.found.place)
-        elif value > known.value and depths is deep:
-            about = _about(sample.found.place, search, shallowest)
-            known = _settled(_top(about, stress(about)), search, shallowest, stress)
-            if known.value < value:
-                known = Largest(value, known.error + value - known.value, sample.found.place)
-        elif value > known.value:
-            known = _highest([known, _of_cells(sample, search, stress)])
-    return known
+    depth_groups = [deep] if deep.any() else []
+    depth_groups += [points.z == depth for depth in points.z[~deep]]
+    for depths in depth_groups:
+        group = points._replace(z=points.z[depths])
+        off_rim = None if depths is deep else search.off_rim_at(group)
+        sample = _sampled(group, stresses[..., depths], off_rim)
+        value, position = sample.largest.value, sample.largest.position
+        if largest.value < value <= largest.value + largest.error:
+            largest = largest._replace(value=value, position=position)
+        elif value > largest.value and depths is deep:
+            neighbourhood = _neighbourhood(position, search, shallowest)
+            largest = _refined(_interpolated(neighbourhood, stress(neighbourhood)), search, shallowest, stress)
+            if largest.value < value:
+                largest = Largest(value, largest.error + value - largest.value, position)
+        elif value > largest.value:
+            largest = _largest_of([largest, _top_maximum(sample, search, stress)])
+    return largest
 
 
-def _about(place: tuple[float, float, float], search: Search, shallowest: float) -> Place:
-    """Points about one, along y whole cells apart."""
-    x, y, z = place
+def _neighbourhood(position: tuple[float, float, float], search: Search, shallowest: float) -> Points:
+    """Points about a position; their distances along y are whole cells."""
+    x, y, z = position
     dy = search.grid.dy
-    beside = np.clip(x + z * AROUND, *search.extent)
-    below = np.maximum(z * (1 + AROUND), shallowest)
-    rows = np.unique([*np.round(z * AROUND / dy), -1, 1])
-    return Place(beside[apart(beside, 0.1 * z)], y + dy * rows, below[apart(below, 0.1 * z)])
+    axial = np.clip(x + z * LOCAL_OFFSETS, *search.extent)
+    depths = np.maximum(z * (1 + LOCAL_OFFSETS), shallowest)
+    rows = np.unique([*np.round(z * LOCAL_OFFSETS / dy), -1, 1])
+    return Points(axial[separated(axial, 0.1 * z)], y + dy * rows, depths[separated(depths, 0.1 * z)])
 
 
-def _highest(found: Iterable[Largest]) -> Largest:
-    """Return the largest of some."""
-    return max(found, key=lambda each: each.value)
+def _largest_of(candidates: Iterable[Largest]) -> Largest:
+    """Return the candidate with the largest value."""
+    return max(candidates, key=lambda candidate: candidate.value)
 
 
-def _of_cells(sample: _Top, search: Search, stress: Callable[[Place], FloatArray]) -> Largest:
-    """Largest value at the centres of cells, looked for from the largest sample on until no cell beside it has more."""
+def _top_maximum(sample: _Maximum, search: Search, stress: Callable[[Points], FloatArray]) -> Largest:
+    """Largest value at the centres of cells: the search follows larger neighbours from the largest sample on."""
     grid = search.grid
-    for _ in range(MOST):
-        before = sample.found.value
+    for _ in range(ROUNDS):
+        before = sample.largest.value
         columns, rows = (
-            _between_neighbours(cells, at, count)
-            for cells, at, count in zip(search.cells(sample.points), sample.at, grid.shape, strict=False)
+            _neighbour_cells(cells, index, count)
+            for cells, index, count in zip(search.cells(sample.points), sample.indices, grid.shape, strict=False)
         )
-        centres = Place(grid.x[columns], grid.y[rows], sample.points.z)
-        stresses = stress(centres)
+        centres = Points(grid.x[columns], grid.y[rows], sample.points.z)
+        stresses = search.top_stresses(centres, stress(centres))
         sample = _sampled(centres, stresses, search.off_rim[np.ix_(columns, rows)])
-        if sample.found.value <= before * (1 + SETTLED):
+        if sample.largest.value <= before * (1 + TOLERANCE):
             break
-    return _beside_the_rim(sample, von_mises_of(*stresses)[..., 0], search.off_rim_at(centres))
+    return _with_rim_error(sample, von_mises_of(*stresses)[..., 0], search.off_rim_at(centres))
 
 
-def _beside_the_rim(sample: _Top, values: FloatArray, off_rim: BoolArray) -> Largest:
-    """Return the largest value of cells with its error: beside the rim it may go on growing."""
-    column, row, _ = sample.at
-    error = ON_TOP * sample.found.value
-    for line, known, index in (
+def _with_rim_error(sample: _Maximum, values: FloatArray, off_rim: BoolArray) -> Largest:
+    """Return the largest value of cells with its error: the stress may grow towards the rim."""
+    column, row, _ = sample.indices
+    error = ON_TOP * sample.largest.value
+    for line, inner, index in (
         (values[:, row], off_rim[:, row], column),
         (values[column], off_rim[column], row),
     ):
-        beside = slice(max(index - 1, 0), index + 2)
-        if not known[beside].all():
-            error = max(error, (RIM + 1) * float(np.ptp(line[beside][known[beside]])))
-    return sample.found._replace(error=error)
+        neighbours = slice(max(index - 1, 0), index + 2)
+        if not inner[neighbours].all():
+            error = max(error, (RIM + 1) * float(np.ptp(line[neighbours][inner[neighbours]])))
+    return sample.largest._replace(error=error)
 
 
-def _between_neighbours(cells: IntArray, at: int, count: int) -> IntArray:
-    """Numbers of cells from one neighbour of a cell in a list to the other, the cells beside it among them."""
-    cell, listed = int(cells[at]), np.unique(cells)
+def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
+    """Return indices of cells between the neighbours of a cell in a list, with the adjacent cells."""
+    cell, listed = int(cells[index]), np.unique(cells)
     number = int(np.searchsorted(listed, cell))
     before, after = listed[max(number - 1, 0)], listed[min(number + 1, listed.size - 1)]
     between = np.linspace(before, after, 5).round().astype(np.int64)
     return np.unique(np.clip([*between, cell - 1, cell, cell + 1], 0, count - 1))
 
 
-def _settled(top: _Top, search: Search, shallowest: float, stress: Callable[[Place], FloatArray]) -> Largest:
-    """Lay points again around the largest value of some, until polynomials through them agree."""
-    for _ in range(MOST):
-        closer, inside = _closer(top, search.extent, shallowest)
-        if inside and top.found.error <= SETTLED * top.found.value:
+def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[[Points], FloatArray]) -> Largest:
+    """Refine points about the largest value until polynomials of two degrees agree."""
+    for _ in range(ROUNDS):
+        points, inside = _closer_points(top, search.extent, shallowest)
+        if inside and top.largest.error <= TOLERANCE * top.largest.value:
             break
-        next_top = _top(closer, stress(closer))
-        change = abs(next_top.found.value - top.found.value)
-        if next_top.found.value < top.found.value and not inside:
-            # Beyond the edge it falls.
+        next_top = _interpolated(points, stress(points))
+        change = abs(next_top.largest.value - top.largest.value)
+        if next_top.largest.value < top.largest.value and not inside:
+            # The stress falls beyond the edge.
             return _confirmed(top, change, stress)
         top = next_top
-    if top.found.place[2] <= shallowest * (1 + 1e-9):
-        return top.found._replace(error=max(top.found.error, ON_TOP * top.found.value))
-    return top.found
+    if top.largest.position[2] <= shallowest * (1 + 1e-9):
+        return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
+    return top.largest
 
 
-def _confirmed(top: _Top, change: float, stress: Callable[[Place], FloatArray]) -> Largest:
-    """Return what the stress itself is where polynomials are largest: beside the last points they may overshoot."""
-    sampled = [axis[number] for axis, number in zip(top.points, top.at, strict=True)]
-    points = Place(*(np.unique(pair) for pair in zip(top.found.place, sampled, strict=True)))
-    found = _sampled(points, stress(points)).found
-    return found._replace(error=max(change, abs(top.found.value - found.value)))
+def _confirmed(top: _Maximum, change: float, stress: Callable[[Points], FloatArray]) -> Largest:
+    """Return the stress itself at the maximum of the polynomials, which may overshoot beyond the last points."""
+    sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
+    points = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
+    largest = _sampled(points, stress(points)).largest
+    return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
 
 
-def _sampled(points: Place, stresses: FloatArray, known: BoolArray | None = None) -> _Top:
-    """Largest value among points, as far as stresses are `known` (x, y), that may be too far apart for polynomials."""
+def _sampled(points: Points, stresses: FloatArray, selection: BoolArray | None = None) -> _Maximum:
+    """Largest value among the points of a `selection` (x, y), without interpolation."""
     values = von_mises_of(*stresses)
-    if known is not None:
-        values = np.where(known[..., None], values, 0.0)
-    at = np.unravel_index(int(values.argmax()), values.shape)
-    x, y, z = (float(axis[int(number)]) for axis, number in zip(points, at, strict=True))
-    return _Top(Largest(float(values[at]), np.inf, (x, y, z)), points, tuple(int(number) for number in at))
+    if selection is not None:
+        values = np.where(selection[..., None], values, 0.0)
+    index = np.unravel_index(int(values.argmax()), values.shape)
+    x, y, z = (float(axis[int(number)]) for axis, number in zip(points, index, strict=True))
+    return _Maximum(Largest(float(values[index]), np.inf, (x, y, z)), points, tuple(int(number) for number in index))
 
 
-def _top(points: Place, stresses: FloatArray) -> _Top:
-    """Largest value between points where the stresses are known: polynomials go through the components."""
-    at = np.unravel_index(int(von_mises_of(*stresses).argmax()), stresses.shape[1:])
-    index = tuple(int(number) for number in at)
-    (value, place), (rough, _) = (_between(points, stresses, index, around) for around in (2, 1))
+def _interpolated(points: Points, stresses: FloatArray) -> _Maximum:
+    """Largest value between points, of polynomials through the components."""
+    flat = int(von_mises_of(*stresses).argmax())
+    index = tuple(int(number) for number in np.unravel_index(flat, stresses.shape[1:]))
+    (value, position), (rough, _) = (_interpolate(points, stresses, index, neighbours) for neighbours in (2, 1))
     sampled = float(von_mises_of(*stresses)[index])
-    return _Top(Largest(value, max(abs(value - rough), BETWEEN * (value - sampled)), place), points, index)
+    return _Maximum(Largest(value, max(abs(value - rough), RISE_ERROR * (value - sampled)), position), points, index)
 
 
-def _between(
-    points: Place, stresses: FloatArray, index: tuple[int, ...], around: int
+def _interpolate(
+    points: Points, stresses: FloatArray, index: tuple[int, ...], neighbours: int
 ) -> tuple[float, tuple[float, float, float]]:
-    """Largest value of polynomials through the points `around` one on either side, and its place."""
-    near = [refined(axis, number, around) for axis, number in zip(points, index, strict=True)]
-    values = stresses[(slice(None), *(each.window for each in near))]
-    for number, each in enumerate(near, start=1):
-        values = np.moveaxis(np.tensordot(each.matrix, values, axes=(1, number)), 0, number)
-    between = von_mises_of(*values)
-    best = np.unravel_index(int(between.argmax()), between.shape)
-    x, y, z = (float(each.points[number]) for each, number in zip(near, best, strict=True))
-    return float(between[best]), (x, y, z)
+    """Largest value, and its position, of polynomials through `neighbours` points on either side of a point."""
+    axes, values = interpolate_about(points, index, stresses, neighbours)
+    von_mises = von_mises_of(*values)
+    best = np.unravel_index(int(von_mises.argmax()), von_mises.shape)
+    x, y, z = (float(axis[number]) for axis, number in zip(axes, best, strict=True))
+    return float(von_mises[best]), (x, y, z)
 
 
-def _closer(top: _Top, extent: Extent, shallowest: float) -> tuple[Place, bool]:
-    """Points around the largest one, closer together; as far apart, and further out, where that is at an edge."""
+def _closer_points(top: _Maximum, extent: Extent, shallowest: float) -> tuple[Points, bool]:
+    """Closer points around the largest one; beyond an edge of the range, shifted points at equal spacing."""
     axes, inside = [], True
     limits = (extent, (-np.inf, np.inf), (shallowest, np.inf))
-    for axis, index, (low, high) in zip(top.points, top.at, limits, strict=True):
-        at = axis[index]
+    for axis, index, (low, high) in zip(top.points, top.indices, limits, strict=True):
+        centre = axis[index]
         before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
-        outermost = axis.size > 1 and bool((index == 0 and at > low) or (index == axis.size - 1 and at < high))
+        outermost = axis.size > 1 and bool((index == 0 and centre > low) or (index == axis.size - 1 and centre < high))
         inside = inside and not outermost
         reach = 2 * (after - before) if outermost else 0.0
-        start, stop = max(min(before, at - reach), low), min(max(after, at + reach), high)
+        start, stop = max(min(before, centre - reach), low), min(max(after, centre + reach), high)
         axes.append(np.linspace(start, stop, 5) if axis.size > 1 else axis)
-    return Place(*axes), inside
+    return Points(*axes), inside

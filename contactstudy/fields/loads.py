@@ -1,4 +1,4 @@
-"""Loads on the top of a body, by direction, and the sum of what they do."""
+"""Loads on the top of a body by direction, and the superposition of their fields."""
 
 from __future__ import annotations
 
@@ -6,27 +6,29 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple, TypeVar
 
 import numpy as np
+import xarray as xr
 
+from contactstudy import checks
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid
+from contactstudy.arrays.variables import in_si
+from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.positions import Labels
+from contactstudy.kernels.fine_cells import FineCells
 from contactstudy.kernels.load import Load
 
 Result = TypeVar("Result")
 
 
 class TopLoad(NamedTuple):
-    """A load in one direction: a factor times a distribution over the cells.
+    """A load in one direction: a factor times a distribution over the cells."""
 
-    Attributes
-    ----------
-    cells : array (x, y)
-        Load per area on each cell, Pa.
-    factor : float
-        Factor on it. Loads that differ by a factor share the fields that are computed for their distribution.
-    """
-
-    cells: FloatArray
+    cells: FloatArray  # (x, y): load per area on each cell, Pa
     factor: float = 1.0
+    """Factor on it. Loads that differ by a factor share the fields that are computed for their distribution."""
 
     @property
     def values(self) -> FloatArray:
@@ -34,18 +36,11 @@ class TopLoad(NamedTuple):
         return self.factor * self.cells
 
 
-Loads = Mapping[Load, TopLoad]
-"""What acts on the top, by direction."""
+Loads = Mapping[Load, TopLoad]  # loads on the top by direction
 
 
 def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
-    """Return the pressure and, in full sliding, the traction ``q = f p`` on the body along +y.
-
-    Examples
-    --------
-    >>> sorted(load.name for load in sliding(np.ones((2, 2)), 0.1))
-    ['ALONG_Y', 'NORMAL']
-    """
+    """Return the pressure and, in full sliding, the traction ``q = f p`` on the body along +y."""
     loads = {Load.NORMAL: TopLoad(pressure)}
     if isinstance(friction, np.ndarray):
         return loads | {Load.ALONG_Y: TopLoad(friction * pressure)}
@@ -53,32 +48,104 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
 
 
 def grouped(loads: Loads, unit: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Result]]) -> dict[Load, Result]:
-    """Return what `unit` gives for each load; it is asked for loads with the same distribution together.
-
-    Parameters
-    ----------
-    loads : mapping of Load to TopLoad
-        At least one.
-    unit : callable
-        From some directions and one distribution to what it makes in each of them.
-    """
+    """Return the result of `unit` for each load, from one call for all loads with the same distribution."""
     groups: dict[ArrayKey, list[Load]] = {}
     for load, (cells, _) in loads.items():
         groups.setdefault(ArrayKey(cells), []).append(load)
-    found: dict[Load, Result] = {}
+    results: dict[Load, Result] = {}
     for shared, directions in groups.items():
-        found |= unit(tuple(directions), shared.values)
-    return found
+        results |= unit(tuple(directions), shared.values)
+    return results
 
 
 def superposed(
     loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
-    """Sum of the fields under all loads at each of several places, from those under a distribution, see `grouped`."""
+    """Sum the fields of all loads, from the fields of each distribution (`grouped`)."""
     fields = grouped(loads, unit_fields)
-    first, *others = loads
+    first, *remaining = loads
     totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
-    for load in others:
+    for load in remaining:
         for total, field in zip(totals, fields[load], strict=True):
             total += loads[load].factor * field
     return totals
+
+
+class EndCells(NamedTuple):
+    """Load and cells for the end correction, see `end_cells`."""
+
+    cells: FloatArray
+    grid: Grid
+
+
+def end_cells(cells: FloatArray, shape: FloatArray | None, grid: Grid, length: float) -> EndCells:
+    """Load for the correction of the ends of a body from 0 to `length`, on the fine cells."""
+    if shape is None:
+        return EndCells(cells, grid)
+    return EndCells(*FineCells(cells, shape, grid, (0.0, length)).end_load())
+
+
+UNIFORM = "uniform"  # value of `inside_cells` for loads that are uniform in each cell
+
+
+class PrescribedLoads(NamedTuple):
+    """Checked loads."""
+
+    grid: Grid
+    loads: Loads  # pressure and tractions on the cells
+    labels: Labels  # coordinates of the cell centres
+    shape: FloatArray | None
+    """(x, y): pressure that determines the distribution of the loads inside the cells; None: uniform."""
+
+    @property
+    def pressure(self) -> FloatArray:
+        """Pressure on the cells, Pa."""
+        return self.loads[Load.NORMAL].values
+
+
+def prescribed_loads(
+    body: Body,
+    pressure: xr.DataArray,
+    friction: float = 0.0,
+    traction_x: xr.DataArray | None = None,
+    traction_y: xr.DataArray | None = None,
+    inside_cells: str | xr.DataArray = UNIFORM,
+) -> PrescribedLoads:
+    """Check loads on a body, DataArrays (x, y) in Pa that all lie on the cells of the pressure."""
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    pressure = in_si("pressure", pressure, "Pa")
+    values, grid = labelled_cells("pressure", pressure, extent=body.extent)
+    friction = checks.finite("friction", friction)
+    if friction and traction_y is not None:
+        raise InvalidInputError("friction", friction, "0 with traction_y, which is the whole traction along y")
+    loads = dict(sliding(values, friction))
+    for name, load, traction in (
+        ("traction_x", Load.ALONG_X, traction_x),
+        ("traction_y", Load.ALONG_Y, traction_y),
+    ):
+        if traction is not None:
+            loads[load] = TopLoad(_on_cells(name, traction, grid, body))
+    shape = None
+    if not isinstance(inside_cells, str):
+        shape = _on_cells("inside_cells", inside_cells, grid, body)
+        if not shape.any():
+            raise InvalidInputError(
+                "inside_cells", "zero everywhere", f"a pressure with a nonzero value, or {UNIFORM!r}"
+            )
+    elif inside_cells != UNIFORM:
+        raise InvalidInputError("inside_cells", inside_cells, f"{UNIFORM!r} or a pressure, a DataArray (x, y)")
+    return PrescribedLoads(grid, loads, (pressure["x"].values, pressure["y"].values), shape)
+
+
+def _on_cells(name: str, traction: xr.DataArray, grid: Grid, body: Body) -> FloatArray:
+    """Values of a load that lies on the cells of the pressure."""
+    values, cells = labelled_cells(name, in_si(name, traction, "Pa"), extent=body.extent)
+    tolerance = SPACING_TOLERANCE * min(float(grid.widths.min()), grid.dy)
+    if (
+        cells.shape != grid.shape
+        or max(np.abs(cells.x_edges - grid.x_edges).max(), np.abs(cells.y - grid.y).max()) > tolerance
+    ):
+        raise InvalidInputError(
+            f"{name}.coords", f"{cells.shape} cells from x = {cells.x[0]:g} m", "those of the pressure"
+        )
+    return values

@@ -1,4 +1,8 @@
-"""Displacements of the top of one part of a body: a half-space with the load mirrored, and what frees its ends."""
+"""Displacements of the top of one part of a body: a half-space with mirrored loads, and the end correction.
+
+On uniform cells the operator is a convolution, observed at the centres; on columns it is a dense matrix along x per
+wavenumber along y, observed as means over their widths.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 
 import numpy as np
-from scipy import fft
+from scipy import fft, linalg
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
@@ -14,11 +18,10 @@ from contactstudy.bodies.models import Extent, Part
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.convolution import GridTransform, even_spectrum, odd_spectrum
-from contactstudy.kernels.load import SINKS, Load, Response
-from contactstudy.kernels.surface import surface_kernel
-from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
+from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
+from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.surface import EndCorrection
+from contactstudy.overlapping.surface import EndCorrection, EndRequest, end_kernel
 from contactstudy.threads import one_blas_thread
 
 REFERENCE_LENGTHS = 10.0
@@ -26,19 +29,7 @@ REFERENCE_LENGTHS = 10.0
 
 
 class PartOperator:
-    """Displacements of the top of one part of a body.
-
-    Parameters
-    ----------
-    extent : tuple of float
-        Where the mirrors stand, metres; infinite for none.
-    grid : Grid
-        Cells.
-    spectra : mapping of Response to array
-        Spectrum of the mirrored half-space's kernel, for each pair of displacement and load that the operator takes.
-    ends : EndCorrection or None
-        What frees the ends; None where they stay as mirroring leaves them.
-    """
+    """Displacements of the top of one part of a body."""
 
     def __init__(
         self, extent: Extent, grid: Grid, spectra: Mapping[Response, FloatArray], ends: EndCorrection | None
@@ -46,13 +37,13 @@ class PartOperator:
         self.extent, self.grid = extent, grid
         self._spectra, self._ends = spectra, ends
         padding = _Padding(extent, grid)
-        # Mirrored in its second end alone, the body is seen from there.
+        # A body with the second mirror alone is reversed.
         self._flipped = padding.mirrored and bool(np.isinf(extent[0]))
 
         def transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
             return {
-                each: GridTransform(*grid.shape, padding.cells_x, each.sign_x if padding.mirrored else 0)
-                for each in dict.fromkeys(directions)
+                direction: GridTransform(*grid.shape, padding.cells_x, direction.sign_x if padding.mirrored else 0)
+                for direction in dict.fromkeys(directions)
             }
 
         self._loaded = transforms([response.load for response in spectra])
@@ -65,9 +56,9 @@ class PartOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         ends = None
         if part.freed:
-            check_freed(part, responses)
+            check_ends(part, responses)
             with one_blas_thread():
-                reference = reference_of(part.extent)
+                reference = reference_distance(part.extent)
                 request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
                 ends = EndCorrection.on(grid, end_kernel(request))
         spectra = {response: _spectrum(response, material, part.extent, grid) for response in responses}
@@ -76,7 +67,7 @@ class PartOperator:
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return reference_of(self.extent)
+        return reference_distance(self.extent)
 
     def coarsened(self, material: Material) -> PartOperator:
         """Return the operator on cells of twice the size."""
@@ -89,60 +80,59 @@ class PartOperator:
         spectra, gathered = {}, {}
         for load, cells in loads.items():
             transform = self._loaded[load]
-            lateral = transform.lateral(load.sign_x * cells[::-1] if self._flipped else cells)
+            lateral = transform.transform_y(load.sign_x * cells[::-1] if self._flipped else cells)
             if self._ends is not None:
                 gathered[load] = self._ends.gathered(load, lateral)
-            spectra[load] = transform.along()
+            spectra[load] = transform.transform_x()
         displacements = {}
         for direction in directions:
             transform = self._displaced[direction]
             self._fill(transform.spectrum, direction, spectra)
             cells_x = self.grid.cells_x
             ends = self._ends.displaced(direction, gathered, cells_x) if self._ends is not None else None
-            displaced = transform.back(ends)
+            displaced = transform.invert(ends)  # eq. (5)
             displacements[direction] = direction.sign_x * displaced[::-1] if self._flipped else displaced
         return displacements
 
     def _fill(self, total: ComplexArray, direction: Load, loads: Mapping[Load, ComplexArray]) -> None:
-        """Fill a buffer with the spectrum of the displacement that the mirrored half-space has under `loads`.
-
-        A sine transform begins with wavenumber 1, a cosine transform with wavenumber 0.
-        """
+        """Fill a buffer with the spectrum of the displacement that the mirrored half-space has under `loads`."""
+        # A sine transform begins with wavenumber 1, a cosine transform with wavenumber 0.
         mirrored = bool(self._displaced[direction].mirror)
         for number, (load, spectrum) in enumerate(loads.items()):
             response = Response(direction, load)
             kernel = self._spectra[response]
-            seen, loaded = total, spectrum
+            target, source = total, spectrum
             if mirrored and response.sign_x < 0:
-                seen, loaded = (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
+                target, source = (total[:-1], spectrum[1:]) if direction.sign_x < 0 else (total[1:], spectrum[:-1])
                 if not number:
                     total[-1 if direction.sign_x < 0 else 0] = 0.0
             if not number:
-                np.multiply(kernel, loaded, out=seen)
+                np.multiply(kernel, source, out=target)
             elif response.sign_y > 0 and (mirrored or response.sign_x > 0):
-                seen += kernel * loaded
+                target += kernel * source
                 continue
-            # Kernels without their factors i: of a component odd along y, and along x unless mirrored.
-            turns = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
-            factor = (1, 1j, -1)[turns]
+            # Kernels lack a factor i for each odd direction, except along x between mirrors.
+            powers = int(response.sign_y < 0) + int(response.sign_x < 0 and not mirrored)
+            factor = (1, 1j, -1)[powers]
             if number:
-                seen += (factor * kernel) * loaded
-            elif turns:
-                seen *= factor
+                target += (factor * kernel) * source
+            elif powers:
+                target *= factor
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`: the inverse of the mirrored half-space's spectrum."""
+        """Approximate pressure for a normal displacement `gap`: the inverse spectrum of the mirrored half-space."""
         transform = self._loaded[Load.NORMAL]
-        transform.lateral(gap)
-        full = transform.along()
+        transform.transform_y(gap)
+        full = transform.transform_x()
         full *= self._inverse
-        return transform.back()
+        return transform.invert()
 
     @cached_property
     def _inverse(self) -> FloatArray:
-        # The constant's own entry depends on the reference only; the next one stands in for it.
-        spectrum = self._spectra[SINKS].copy()
-        spectrum[0, 0] = max(spectrum[0, 1], spectrum[1, 0])
+        # The constant depends on the reference only; the next entry replaces it.
+        spectrum = self._spectra[NORMAL_RESPONSE].copy()
+        spectrum[0, 0] = 0.0
+        spectrum[0, 0] = spectrum[:2, :2].max()
         return np.asarray(1.0 / np.maximum(spectrum, 1e-3 * spectrum.min(where=spectrum > 0, initial=np.inf)))
 
     @property
@@ -150,12 +140,12 @@ class PartOperator:
         """Memory held, bytes, with the inverse that preconditioning adds."""
         ends = self._ends.nbytes if self._ends is not None else 0
         spectra = [spectrum.nbytes for spectrum in self._spectra.values()]
-        buffers = sum(each.nbytes for each in (*self._loaded.values(), *self._displaced.values()))
+        buffers = sum(transform.nbytes for transform in (*self._loaded.values(), *self._displaced.values()))
         return int(sum(spectra) + max(spectra)) + ends + buffers
 
 
 class _Padding:
-    """How the cells continue along x: mirrored in the ends, or padded with zeros."""
+    """Continuation of the cells along x: mirror images or zeros."""
 
     def __init__(self, extent: Extent, grid: Grid) -> None:
         low, high = (bool(np.isfinite(end)) for end in extent)
@@ -163,43 +153,43 @@ class _Padding:
         self.cells_x = grid.cells_x if self.periodic else 2 * grid.cells_x
 
 
-def check_freed(part: Part, responses: Sequence[Response]) -> None:
-    """Raise if a model of the ends says nothing of a displacement that is asked for."""
+def check_ends(part: Part, responses: Sequence[Response]) -> None:
+    """Raise for tangential displacements of the single-mirror model."""
     tangential = any(response.displacement is not Load.NORMAL for response in responses)
     if tangential and part.freed is not None and part.freed.mirrored_once:
         raise InvalidInputError(
             "body.model",
             "single-mirror",
-            'a model whose top is displaced tangentially as reciprocity says: "exact", "mirror" or "mirror-factor"',
-            "its ends keep some shear",
+            '"exact", "mirror" or "mirror-factor" for tangential displacements',
+            "residual shear on its ends breaks reciprocity",
         )
 
 
-def reference_of(extent: Extent) -> float:
+def reference_distance(extent: Extent) -> float:
     """Distance along y at which the displacement of a part is zero, metres; infinite unless it has two ends."""
     return REFERENCE_LENGTHS * (extent[1] - extent[0])
 
 
-def displaced_by_unit(material: Material) -> float:
+def kernel_factor(material: Material) -> float:
     """Factor on the closed-form kernels of the displacement, 1/Pa."""
     return 1 / (4 * np.pi * material.shear_modulus)
 
 
 def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid) -> FloatArray:
-    """Spectrum of the mirrored half-space's kernel, without its factors i: array (x, y).
-
-    Mirrored, it takes a cosine or sine transform (of the load's kind) to another (of the displacement's kind).
-    """
+    """Spectrum (x, y), without factors i, of the kernel of the mirrored half-space."""
     padding = _Padding(extent, grid)
     x: FloatArray = grid.dx * np.arange(padding.cells_x + 1.0 if padding.mirrored else grid.cells_x + 1.0)
     y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
     length = extent[1] - extent[0]
     cell = (grid.dx, grid.dy)
-    kernel = surface_kernel(response, material.poisson, x, y, cell, length, reference_of(extent))
+    reference = reference_distance(extent)
+    kernel = surface_kernel(response, material.poisson, x, y, cell, length=length, reference=reference)
     along_y = even_spectrum(kernel) if response.sign_y > 0 else odd_spectrum(kernel)
-    factor = displaced_by_unit(material)
+    factor = kernel_factor(material)
     if response.sign_x < 0:
-        inner = factor * fft.dst(along_y[1:-1], type=1, axis=0)
+        inner = along_y[1:-1]
+        if inner.size:  # the sine transform needs two columns
+            inner = factor * fft.dst(inner, type=1, axis=0)
         if padding.mirrored:
             return np.asarray(inner if response.displacement.sign_x < 0 else -inner)
         zero = np.zeros((1, inner.shape[1]))
@@ -208,3 +198,110 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
     if padding.mirrored:
         return np.asarray(spectrum[:-1] if response.displacement.sign_x > 0 else spectrum[1:])
     return np.concatenate([spectrum, spectrum[-2:0:-1]])
+
+
+LEAST_EIGENVALUE = 1e-3  # least eigenvalue of an indefinite preconditioner over their mean magnitude. Speed.
+
+
+class ColumnsOperator:
+    """Displacements of the top of one part of a body, averaged over the width of each cell."""
+
+    def __init__(self, extent: Extent, grid: Grid, kernels: Mapping[Response, FloatArray]) -> None:
+        self.extent, self.grid, self._kernels = extent, grid, kernels
+        self._widths = grid.widths[:, None]
+
+    @classmethod
+    def of(
+        cls, material: Material, part: Part, grid: Grid, responses: Sequence[Response], resolution: Resolution
+    ) -> ColumnsOperator:
+        """Operator of a part of a body made of `material`, for pairs of displacement and load."""
+        edges, reference = grid.x_edges, reference_distance(part.extent)
+        check_ends(part, responses)
+        columns = ColumnsRequest(edges, grid.dy, grid.cells_y, part.extent, reference)
+        with one_blas_thread():
+            kernels = {
+                response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
+            }
+            if part.freed:
+                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
+                ends = end_kernel(request)
+                for response, kernel in kernels.items():
+                    ends.add_to(kernel, response, edges)
+        return cls(part.extent, grid, kernels)
+
+    @property
+    def reference(self) -> float:
+        """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
+        return reference_distance(self.extent)
+
+    def coarsened(self, material: Material) -> ColumnsOperator:
+        """Return the operator on pairs of cells, for an initial guess."""
+        grid = self.grid.coarsened()
+        fine = self.grid.widths
+        joined = np.zeros((grid.cells_x, fine.size))
+        joined[np.minimum(np.arange(fine.size) // 2, grid.cells_x - 1), np.arange(fine.size)] = fine
+        joined /= grid.widths[:, None]
+        lower = {response: joined @ kernel[: grid.cells_y + 1] @ joined.T for response, kernel in self._kernels.items()}
+        return ColumnsOperator(self.extent, grid, lower)
+
+    def __call__(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Displacements (m) of the cells in some `directions` under `loads` (Pa): arrays (x, y)."""
+        spectra = {load: self._along_y(self._widths * cells) for load, cells in loads.items()}
+        displacements = {}
+        for direction in directions:
+            parts = (self._product(Response(direction, load), spectrum) for load, spectrum in spectra.items())
+            displacements[direction] = self._back(sum(parts, np.zeros(1, np.complex128)))
+        return displacements
+
+    def precondition(self, gap: FloatArray) -> FloatArray:
+        """Approximate pressure for a normal displacement `gap`."""
+        return self._back(_times(self._inverse, self._along_y(gap))) / self._widths
+
+    def _along_y(self, values: FloatArray) -> ComplexArray:
+        """Transform along y: array (wavenumber, cell)."""
+        return np.ascontiguousarray(fft.rfft(values, n=2 * self.grid.cells_y, axis=1).T)
+
+    def _product(self, response: Response, spectrum: ComplexArray) -> ComplexArray:
+        """Multiply along x, for each wavenumber along y."""
+        product = _times(self._kernels[response], spectrum)
+        return product if response.sign_y > 0 else 1j * product
+
+    def _back(self, spectrum: ComplexArray) -> FloatArray:
+        """Values on the cells from their transform along y (wavenumber, cell)."""
+        cells_y = self.grid.cells_y
+        return np.asarray(fft.irfft(spectrum.T, n=2 * cells_y, axis=1)[:, :cells_y])
+
+    @cached_property
+    def _inverse(self) -> FloatArray:
+        """Inverse of the pressure's matrix, per wavenumber."""
+        kernel = self._kernels[NORMAL_RESPONSE]
+        inverse = np.empty_like(kernel)
+        with one_blas_thread():
+            for matrix, target in zip(kernel, inverse, strict=True):
+                target[:] = _inverted(matrix)
+        return inverse
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes, with the inverse that preconditioning adds."""
+        sizes = [kernel.nbytes for kernel in self._kernels.values()]
+        return sum(sizes) + max(sizes)
+
+
+def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
+    """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell), as real products on pairs."""
+    pairs = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
+    return np.ascontiguousarray(np.matmul(matrices, pairs)).view(np.complex128)[..., 0]
+
+
+def _inverted(matrix: FloatArray) -> FloatArray:
+    """Inverse of a symmetric matrix with positive eigenvalues; the displacement reference may change one sign."""
+    factor, failed = linalg.lapack.dpotrf(matrix)
+    if not failed:
+        upper, _ = linalg.lapack.dpotri(factor)  # zeros below
+        inverse = upper + upper.T
+        inverse.flat[:: inverse.shape[0] + 1] *= 0.5
+        return np.asarray(inverse)
+    values, vectors = np.linalg.eigh(0.5 * (matrix + matrix.T))
+    values = np.maximum(np.abs(values), LEAST_EIGENVALUE * np.abs(values).max() / values.size)
+    return np.asarray((vectors / values) @ vectors.T)

@@ -1,7 +1,8 @@
-"""Where a field is evaluated: the tensor product of any x, y and z inside a body."""
+"""Positions of fields: the tensor product of any x, y and z inside a body, and the default positions of stresses."""
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
@@ -11,33 +12,27 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import numbers_in_si
-from contactstudy.bodies.models import Body
-from contactstudy.checks import FloatArray
+from contactstudy.arrays.variables import numbers_in_si
+from contactstudy.bodies.models import Body, Extent
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import InvalidInputError
 
-FARTHEST = 1e4
-"""Distance over the size of load and body up to which fields are computed: the work grows with it along y."""
+FARTHEST = 1e4  # largest distance of a position over the size of load and body: the work grows with it along y
+GROWTH = 0.5  # growth of the default spacing of stresses with the distance from a feature
+WIDEST = 0.2  # default spacing at a free end and below the top, over the Hertz half-width
+DEEPEST = 5.0  # largest default depth, over the Hertz half-width
 
 Positions = Sequence[float] | npt.ArrayLike
 Labels = tuple[FloatArray, FloatArray]
 
 
 class FieldPositions(NamedTuple):
-    """Checked positions, metres.
+    """Checked positions, metres."""
 
-    Attributes
-    ----------
-    x, y, z : array
-        Where to evaluate.
-    label_x, label_y : array
-        Coordinates of the result: the pressure's own, unrounded, where no others were given.
-    """
-
-    x: FloatArray
+    x: FloatArray  # positions of the field
     y: FloatArray
     z: FloatArray
-    label_x: FloatArray
+    label_x: FloatArray  # coordinates of the result; by default the unrounded coordinates of the pressure
     label_y: FloatArray
 
     @property
@@ -54,52 +49,64 @@ class FieldPositions(NamedTuple):
 
 
 def field_positions(
-    body: Body, grid: Grid, x: Positions | None, y: Positions | None, z: Positions, own: Labels | None = None
+    body: Body, grid: Grid, x: Positions | None, y: Positions | None, z: Positions, labels: Labels | None = None
 ) -> FieldPositions:
-    """Positions of a field in a body.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    grid : Grid
-        Cells of the load.
-    x, y : sequence of float or None
-        Positions, metres; None: the cell centres.
-    z : sequence of float
-        Depths, metres.
-    own : pair of array, optional
-        Labels of the cell centres, where they differ from the grid's by rounding.
-
-    Raises
-    ------
-    InvalidInputError
-        If a position lies outside the body, or the grid does not fit it.
-    """
+    """Positions of a field in a body."""
     body.check_span(grid)
-    at_x = _inside_body(body, grid.x if x is None else checks.coordinates("x", numbers_in_si("x", x, "m")), grid)
-    at_y = grid.y if y is None else checks.coordinates("y", numbers_in_si("y", y, "m"))
-    at_z = checks.coordinates("z", numbers_in_si("z", z, "m"))
-    if (at_z < 0).any():
-        raise InvalidInputError("z", float(at_z.min()), "not negative (metres below the top)")
+    x_values = _inside_body(body, grid.x if x is None else checks.coordinates("x", numbers_in_si("x", x, "m")), grid)
+    y_values = grid.y if y is None else checks.coordinates("y", numbers_in_si("y", y, "m"))
+    z_values = checks.coordinates("z", numbers_in_si("z", z, "m"))
+    if (z_values < 0).any():
+        raise InvalidInputError("z", float(z_values.min()), "not negative (metres below the top)")
     low, high = body.extent
     size = max(grid.x_range[1] - grid.x_range[0], grid.y_range[1] - grid.y_range[0])
     size = max(size, high - low) if np.isfinite([low, high]).all() else size
-    for name, values in (("x", at_x), ("y", at_y), ("z", at_z)):
+    for name, values in (("x", x_values), ("y", y_values), ("z", z_values)):
         farthest = float(values[np.abs(values).argmax()])
         if abs(farthest) > FARTHEST * size:
             raise InvalidInputError(
                 name, farthest, f"within {FARTHEST:g} times the size of load and body, {FARTHEST * size:g} m"
             )
-    own_x, own_y = own or (grid.x, grid.y)
-    return FieldPositions(at_x, at_y, at_z, own_x if x is None else at_x, own_y if y is None else at_y)
+    label_x, label_y = labels or (grid.x, grid.y)
+    return FieldPositions(
+        x_values, y_values, z_values, label_x if x is None else x_values, label_y if y is None else y_values
+    )
 
 
 def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:
-    """Positions of which those within rounding of an end lie on it; raise for any outside."""
+    """Positions, moved to an end within rounding; raise for any outside."""
     low, high = body.extent
     rounding = 1e-9 * grid.dx
     outside = (x < low - rounding) | (x > high + rounding)
     if outside.any():
         raise InvalidInputError("x", float(x[outside][0]), f"inside the body, {low:g} to {high:g} m")
     return np.where(x < low + rounding, low, np.where(x > high - rounding, high, x))
+
+
+def default_columns(grid: Grid, extent: Extent, pressed: BoolArray, half_width: float) -> FloatArray:
+    """Positions along x from one end of the body, or of the grid, to the other."""
+    # The spacing equals two widths of a pressed column at its centre, and a fifth of the half-width at the ends.
+    ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, grid.x_range, strict=True)]
+    spacings = np.append(2 * grid.widths[pressed], np.full(2, WIDEST * half_width))
+    return _graded(ends, np.append(grid.x[pressed], ends), spacings)
+
+
+def default_depths(half_width: float, depth: float) -> FloatArray:
+    """Depths from 0 to five half-widths, narrow from the top to the depth of the largest stress."""
+    # The depth is rounded to a power of the square root of 2, so that similar cases share their positions.
+    shallow = 2.0 ** (0.5 * round(2 * np.log2(max(depth / half_width, 0.01)))) if np.isfinite(depth) else 0.5
+    narrow, fixed = min(0.2 * shallow, WIDEST), {0.0, min(shallow, 1.0), DEEPEST}
+    depths = _graded(sorted(fixed), np.array([0.0, shallow, 0.5, 1.0]), np.array([narrow, narrow, WIDEST, WIDEST]))
+    return half_width * depths
+
+
+def _graded(fixed: Sequence[float], centres: FloatArray, spacings: FloatArray) -> FloatArray:
+    """Positions between increasing fixed ones; the spacing grows with the distance from each centre."""
+    parts = []
+    for start, stop in itertools.pairwise(fixed):
+        steps = [0.0]
+        while steps[-1] < stop - start:
+            distance = np.abs(start + steps[-1] - centres)
+            steps.append(steps[-1] + float((spacings + GROWTH * distance).min()))
+        parts.append(start + np.array(steps[:-1]) * ((stop - start) / steps[-1]))
+    return np.append(np.concatenate(parts), fixed[-1])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import NamedTuple, overload
 
@@ -13,39 +14,24 @@ from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, named
 from contactstudy.bodies.models import Body
-from contactstudy.cache import kept
+from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.columns import ColumnsOperator
-from contactstudy.fields.part import PartOperator
-from contactstudy.fields.prescribed import prescribed_loads
+from contactstudy.fields.loads import prescribed_loads
+from contactstudy.fields.part import ColumnsOperator, PartOperator
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
 
 
 class OperatorRequest(NamedTuple):
-    """What decides a surface operator.
-
-    Attributes
-    ----------
-    body : Body
-        The body.
-    grid : Grid
-        Cells; on a body with ends they begin at ``x = 0`` and span it.
-    loads : tuple of Load
-        Directions of the loads that it takes, the pressure first.
-    resolution : Resolution
-        Quadrature settings of the free ends' part.
-    directions : tuple of Load
-        Directions of the displacements that it gives.
-    """
+    """Body, cells and directions of a surface operator."""
 
     body: Body
-    grid: Grid
-    loads: tuple[Load, ...] = (Load.NORMAL,)
-    resolution: Resolution = Resolution()
-    directions: tuple[Load, ...] = (Load.NORMAL,)
+    grid: Grid  # cells; on a body with ends they begin at ``x = 0`` and span it
+    loads: tuple[Load, ...] = (Load.NORMAL,)  # directions of the loads, the pressure first
+    resolution: Resolution = Resolution()  # quadrature settings of the free ends' part
+    directions: tuple[Load, ...] = (Load.NORMAL,)  # directions of the displacements
 
     @property
     def responses(self) -> tuple[Response, ...]:
@@ -54,31 +40,17 @@ class OperatorRequest(NamedTuple):
 
 
 class SurfaceOperator:
-    """Displacements of the top from pressure and traction, for one body and one grid.
-
-    Parameters
-    ----------
-    body : Body
-        The body.
-    parts : sequence of (float, operator)
-        Operators whose weighted sum is the body's.
-    """
+    """Displacements of the top from pressure and traction, for one body and one grid."""
 
     def __init__(self, body: Body, parts: Sequence[tuple[float, PartOperator | ColumnsOperator]]) -> None:
         self.body, self._parts = body, parts
 
     @classmethod
     def of(cls, request: OperatorRequest) -> SurfaceOperator:
-        """Build the operator.
-
-        Raises
-        ------
-        InvalidInputError
-            If the grid does not fit the body.
-        """
+        """Build the operator."""
         body, grid = request.body, request.grid
         body.check_span(grid)
-        kind = PartOperator if grid.uniform else ColumnsOperator
+        kind = ColumnsOperator if grid.observes_means else PartOperator
         responses = request.responses
         parts = [
             (part.weight, kind.of(body.material, part, grid, responses, request.resolution)) for part in body.parts
@@ -94,19 +66,19 @@ class SurfaceOperator:
         weight, first = self._parts[0]
         displacements = first(loads, directions)
         if weight != 1:
-            displacements = {direction: weight * each for direction, each in displacements.items()}
+            displacements = {direction: weight * values for direction, values in displacements.items()}
         for weight, part in self._parts[1:]:
-            for direction, each in part(loads, directions).items():
-                displacements[direction] += weight * each
+            for direction, values in part(loads, directions).items():
+                displacements[direction] += weight * values
         return displacements
 
     def precondition(self, gap: FloatArray) -> FloatArray:
-        """Roughly the pressure that sinks the cells by `gap`."""
+        """Approximate pressure for a normal displacement `gap`."""
         return self._parts[0][1].precondition(gap)
 
     @cached_property
     def coarse(self) -> SurfaceOperator:
-        """The operator on cells of twice the size, roughly: what a first guess is solved with."""
+        """Approximate operator on cells of twice the size, for an initial guess."""
         parts = [(weight, part.coarsened(self.body.material)) for weight, part in self._parts]
         return SurfaceOperator(self.body, parts)
 
@@ -126,9 +98,14 @@ class SurfaceOperator:
         return sum(part.nbytes for _, part in self._parts)
 
 
-@kept("surface operators", lambda operator: operator.nbytes)
 def surface_operator(request: OperatorRequest) -> SurfaceOperator:
-    """Return the operator for a request; all cases with the same one share it."""
+    """Return the operator for a request; all cases with the same one share it, whatever depth they refer to."""
+    return _operator(request._replace(body=replace(request.body, reference_depth=None)))
+
+
+@cached("surface operators", lambda operator: operator.nbytes)
+def _operator(request: OperatorRequest) -> SurfaceOperator:
+    """Build an operator, or return the cached one."""
     return SurfaceOperator.of(request)
 
 
@@ -165,7 +142,7 @@ def surface_displacement(
     traction_y: xr.DataArray | None = None,
     components: Sequence[str] | None = None,
 ) -> xr.DataArray | xr.Dataset:
-    """Compute how a prescribed pressure, and the tractions that go with it, displace the top of a body.
+    """Compute the displacement of the top of a body under a prescribed pressure and tractions.
 
     Parameters
     ----------
@@ -179,13 +156,13 @@ def surface_displacement(
     traction_x, traction_y : DataArray (x, y), optional
         Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
     components : sequence of str, optional
-        Which of "x", "y" and "z" are wanted; default: the normal displacement alone, not in a Dataset.
+        Some of "x", "y" and "z"; default: the normal displacement alone, as a DataArray.
 
     Returns
     -------
     DataArray (x, y) or Dataset
         `displacement_z`, positive into the body, in metres; of several components a Dataset of `displacement_x`,
-        `displacement_y` and `displacement_z`. A finite-length space has no absolute displacement: its value is relative
+        `displacement_y` and `displacement_z`. The displacement of a finite-length space is relative
         to the top far away, at the distance along y stated in the attribute ``reference_distance``. A net force along
         x bends it, by an amount that depends on the distance: its curvature along y is zero there as well.
 
@@ -232,15 +209,15 @@ DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y,
 
 def _directions(components: Sequence[str]) -> tuple[Load, ...]:
     """Directions of displacements that are wanted."""
-    known = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
-    found = tuple(dict.fromkeys(known[checks.known_name("components", each, known)] for each in components))
-    if not found:
+    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
+    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in components))
+    if not directions:
         raise InvalidInputError("components", components, "at least one of x, y and z, or None")
-    return found
+    return directions
 
 
 def displacement_reference(reference: float) -> dict[str, str | float]:
-    """Attributes that say relative to what a displacement of the top is stated; none if it is absolute."""
+    """Attributes with the reference of a relative displacement of the top; empty for an absolute one."""
     if not np.isfinite(reference):
         return {}
     return {"reference_distance": reference, "reference": "zero at |y| = reference_distance (m) on the top"}

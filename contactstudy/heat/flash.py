@@ -1,37 +1,126 @@
-"""Flash temperature of a solved contact: heat from friction, its sharing, and the temperature of both surfaces."""
+"""Flash temperature of a solved contact: heat of friction, partition of the heat, and temperature of both surfaces."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import warnings
+from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy import checks
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.provenance import check_solved_for
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.units import required_in_si
-from contactstudy.arrays.variables import describe
-from contactstudy.caller import warn
+from contactstudy.arrays.variables import describe, required_in_si
 from contactstudy.case.case import Case
-from contactstudy.case.motion import Shift
-from contactstudy.checks import FloatArray
+from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, TemperatureWarning
-from contactstudy.heat.friction import FrictionalHeat, frictional_heat
-from contactstudy.heat.moving_source import MovingBody, SourceOperator
-from contactstudy.heat.partition import shared_heat
-from contactstudy.heat.properties import ThermalProperties
-from contactstudy.heat.spreading import Ends
+from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator, ThermalProperties
 
-LARGEST_MISMATCH = 1e-6
-"""Difference of the surfaces' temperatures, over the largest, that counts as equal. Accuracy."""
+
+class FrictionalHeat(NamedTuple):
+    """Frictional heat on the cells, its power, and the speeds of the surfaces relative to the contact."""
+
+    density: FloatArray
+    power: float
+    body_speed: float
+    roller_speed: float
+
+
+def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalHeat:
+    """Heat per area and speeds of a solved case."""
+    motion = case.motion
+    assert not isinstance(motion, Shift)
+    area = grid.weights * grid.cell_area
+    if isinstance(motion, Sliding):
+        solution = required_in_si(solution, "traction_y", argument="result")
+        if motion.speeds is None:
+            raise InvalidInputError("case.motion", motion, "one with body_speed and roller_speed (m/s)")
+        body_speed, roller_speed = motion.speeds
+        traction = labelled_cells("result.traction_y", solution["traction_y"], extent=case.body.extent)[0]
+        density = traction * (roller_speed - body_speed)
+        if (density < 0).any():
+            raise InvalidInputError(
+                "case.motion.roller_speed",
+                roller_speed,
+                f"{_side(traction)} body_speed, {body_speed:g}: friction drags the body the way the roller slides",
+                "speeds are along +y",
+            )
+        return FrictionalHeat(
+            density, float((area * traction).sum() * (roller_speed - body_speed)), body_speed, roller_speed
+        )
+    return _rolling_heat(case, motion, solution, area)
+
+
+def _side(traction: FloatArray) -> str:
+    """Bound on the roller's speed relative to the body's, in words."""
+    if (traction < 0).any() and (traction > 0).any():
+        return "equal to, as the friction changes its sign along the axis,"
+    return "not below" if traction.max() > 0 else "not above"
+
+
+def _rolling_heat(case: Case, motion: Rolling, solution: xr.Dataset, area: FloatArray) -> FrictionalHeat:
+    """Heat of a rolling contact: traction times slip per distance, times distance per time."""
+    names = ("traction_x", "slip_x", "traction_y", "slip_y")
+    solution = required_in_si(solution, *names, argument="result")
+    q_x, s_x, q_y, s_y = (
+        labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names
+    )
+    creepage = (
+        float(solution["longitudinal_creepage"])
+        if "longitudinal_creepage" in solution
+        else motion.longitudinal_creepage
+    )
+    speeds = motion.speeds_at(float(creepage or 0.0))
+    speed = -speeds.entrainment
+    density = speed * np.maximum(q_x * s_x + q_y * s_y, 0.0)
+    return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
+
+
+RESTART, MOST_RESTARTS = 60, 20  # Steps between restarts, and restarts
+Heated = Callable[[FloatArray], FloatArray]  # Temperature rise from heat
+
+
+class Shared(NamedTuple):
+    """Heat into the first body, W/m2, and the largest difference of the temperatures over the largest rise."""
+
+    heat: FloatArray
+    mismatch: float
+
+
+def shared_heat(first: Heated, second: Heated, heat: FloatArray, touching: BoolArray) -> Shared:
+    """Solve for the heat into the first body of two surfaces of equal temperature where they touch."""
+    if not heat.any():  # surfaces of the same speed
+        return Shared(np.zeros(heat.shape), 0.0)
+
+    def on_cells(values: FloatArray) -> FloatArray:
+        full = np.zeros(heat.shape)
+        full[touching] = values
+        return full
+
+    first_rise, second_rise = first(heat)[touching], second(heat)[touching]
+    share = second_rise.max() / (first_rise.max() + second_rise.max())  # Blok's: equal largest temperatures
+    guess = share * heat[touching]
+    count = guess.size
+
+    def summed(values: FloatArray) -> FloatArray:
+        full = on_cells(np.asarray(values).ravel())
+        return np.asarray((first(full) + second(full))[touching])
+
+    operator = LinearOperator((count, count), matvec=summed, dtype=np.float64)  # eq. (602)
+    # Residual of the temperatures over the right-hand side at which the iteration stops
+    solved, _ = gmres(operator, second_rise, x0=guess, rtol=1e-9, restart=min(RESTART, count), maxiter=MOST_RESTARTS)
+    mismatch = float(np.abs(summed(solved) - second_rise).max() / max(np.abs(second_rise).max(), np.finfo(float).tiny))
+    return Shared(on_cells(solved), mismatch)
 
 
 class _Temperatures(NamedTuple):
-    """Rises of the surfaces by name, heat into the body, and how well the surfaces' temperatures agree."""
+    """Rises of the surfaces by name, heat into the body, and relative difference of the temperatures."""
 
     rises: dict[str, FloatArray]
     into_body: FloatArray
@@ -44,87 +133,79 @@ def flash_temperature(
     *,
     body: ThermalProperties,
     roller: ThermalProperties | None = None,
-    body_speed: float | None = None,
-    roller_speed: float | None = None,
-    rolling_speed: float | None = None,
     partition: float | None = None,
     z: Sequence[float] | FloatArray | None = None,
     limit: float | None = None,
 ) -> xr.Dataset:
-    """Steady temperature that friction raises on both surfaces of a contact, above that of the bodies far away.
+    """Steady temperature rise of both surfaces of a contact by friction, relative to the bodies far away.
 
     Parameters
     ----------
     case : Case
-        The case that was solved: it says where both bodies end. A roller with ``ends="none"`` conducts heat like a
+        The solved case, with the speeds of its motion. A roller with ``ends="none"`` conducts heat like a
         half-space. Ends, and the top beside the contact, are insulated.
     result : Dataset
-        What `solve` returned for it.
+        Result of `solve`.
     body, roller : ThermalProperties
-        What body and roller are made of; a roller that takes a stated part of the heat only needs none.
-    body_speed, roller_speed : float, optional
-        In full sliding: velocities of the surfaces along +y relative to the contact, m/s. A roller that slides over a
-        body which rolls past at V has ``body_speed = -V``.
-    rolling_speed : float, optional
-        In rolling, instead: speed with which the contact moves over both surfaces, m/s.
+        Thermal properties of body and roller; the roller's may be omitted with a given `partition`.
     partition : float, optional
-        Part of the heat that goes into the body, everywhere the same, from 0 to 1. Default: as much at each point as
-        makes both surfaces equally hot where they touch.
+        Uniform part of the heat that goes into the body, from 0 to 1. Default: equal temperatures of both surfaces in
+        the contact determine the part at each point.
     z : sequence of float, optional
-        Depths below the body's surface at which its temperature is wanted as well, metres.
+        Depths below the body's surface of further temperatures, metres.
     limit : float, optional
-        Temperature rise, K, above which a warning is given.
+        Temperature rise, K, above which the function warns.
 
     Returns
     -------
     Dataset
         `temperature_rise` of the body's surface and `roller_temperature_rise` (x, y), K; `frictional_heat` and
         `heat_into_body` (x, y), W/m2; `heat_partition` (x, y), the part of the heat that goes into the body, NaN
-        where there is none; `body_heat_share` of the whole; `max_temperature_rise` of both surfaces, between the
+        without heat; `body_heat_share`, its part of the total; `max_temperature_rise` of both surfaces, between the
         cells along y, with `max_temperature_rise_x` and ``_y`` and `max_temperature_rise_error`; `friction_power`, W;
-        `heat_error`, heat into both bodies minus that power, over it; `temperature_mismatch` of the surfaces over the
+        `heat_error`, heat into both bodies over that power, minus one; `temperature_mismatch` of the surfaces over the
         largest rise. With `z` also `body_temperature_rise` (x, y, z).
 
     Raises
     ------
     InvalidInputError
-        If thermal properties or speeds are missing, the speeds contradict the friction, the result says that it is of
-        another case, or a finite body's surface rests under the contact: its temperature would rise without limit.
+        If thermal properties or speeds are missing, the speeds contradict the friction, the result belongs to
+        another case, or the surface of a finite body rests under the contact: its temperature is unbounded.
 
     Warns
     -----
     TemperatureWarning
-        If `limit` is passed.
+        If the rise exceeds `limit`.
     ConvergenceWarning
-        If the temperatures of the surfaces could not be made equal.
+        If the temperatures of the surfaces differ.
 
     Notes
     -----
-    Properties do not depend on temperature, and the contact does not deform by heat. At a singular end the heat is
-    infinite as the pressure is, and so is the temperature of a fast surface there: the maximum is then that of the
-    last cell.
+    Properties do not depend on temperature; thermal expansion is neglected. At a singular end heat and pressure are
+    infinite, and the maximum is the temperature of the last cell.
 
     The stated error of the maximum is its change on cells twice as wide along y, plus the relative error of the
-    largest pressure. It is NaN where that pressure has no known error, or no limit.
+    largest pressure. It is NaN without an estimate of the latter, or with an infinite pressure.
 
     Examples
     --------
-    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, ThermalProperties, choose_grid, solve
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, Sliding, choose_grid, solve
     >>> space = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
     >>> roller = Roller(radius=5e-3, length=0.5e-3)
-    >>> case = Case(body=space, roller=roller, max_pressure=1.5e9, friction=0.05)
+    >>> motion = Sliding(body_speed=-10.0, roller_speed=-9.0)
+    >>> case = Case(body=space, roller=roller, max_pressure=1.5e9, friction=0.05, motion=motion)
     >>> result = solve(case, choose_grid(case), stresses=False)
     >>> steel = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
-    >>> hot = flash_temperature(case, result, body=steel, roller=steel, body_speed=-10.0, roller_speed=-9.0)
+    >>> hot = flash_temperature(case, result, body=steel, roller=steel)
     >>> round(float(hot.max_temperature_rise)), round(float(hot.body_heat_share), 2)
     (10, 0.51)
     """
     checks.instance("case", case, Case, "a Case")
-    one = single_case(required_in_si(result, "pressure", argument="result"))
+    solution = single_case(required_in_si(result, "pressure", argument="result"))
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift makes no steady heat")
     check_solved_for(result, case)
-    pressure, grid = labelled_cells("result.pressure", one["pressure"], extent=case.body.extent)
+    pressure, grid = labelled_cells("result.pressure", solution["pressure"], extent=case.body.extent)
     checks.instance("body", body, ThermalProperties, "a ThermalProperties(...)")
     if partition is None and roller is None:
         raise InvalidInputError(
@@ -138,44 +219,41 @@ def flash_temperature(
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
-    heat = frictional_heat(case, one, grid, body_speed, roller_speed, rolling_speed)
+    heat = frictional_heat(case, solution, grid)
 
-    found = _temperatures(case, grid, heat, pressure, body, roller, share)
-    into_body, into_roller = found.into_body, heat.density - found.into_body
+    temperatures = _temperatures(case, grid, heat, pressure, body, roller, share)
+    into_body, into_roller = temperatures.into_body, heat.density - temperatures.into_body
     area = grid.weights * grid.cell_area
-    made = heat.density != 0
-    fields = found.rises | {
+    heated = heat.density != 0
+    fields = temperatures.rises | {
         "frictional_heat": heat.density,
         "heat_into_body": into_body,
-        "heat_partition": np.where(made, into_body / np.where(made, heat.density, 1.0), np.nan),
+        "heat_partition": np.where(heated, into_body / np.where(heated, heat.density, 1.0), np.nan),
     }
-    values = {name: (("x", "y"), each) for name, each in fields.items()}
-    scalars = _largest(grid, found.rises)
-    halved, wider = _on_wider_cells(grid, heat.density), _on_wider_cells(grid, pressure)
-    on_half = _temperatures(case, halved.grid, heat._replace(density=halved.values), wider.values, body, roller, share)
-    change = abs(_largest(halved.grid, on_half.rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
-    scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * _pressure_error(one)
+    values = {name: (("x", "y"), field) for name, field in fields.items()}
+    scalars = _largest(grid, temperatures.rises)
+    (wider, density), (_, means) = (_on_wider_cells(grid, values) for values in (heat.density, pressure))
+    on_half = _temperatures(case, wider, heat._replace(density=density), means, body, roller, share)
+    change = abs(_largest(wider, on_half.rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
+    scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * _pressure_error(solution)
     scalars["friction_power"] = heat.power
     scalars["body_heat_share"] = float((area * into_body).sum() / heat.power) if heat.power else np.nan
     entered = (area * into_body).sum() + (area * into_roller)[_under_roller(case, grid, pressure)[0]].sum()
     scalars["heat_error"] = float(entered / heat.power - 1) if heat.power else 0.0
-    scalars["temperature_mismatch"] = found.mismatch
-    kept = {name: one.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in one.coords}
-    hot = xr.Dataset(values | scalars, coords=kept)
+    scalars["temperature_mismatch"] = temperatures.mismatch
+    coords = {name: solution.coords[name] for name in ("x", "y", "x_bounds", "x_width") if name in solution.coords}
+    hot = xr.Dataset(values | scalars, coords=coords)
     for name in ("hertz_half_width", "hertz_max_pressure"):
-        if name in one:
-            hot[name] = one[name]
+        if name in solution:
+            hot[name] = solution[name]
     if depths is not None:
-        moving, whole = MovingBody(body, heat.body_speed, Ends(*case.body.extent)), slice(0, grid.cells_x)
-        inside = [SourceOperator(moving, grid, whole, float(depth))(into_body) for depth in depths]
+        moving, columns = MovingBody(body, heat.body_speed, Ends(*case.body.extent)), slice(0, grid.cells_x)
+        inside = [SourceOperator(moving, grid, columns, float(depth))(into_body) for depth in depths]
         hot = hot.assign_coords(z=depths)
         hot["body_temperature_rise"] = (("x", "y", "z"), np.stack(inside, axis=-1))
-    mismatch = found.mismatch
-    if mismatch > LARGEST_MISMATCH:
-        warn(
-            f"the surfaces' temperatures still differ by {mismatch:.2g} of the largest",
-            ConvergenceWarning,
-        )
+    if temperatures.mismatch > 1e-6:  # larger differences do not count as equal
+        text = f"the surfaces' temperatures still differ by {temperatures.mismatch:.2g} of the largest"
+        warnings.warn(text, ConvergenceWarning, stacklevel=2)
     _warn_above(hot, limit)
     return describe(hot, "flash temperature of a contact")
 
@@ -189,44 +267,37 @@ def _temperatures(
     roller: ThermalProperties | None,
     share: float | None,
 ) -> _Temperatures:
-    """Share the heat and find how hot both surfaces get."""
-    own = SourceOperator(MovingBody(body, heat.body_speed, Ends(*case.body.extent)), grid, slice(0, grid.cells_x))
+    """Partition of the heat and temperatures of both surfaces."""
+    body_rise = SourceOperator(MovingBody(body, heat.body_speed, Ends(*case.body.extent)), grid, slice(0, grid.cells_x))
     if roller is None:
         assert share is not None
-        return _Temperatures({"temperature_rise": own(share * heat.density)}, share * heat.density, np.nan)
+        return _Temperatures({"temperature_rise": body_rise(share * heat.density)}, share * heat.density, np.nan)
     columns, ends = _under_roller(case, grid, pressure)
-    other = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
+    roller_rise = SourceOperator(MovingBody(roller, heat.roller_speed, ends), grid, columns)
     if share is None:
-        into_body, mismatch = shared_heat(own, other, heat.density, pressure > 0)
+        into_body, mismatch = shared_heat(body_rise, roller_rise, heat.density, pressure > 0)
     else:
         into_body, mismatch = share * heat.density, np.nan
-    rises = {"temperature_rise": own(into_body), "roller_temperature_rise": other(heat.density - into_body)}
+    rises = {"temperature_rise": body_rise(into_body), "roller_temperature_rise": roller_rise(heat.density - into_body)}
     return _Temperatures(rises, into_body, mismatch)
 
 
-class _OnCells(NamedTuple):
-    """Cells, and means over them."""
-
-    grid: Grid
-    values: FloatArray
-
-
-def _on_wider_cells(grid: Grid, values: FloatArray) -> _OnCells:
-    """Means over half as many cells along y."""
+def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
+    """Half as many cells along y, and means over them."""
     wider = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
     summed = np.concatenate([np.zeros((grid.cells_x, 1)), np.cumsum(values, axis=1)], axis=1)
-    # A border of a wider cell may cut a cell: that one's part is its share of the width.
+    # The border of a wider cell may cut a cell.
     cuts = np.arange(wider.cells_y + 1) * (grid.cells_y / wider.cells_y)
-    whole = np.minimum(cuts.astype(int), grid.cells_y - 1)
-    at_cuts = summed[:, whole] + (cuts - whole) * values[:, whole]
-    return _OnCells(wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y)
+    cell = np.minimum(cuts.astype(int), grid.cells_y - 1)
+    at_cuts = summed[:, cell] + (cuts - cell) * values[:, cell]
+    return wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y
 
 
-def _pressure_error(one: xr.Dataset) -> float:
-    """Error of the largest pressure over that pressure; NaN where there is none, or no largest pressure."""
-    if not {"peak_pressure", "peak_pressure_error"} <= set(one.variables):
+def _pressure_error(solution: xr.Dataset) -> float:
+    """Relative error of the largest pressure; NaN without an estimate, or with an infinite pressure."""
+    if not {"peak_pressure", "peak_pressure_error"} <= set(solution.variables):
         return float("nan")
-    peak, error = float(one["peak_pressure"]), float(one["peak_pressure_error"])
+    peak, error = float(solution["peak_pressure"]), float(solution["peak_pressure_error"])
     return error / peak if np.isfinite(peak) and np.isfinite(error) and peak > 0 else float("nan")
 
 
@@ -239,12 +310,12 @@ def _share(partition: object) -> float:
 
 
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
-    """Columns of the roller, all that it presses among them, and its insulated ends, moved to borders of cells."""
+    """Columns under the roller, pressed ones included, and its insulated ends, moved to borders of cells."""
     if case.roller.ends == "none":
         return slice(0, grid.cells_x), Ends(-np.inf, np.inf)
     low, high = case.roller_start, case.roller_start + case.roller.length
     edges = grid.x_edges
-    # A centre right under the end may count as under the roller or not, by rounding.
+    # Rounding decides on a centre at the end of the roller.
     under = np.flatnonzero(((grid.x > low) & (grid.x < high)) | (pressure > 0).any(axis=1))
     first, stop = int(under[0]), int(under[-1]) + 1
     start = edges[first] if first > 0 else min(low, edges[0])
@@ -253,7 +324,7 @@ def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, 
 
 
 def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
-    """Largest rise of the surfaces and where it is, between the cells along y by a parabola."""
+    """Largest rise of the surfaces and its position, by a parabola between the cells along y."""
     hottest = max(rises.values(), key=lambda rise: float(rise.max()))
     i, j = np.unravel_index(int(hottest.argmax()), hottest.shape)
     largest, y = float(hottest[i, j]), float(grid.y[j])
@@ -267,13 +338,14 @@ def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
 
 
 def _warn_above(hot: xr.Dataset, limit: float | None) -> None:
-    """Warn where the limit is passed."""
+    """Warn if the rise exceeds the limit."""
     largest = float(hot["max_temperature_rise"])
     if limit is None or largest <= limit:
         return
     x, y = (1e3 * float(hot[f"max_temperature_rise_{axis}"]) for axis in "xy")
-    warn(
+    warnings.warn(
         f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
         f"limit = {limit:g} K",
         TemperatureWarning,
+        stacklevel=2,
     )

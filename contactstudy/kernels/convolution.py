@@ -8,11 +8,14 @@ about its ends is diagonal in the cosine transform, one extended oddly in the si
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import fft
 
-from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.cache import cached
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.images import Influence
 
 
 def even_spectrum(kernel: FloatArray) -> FloatArray:
@@ -32,13 +35,13 @@ class _Buffers:
     """Aligned memory and the transforms planned on it, for one thread."""
 
     def __init__(self, cells_x: int, cells_y: int, padded_x: int, mirror: int) -> None:
-        import pyfftw  # which brings dask's arrays: not for those who only look at results
+        import pyfftw  # imports dask's arrays, which readers of results do not need
 
         self.real = pyfftw.zeros_aligned((padded_x, 2 * cells_y), dtype="float64")
         self.lateral = pyfftw.zeros_aligned((padded_x, cells_y + 1), dtype="complex128")
-        # A plan that was measured differs from run to run, and its last bits with it.
+        # A measured plan, and its last bits, differ from run to run.
         options = {"threads": 1, "flags": ("FFTW_ESTIMATE",)}
-        # Only rows that hold cells are transformed along y; the padding rows stay zero.
+        # The padding rows stay zero.
         rows = slice(0, cells_x)
         self.to_lateral = pyfftw.FFTW(self.real[rows], self.lateral[rows], axes=(1,), **options)
         self.from_lateral = pyfftw.FFTW(
@@ -60,18 +63,7 @@ class _Buffers:
 
 
 class GridTransform:
-    """Forward and backward transforms of cell values, with aligned buffers that every call of a thread reuses.
-
-    Parameters
-    ----------
-    cells_x, cells_y : int
-        Cells of the grid.
-    padded_x : int
-        Cells along x with padding; `mirror` decides what the padding stands for.
-    mirror : int
-        1 or -1 if the values continue evenly or oddly about ``x = 0`` and about the padded end (cosine or sine
-        transform along x), 0 if they do not.
-    """
+    """Transforms of cell values, along x padded (mirror 0), or mirrored evenly (1) or oddly (-1) about both ends."""
 
     def __init__(self, cells_x: int, cells_y: int, padded_x: int, mirror: int) -> None:
         self.cells_x, self.cells_y, self.padded_x, self.mirror = cells_x, cells_y, padded_x, mirror
@@ -81,13 +73,13 @@ class GridTransform:
     @property
     def _buffers(self) -> _Buffers:
         """Buffers of this thread: operators are shared by all."""
-        found: _Buffers | None = getattr(self._thread, "buffers", None)
-        if found is None:
-            found = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)
-            self._thread.buffers = found
-        return found
+        buffers: _Buffers | None = getattr(self._thread, "buffers", None)
+        if buffers is None:
+            buffers = _Buffers(self.cells_x, self.cells_y, self.padded_x, self.mirror)
+            self._thread.buffers = buffers
+        return buffers
 
-    def lateral(self, values: FloatArray) -> ComplexArray:
+    def transform_y(self, values: FloatArray) -> ComplexArray:
         """Transform along y of cell `values`: a view (cell, wavenumber) of the buffer."""
         buffers = self._buffers
         buffers.real[: self.cells_x, : self.cells_y] = values
@@ -96,15 +88,15 @@ class GridTransform:
         buffers.to_lateral.execute()
         return np.asarray(buffers.lateral[: self.cells_x])
 
-    def along(self) -> ComplexArray:
-        """Transform the buffer of `lateral` along x as well, in place: the buffer, to be multiplied in place."""
+    def transform_x(self) -> ComplexArray:
+        """Transform the buffer of `transform_y` along x, in place: returns the buffer, to be multiplied in place."""
         buffers = self._buffers
         buffers.along.execute()
         return np.asarray(buffers.lateral)
 
     @property
     def spectrum(self) -> ComplexArray:
-        """The buffer, to be filled with a spectrum for `back`."""
+        """The buffer, to be filled with a spectrum for `invert`."""
         return np.asarray(self._buffers.lateral)
 
     @property
@@ -112,11 +104,134 @@ class GridTransform:
         """Memory of one thread's buffers, bytes."""
         return self._buffers.nbytes
 
-    def back(self, spectrum_correction: ComplexArray | None = None) -> FloatArray:
-        """Cell values of the spectrum in the buffer; a transform along y alone may be added on the way."""
+    def invert(self, spectrum_correction: ComplexArray | None = None) -> FloatArray:
+        """Cell values of the spectrum in the buffer, plus a correction (cell, wavenumber) transformed along y only."""
         buffers = self._buffers
         buffers.back.execute()
         if spectrum_correction is not None:
             buffers.lateral[: self.cells_x] += spectrum_correction / (self._scale * 2 * self.cells_y)
         buffers.from_lateral.execute()
         return np.asarray(buffers.real[: self.cells_x, : self.cells_y] * self._scale)
+
+
+NEGLIGIBLE = 1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
+
+
+@dataclass(frozen=True)
+class CentredConvolution:
+    """Convolution of a load with the kernels of an influence at one depth."""
+
+    influence: Influence  # influence of a unit load
+    dx: float  # cell size
+    dy: float
+    length: float  # distance between the ends that mirror the load; infinite if there are not two
+    mirrored: bool  # whether the load is mirrored in end I
+    shape: tuple[int, int]  # largest offsets of the kernel, in cells: half the periods of the transforms
+    depth: float  # depth of the points
+
+    def fill(self, layer: FloatArray, transformed: ComplexArray, rows: IntArray, columns: IntArray) -> None:
+        """Fill a `layer` (component, row, column) from the load's transform, without odd wavenumbers if `symmetric`."""
+        spectrum = _kernel_spectrum(self)
+        odd_x = np.array(self.influence.sign_along_x) < 0
+        beyond, near_rows = np.zeros(rows.size, bool), rows
+        if self.symmetric(transformed):
+            beyond, near_rows = rows >= transformed.shape[0], np.minimum(rows, self.shape[0] - 1 - rows)
+        distinct, where = np.unique(near_rows, return_inverse=True)
+        for odd, members in ((False, np.flatnonzero(~odd_x)), (True, np.flatnonzero(odd_x))):
+            if members.size:
+                along_y = self._back_along_x(spectrum[members], transformed, distinct, odd=odd)
+                along_y[np.array(self.influence.sign_along_y)[members] < 0] *= 1j
+                values = fft.irfft(along_y, 2 * self.shape[1], axis=2)[..., _span(columns)]
+                layer[members] = values[:, _span(where)]
+                if odd and beyond.any():
+                    layer[np.ix_(members, beyond)] *= -1
+
+    def symmetric(self, transformed: ComplexArray) -> bool:
+        """Whether this is the transform of a load that is symmetric about mid-length."""
+        return self.mirrored and transformed.shape[0] < self.shape[0]
+
+    def _back_along_x(
+        self, spectrum: FloatArray, transformed: ComplexArray, rows: IntArray, *, odd: bool
+    ) -> ComplexArray:
+        """Transform along y (component, row, wavenumber) of components even or odd along x."""
+        half = self.shape[0]
+        if not self.mirrored:
+            product = np.empty((spectrum.shape[0], *transformed.shape), np.complex128)
+            np.multiply(spectrum, transformed[: half + 1], out=product[:, : half + 1])
+            np.multiply(spectrum[:, half - 1 : 0 : -1], transformed[half + 1 :], out=product[:, half + 1 :])
+            if odd:
+                product[:, : half + 1] *= 1j
+                product[:, half + 1 :] *= -1j
+            return np.asarray(fft.ifft(product, axis=1, overwrite_x=True)[:, rows])
+        step = 2 if self.symmetric(transformed) else 1
+        if odd:
+            product = np.zeros((spectrum.shape[0], *transformed.shape), np.complex128)
+            np.multiply(-spectrum[:, step:half:step], transformed[1:], out=product[:, :-1])
+            return np.asarray(fft.idst(product, type=2, axis=1, overwrite_x=True)[:, rows])
+        return np.asarray(fft.idct(spectrum[:, :half:step] * transformed, type=2, axis=1, overwrite_x=True)[:, rows])
+
+
+def _span(numbers: IntArray) -> slice | IntArray:
+    """Index of ascending numbers, as a slice if they are consecutive."""
+    consecutive = bool((np.diff(numbers) == 1).all())
+    return slice(numbers[0], numbers[-1] + 1) if consecutive and numbers[0] >= 0 else numbers
+
+
+@cached("half-space kernels", lambda spectrum: spectrum.nbytes)
+def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
+    """Spectrum of the kernels, without a factor i per odd direction: (component, x, y)."""
+    x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)
+    y: FloatArray = request.dy * np.arange(request.shape[1] + 1.0)
+    influence = request.influence
+    spectrum = influence.kernel(x, y, request.dx, request.dy, request.length, request.depth)
+    for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
+        moved = spectrum.swapaxes(axis, 2)
+        even = np.array(signs) > 0
+        transformed = np.empty_like(moved)
+        transformed[even], transformed[~even] = even_spectrum(moved[even]), odd_spectrum(moved[~even])
+        spectrum = transformed.swapaxes(axis, 2)
+    return np.ascontiguousarray(spectrum)
+
+
+def _load_spectrum(load: FloatArray, shape: tuple[int, int], *, mirrored: bool) -> ComplexArray:
+    """Spectrum of a load (cell, cell): array (wavenumber along x, wavenumber along y)."""
+    along_y = fft.rfft(load, 2 * shape[1], axis=1)
+    if not mirrored:
+        return np.asarray(fft.fft(along_y, 2 * shape[0], axis=0))
+    return np.asarray(fft.dct(along_y, type=2, n=shape[0], axis=0))
+
+
+def centred_field(
+    load: FloatArray,
+    influence: Influence,
+    cell: tuple[float, float],
+    rows: IntArray,
+    columns: IntArray,
+    z: FloatArray,
+    *,
+    mirrored: bool,
+    length: float,
+) -> FloatArray:
+    """Field (component, row, column, z) at cell centres; rows and columns count from the first cell of the load."""
+    # With a mirror the load begins at end I; `length` is the distance to the mirror at end II.
+    cells_x, cells_y = load.shape
+    reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
+    if not mirrored:
+        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x - int(rows.min())), real=True)
+    elif np.isinf(length):
+        half = fft.next_fast_len(max(int(rows.max()) + 1, cells_x) + cells_x, real=True)
+    else:
+        half = cells_x
+    # At half a period an odd kernel is undefined: both signs coincide.
+    shape = (half, fft.next_fast_len(reach_y + 1, real=True))
+    transformed = _load_spectrum(load, shape, mirrored=mirrored)
+    if mirrored and np.isfinite(length) and half % 2 == 0:
+        odd, most = np.abs(transformed[1::2]).max(), np.abs(transformed).max()
+        if odd <= NEGLIGIBLE * most:
+            # Equals the transform of the first half of the load, mirrored at mid-length.
+            transformed = 0.5 * transformed[::2]
+    field = np.empty((influence.components, rows.size, z.size, columns.size))
+    for number, depth in enumerate(z.tolist()):
+        convolution = CentredConvolution(influence, *cell, length, mirrored, shape, depth)
+        convolution.fill(field[:, :, number], transformed, rows, columns)
+    return field.swapaxes(2, 3)

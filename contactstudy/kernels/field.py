@@ -1,7 +1,7 @@
-"""A field in the half-space, alone or with all mirrored loads, under a cell-wise uniform load.
+"""A field in the half-space, alone or with all mirrored loads, under a load on cells.
 
-Points that lie alike relative to their cells share one kernel and one fast convolution. Where the points along x lie
-in many different ways, the field is interpolated from the cell centres and the nearest cells are put right.
+Points with equal offsets from uniform cells share one kernel and one fast convolution; the field at other points and
+under columns is a sum over the corners of cells. Deep points and far columns need only the moments of the cells.
 """
 
 from __future__ import annotations
@@ -12,21 +12,21 @@ import numpy as np
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.kernels.aligned import OFFSET_TOLERANCE, Aligned, aligned_points
-from contactstudy.kernels.centred import centred_field
-from contactstudy.kernels.columns_field import columns_field
-from contactstudy.kernels.images import cell_kernel, snapped
-from contactstudy.kernels.influence import Influence
+from contactstudy.kernels.column_fields import columns_field
+from contactstudy.kernels.convolution import centred_field
+from contactstudy.kernels.corner_sums import OFFSET_TOLERANCE, AlignedPoints, aligned_points
+from contactstudy.kernels.fine_cells import FineCells
+from contactstudy.kernels.images import Influence
+from contactstudy.kernels.load import Load, Response
+from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, STRESS_CORNERS
+from contactstudy.kernels.strips import row_level, strips_of
 
-ALIGNED_GROUPS = 2
-"""Different offsets along x up to which each has a convolution; more are interpolated. Speed."""
+ALIGNED_GROUPS = 2  # largest number of offsets along x with convolutions instead of corner sums. Speed.
 
-INTERPOLATION_POINTS = 8
-"""Cell centres from which a position along x is interpolated. Accuracy."""
-
-NEAR_CELLS = 14
-"""Cells on either side of a position whose influence is put right after interpolation. Accuracy."""
+CELLS_PER_POSITION = 32
+"""Least number of uniform cells along x per position for corner sums: a convolution yields all cells. Speed."""
 
 
 def half_space_field(
@@ -38,42 +38,69 @@ def half_space_field(
     z: FloatArray,
     *,
     extent: tuple[float, float],
+    shape: FloatArray | None = None,
 ) -> FloatArray:
-    """Field in the half-space under a load and all its mirror images in the ends of `extent`.
+    """Field (component, x, y, z) of the half-space under a load and all its mirror images in the ends of `extent`."""
+    # The pressure `shape` determines the distribution of the load inside the cells; None: uniform.
+    # In memory the depth precedes y, as in all fields.
+    field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
+    if not load.any():
+        return field
+    rows = aligned_points(x, float(grid.x[0]), grid.dx)
+    aligned = np.zeros(x.size, bool)
+    if grid.uniform and (shape is None or CELLS_PER_POSITION * x.size > grid.cells_x):
+        if shape is not None:
+            rows = [row for row in rows if row.offset == 0]
+        if len(rows) <= ALIGNED_GROUPS:
+            for row in rows:
+                aligned[row.points] = True
+    if not aligned.all():
+        field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y, z, extent=extent)
+    if not aligned.any():
+        return field
+    if shape is None:
+        field[:, aligned] = _uniform_field(load, influence, grid, x[aligned], y, z, extent)
+        return field
+    fine = FineCells(load, shape, grid, extent, influence.load.sign_x)
+    components = np.arange(influence.components)
+    near, near_x = fine.fine_depths(z), fine.fine_depths_x(z)
+    for fine_x in (True, False):
+        deep = ~near & (near_x == fine_x)
+        if deep.any():
+            cells, coarse = fine.coarse_load(fine_x=fine_x)
+            field[np.ix_(components, aligned, np.arange(y.size), deep)] = _uniform_field(
+                cells, influence, coarse, x[aligned], y, z[deep], extent
+            )
+        shallow = near & (near_x == fine_x)
+        for column in aligned_points(y, float(grid.y[0]), grid.dy) if shallow.any() else ():
+            cells, refined = fine.fine_load(column.offset)
+            if not fine_x:
+                cells, refined = fine.coarsen_x(cells, refined)
+            field[np.ix_(components, aligned, column.points, shallow)] = _uniform_field(
+                cells, influence, refined, x[aligned], y[column.points], z[shallow], extent
+            )
+    return field
 
-    Parameters
-    ----------
-    load : array (cell_x, cell_y)
-        Load on the cells of `grid`.
-    influence : Influence
-        What a unit load does.
-    grid : Grid
-        Cells.
-    x, y, z : array
-        Points, as a tensor product, metres.
-    extent : tuple of float
-        Where the mirrors stand; infinite for none.
 
-    Returns
-    -------
-    array (component, x, y, z)
-    """
-    if not grid.uniform:
-        return columns_field(load, influence, grid, x, y, z, extent=extent)
+def _uniform_field(
+    load: FloatArray,
+    influence: Influence,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    extent: tuple[float, float],
+) -> FloatArray:
+    """Field at points with equal offsets from uniform cells, by fast convolution."""
     in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
-    # In memory the depth comes before y, as in all fields.
-    result = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
-    if not loaded.size:
-        return result
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
     columns = aligned_points(y, float(grid.y[first]), grid.dy)
     rows = aligned_points(x, float(grid.x[0]), grid.dx)
     on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
     image = influence.load.sign_x
-    # A load that its image reverses, or that is mirrored in its second end alone, takes the general way.
     if on_centres and (in_first or not in_second) and (image > 0 or not in_first):
         return centred_field(
             load,
@@ -86,25 +113,22 @@ def half_space_field(
             length=extent[1] if periodic else np.inf,
         )
     start = grid.x[0]
-    if in_first:  # cells of the mirrored load lie before those of the load
+    if in_first:  # the mirrored load precedes the load
         load = np.concatenate([image * load[::-1], load])
         start -= grid.cells_x * grid.dx
     elif in_second:
         load = np.concatenate([load, image * load[::-1]])
     cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
-    rows = aligned_points(x, float(start), grid.dx)
+    field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
-        if len(rows) > ALIGNED_GROUPS:
-            result[:, :, column.points] = _unaligned_field(cells, (x - start) / grid.dx, column, z)
-            continue
-        for row in rows:
-            result[:, row.points[:, None], column.points] = _aligned_field(cells, row.cells, row.offset, column, z)
-    return result
+        for row in aligned_points(x, float(start), grid.dx):
+            field[:, row.points[:, None], column.points] = _aligned_field(cells, row.cells, row.offset, column, z)
+    return field
 
 
 @dataclass(frozen=True, eq=False)
 class _LoadedCells:
-    """A load on uniform cells, with its mirror image beside it if it has one; its period is twice the length."""
+    """A load on uniform cells and its mirror image; the period is twice the length."""
 
     load: FloatArray
     influence: Influence
@@ -116,14 +140,16 @@ class _LoadedCells:
     def periodic(self) -> bool:
         return bool(np.isfinite(self.length))
 
-    def lateral_offsets(self, column: Aligned) -> tuple[FloatArray, IntArray]:
-        """Offsets along y from any cell to any point of the column, and where among them the points lie."""
+    def lateral_offsets(self, column: AlignedPoints) -> tuple[FloatArray, IntArray]:
+        """Offsets along y from the cells to the points of the column, and the indices of the points."""
         first = int(column.cells.min()) - self.load.shape[1] + 1
         steps = np.arange(first, int(column.cells.max()) + 1)
         return self.dy * steps + column.offset, column.cells - first
 
 
-def _aligned_field(cells: _LoadedCells, rows: IntArray, offset: float, column: Aligned, z: FloatArray) -> FloatArray:
+def _aligned_field(
+    cells: _LoadedCells, rows: IntArray, offset: float, column: AlignedPoints, z: FloatArray
+) -> FloatArray:
     """Field (component, row, column, z) at one offset along x from the centres of the cells `rows`."""
     count = cells.load.shape[0]
     y, at_y = cells.lateral_offsets(column)
@@ -147,53 +173,8 @@ def _aligned_field(cells: _LoadedCells, rows: IntArray, offset: float, column: A
     return np.stack([layer(depth) for depth in z.tolist()], axis=-1)
 
 
-def _unaligned_field(cells: _LoadedCells, position: FloatArray, column: Aligned, z: FloatArray) -> FloatArray:
-    """Field (component, position, column, z) at any positions along x, counted in cells from the first centre.
-
-    The influence of all but the nearest cells is smooth enough to be interpolated from the cell centres around each
-    position; the nearest cells are interpolated with them, and the difference to their exact influence is added.
-    """
-    base = np.floor(position).astype(np.int64)
-    fraction = position - base
-    steps = np.arange(-INTERPOLATION_POINTS // 2 + 1, INTERPOLATION_POINTS // 2 + 1)
-    weights = np.ones((position.size, steps.size))
-    for i, step in enumerate(steps):
-        for other in steps[steps != step]:
-            weights[:, i] *= (fraction - other) / (step - other)
-    centres, where = np.unique(base[:, None] + steps, return_inverse=True)
-    at_centres = _aligned_field(cells, centres, 0.0, column, z)
-    interpolated = np.einsum("ti,ctiyz->ctyz", weights, at_centres[:, where.reshape(weights.shape)])
-
-    near = np.arange(-NEAR_CELLS, NEAR_CELLS + 1)
-    sources = base[:, None] - near
-    if cells.periodic:
-        load = cells.load[sources % cells.load.shape[0]]
-    else:
-        inside = (sources >= 0) & (sources < cells.load.shape[0])
-        load = np.where(inside[..., None], cells.load[np.where(inside, sources, 0)], 0.0)
-    y, at_y = cells.lateral_offsets(column)
-    size = fft.next_fast_len(y.size, real=True)
-    spectrum = fft.rfft(load, size, axis=2)
-    around = np.arange(near[0] + steps[0], near[-1] + steps[-1] + 1)
-    interpolation = np.zeros((position.size, near.size, around.size))
-    for i in range(steps.size):
-        interpolation[:, np.arange(near.size), np.arange(near.size) + i] = weights[:, i, None]
-    x_edges = snapped(cells.dx * (fraction[:, None] + np.append(near, near[-1] + 1) - 0.5), cells.dx)
-    y_edges = np.append(y - 0.5 * cells.dy, y[-1] + 0.5 * cells.dy)
-
-    def correction(depth: float) -> FloatArray:
-        corner = cells.influence.corner_at(depth)
-        exact = np.diff(np.diff(corner(x_edges[..., None], y_edges), axis=-1), axis=-2)
-        aligned = cell_kernel(corner, cells.dx * around, y, cells.dx, cells.dy)
-        difference = exact - np.einsum("tka,cay->ctky", interpolation, aligned)
-        summed = np.einsum("ctkw,tkw->ctw", fft.rfft(difference, size, axis=3), spectrum)
-        return np.asarray(fft.irfft(summed, size, axis=2)[..., at_y])
-
-    return np.asarray(interpolated + np.stack([correction(depth) for depth in z.tolist()], axis=-1))
-
-
 def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: FloatArray) -> FloatArray:
-    """Kernel at uniform offsets `x`; when they include 0 it is evaluated on one side and reflected to the other."""
+    """Kernel at uniform offsets `x`; offsets that include 0 are evaluated on one side and reflected."""
 
     def evaluate(offsets: FloatArray) -> FloatArray:
         return cells.influence.kernel(offsets, y, cells.dx, cells.dy, cells.length, depth)
@@ -206,3 +187,61 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     ahead = evaluate(cells.dx * np.arange(max(before, after) + 1.0))
     behind = ahead[:, before:0:-1] * np.array(cells.influence.sign_along_x)[:, None, None]
     return np.concatenate([behind, ahead[:, : after + 1]], axis=1)
+
+
+STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))
+"""Parities along x and along y of the components xx, yy, zz, xy, xz, yz under a pressure."""
+
+
+def half_space_stress(
+    load: Load,
+    cells: FloatArray,
+    poisson: float,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    *,
+    extent: tuple[float, float],
+    shape: FloatArray | None = None,
+) -> FloatArray:
+    """Stresses xx, yy, zz, xy, xz, yz (6, x, y, z) of the half-space under a load and its mirror images, Pa."""
+    influence = Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
+    return half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
+
+
+DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))
+"""Parities along x and along y of the components x, y, z under a pressure."""
+
+
+def half_space_displacement(
+    load: Load,
+    cells: FloatArray,
+    material: Material,
+    grid: Grid,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    *,
+    extent: tuple[float, float],
+    reference: float,
+    shape: FloatArray | None = None,
+) -> FloatArray:
+    """Displacements (3, x, y, z) of the half-space under a load and its mirror images, metres."""
+    # With two mirrors relative to the top at the distance `reference` along y: they grow like a logarithm.
+    nu, length = material.poisson, extent[1] - extent[0]
+    influence = displacement_influence(load, nu, length, reference)
+    field = half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
+    return field / (4 * np.pi * material.shear_modulus)
+
+
+def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:
+    """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
+    level = None
+    if np.isfinite(length):
+        directions = (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
+        level = tuple(
+            row_level(strips_of(Response(direction, load), poisson), load.sign_x, length, reference)
+            for direction in directions
+        )
+    return Influence.of(DISPLACEMENT_CORNERS[load], poisson, load, DISPLACEMENT_PARITIES, level)

@@ -1,233 +1,254 @@
-"""Finer cells under a load, on which a field near the top is that of a smooth load instead of steps.
+"""Finer cells under a load: its means near the top, its moments on whole cells below.
 
-Far below its cells a load on them and a smooth one of the same forces make the same field. Nearer than about a cell
-they do not, and on the top itself a step of traction makes the stresses infinite. There the smooth load of
-smooth_load.py is taken, as its means on cells a few times finer, placed so that every point lies in the middle of one.
+Below a few cell sizes loads of equal moments cause equal fields. Nearer to the top the distribution inside the cells
+matters, and on the top itself a step of traction makes the stresses infinite. There the load has the shape of a given
+pressure (smooth_load.py), averaged over finer cells with a point in the middle of each. Shape, cells and switches do
+not depend on the load, and the field is linear in it.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.checks import Array, BoolArray, FloatArray
-from contactstudy.kernels.smooth_load import Sent, SmoothLoad, sent
+from contactstudy.kernels.smooth_load import MomentLoads, ShapedLoad, SmoothLoad, moment_loads
 
-REACH = 3.0
-"""Depth, over the size of a cell along y and along x, down to which cells are refined: steps have decayed below, and
-what is left is the moments of cells. Accuracy."""
+REACH = 5.0
+"""Largest depth of refined cells, over the cell size along y and along x. Accuracy: below it whole cells with the
+moments of the fine cells are exact to 5e-6 of the pressure."""
 
-PARTS_X = 3
-"""Fine cells in one along x. Accuracy."""
-
-PARTS_Y = 5
-"""Fine cells in one along y. Accuracy: with 3 on uniform cells, an end keeps 6e-4 of the pressure at 0.2 of a cell."""
-
-WIDE = 0.3
-"""Width of a column, over its distance, from which the distribution of its load is seen. Accuracy."""
-
-FLAT = 3e-3
-"""Deviation of a smooth load from its cell's mean, over the largest, that is left alone. Accuracy."""
-
-STEP, LEAST_STEP = 0.8, 0.3
-"""Last cell of a load along y over the one before from which on it ends in a step, and such a step over the largest
-load from which on the load counts as uniform in each cell. Accuracy: a contact's pressure falls to 0.7 at most."""
-
-SPARE = 1
-"""Cells kept beyond the loaded ones along y: a smooth load may reach into the first. Accuracy."""
+PARTS_X = 3  # fine cells per cell along x. Accuracy.
+PARTS_Y = 5  # fine cells per cell along y. Accuracy: 3 leave 6e-4 of the pressure on an end at a depth of 0.2 cells.
+NEIGHBOURS = 3  # whole cells on either side that carry the moments of a fine cell, up to the order 6. Accuracy.
+WIDE = 0.3  # least width of a resolved column, over its distance. Accuracy.
+FLAT = 3e-3  # neglected deviation of a shape from its mean in the cell, over the largest value. Accuracy.
+SPARE = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
 
 
-def ends_in_steps(cells: FloatArray) -> bool:
-    """Whether a load (cell_x, cell_y) ends in steps along y: uniform patches do, the pressure of a contact does not.
-
-    Examples
-    --------
-    >>> ends_in_steps(np.array([[0.0, 1.0, 1.0, 0.0]])), ends_in_steps(np.sqrt([[1.0, 3.0, 3.0, 1.0]]))
-    (True, False)
-    """
-    loads = np.abs(np.pad(cells, ((0, 0), (2, 2))))
-    for row in (loads, loads[:, ::-1]):
-        before, own, behind = row[:, :-2], row[:, 1:-1], row[:, 2:]
-        stepped = np.where((behind == 0) & (own > STEP * before), own, 0.0)
-        if stepped.max() > LEAST_STEP * loads.max():
-            return True
-    return False
-
-
+@dataclass(frozen=True, eq=False)
 class FineCells:
-    """A load on the cells of a grid as a smooth function, and as its means on finer cells.
+    """A load on the cells of a grid as a smooth function, and as its means on finer cells."""
 
-    Parameters
-    ----------
-    cells : array (cell_x, cell_y)
-        Load on the cells of `grid`.
-    grid : Grid
-        Cells.
-    extent : tuple of float
-        Where the mirrors stand; infinite for none.
-    image : int
-        Sign of the load's mirror image.
-    """
+    load: FloatArray
+    """(cell_x, cell_y): load on the cells of `grid`, and the pressure that determines its distribution inside the
+    cells."""
+    shape: FloatArray
+    grid: Grid
+    extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none
+    image: int = 1  # sign of the load's mirror image
+    first: int = field(init=False)
+    """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE` beyond."""
+    count: int = field(init=False)
 
-    def __init__(
-        self, cells: FloatArray, grid: Grid, extent: tuple[float, float] = (-np.inf, np.inf), image: int = 1
-    ) -> None:
-        self.grid, self._extent, self._image = grid, extent, image
-        loaded = np.flatnonzero(cells.any(axis=0))
-        self.first = max(int(loaded[0]) - SPARE, 0)
-        stop = min(int(loaded[-1]) + 1 + SPARE, grid.cells_y)
-        self.cells = cells[:, self.first : stop]
-        self.y_edges: FloatArray = grid.y_range[0] + grid.dy * np.arange(self.first, stop + 1.0)
-        self._along_x = SmoothLoad.of(self.cells.T, grid.x_edges)
+    def __post_init__(self) -> None:
+        loaded = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
+        object.__setattr__(self, "first", int(loaded[0]) - SPARE)
+        object.__setattr__(self, "count", int(loaded[-1]) + 1 + SPARE - self.first)
+
+    @cached_property
+    def y_edges(self) -> FloatArray:
+        """Edges of the cells along y, metres."""
+        return np.asarray(self.grid.y_range[0] + self.grid.dy * np.arange(self.first, self.first + self.count + 1.0))
+
+    def _cropped(self, cells: FloatArray) -> FloatArray:
+        """Cells between `y_edges`: array (cell_x, y)."""
+        stop = self.first + self.count
+        inside = cells[:, max(self.first, 0) : stop]
+        return np.pad(inside, ((0, 0), (max(-self.first, 0), max(stop - self.grid.cells_y, 0))))
+
+    @cached_property
+    def cells(self) -> FloatArray:
+        """Load on the cells between `y_edges`: array (cell_x, y)."""
+        return self._cropped(self.load)
+
+    @cached_property
+    def shape_cells(self) -> FineCells:
+        """The shape as a load."""
+        if np.array_equal(self.load, self.shape):
+            return self
+        cells = FineCells(self.shape, self.shape, self.grid, self.extent, self.image)
+        for name in ("first", "count"):
+            object.__setattr__(cells, name, getattr(self, name))
+        return cells
+
+    @cached_property
+    def _smooth(self) -> SmoothLoad:
+        """Smooth shape along x: rows along y."""
+        return SmoothLoad.of(self._cropped(self.shape).T, self.grid.x_edges)
+
+    @cached_property
+    def _along_x(self) -> ShapedLoad:
+        return self._smooth.shaped(self.cells.T)
 
     @cached_property
     def split(self) -> BoolArray:
         """Columns that are split along x."""
+        shape = self.shape_cells
         edges = _split(self.grid.x_edges, np.ones(self.grid.cells_x, bool))
-        fine = self._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
-        deviation = np.abs(fine - self.cells.T[..., None]).max(axis=(0, 2))
-        uneven = deviation > FLAT * np.abs(self.cells).max()
+        fine = shape._along_x.means(edges).reshape(-1, self.grid.cells_x, PARTS_X)
+        deviation = np.abs(fine - shape.cells.T[..., None]).max(axis=(0, 2))
+        uneven = deviation > FLAT * np.abs(self.shape).max()
         return np.full(uneven.shape, uneven.any()) if self.grid.uniform else uneven
 
     @cached_property
     def x_edges(self) -> FloatArray:
-        """Edges of the fine cells along x, metres, with those of the nearest images."""
-        return mirrored(_split(self.grid.x_edges, self.split), self._extent)
+        """Edges of the fine cells along x and of their nearest images, metres."""
+        return mirrored(_split(self.grid.x_edges, self.split), self.extent)
 
     @cached_property
     def steps(self) -> FloatArray:
-        """Edges at which the load ends in a step along x, metres, with those of the nearest images."""
-        load, image = self._along_x, self._image
-        first, last = load.sign * load.first, load.sign * load.last
-        low, high = (image * np.isfinite(end) for end in self._extent)
+        """Edges of load and nearest images with a step of the shape along x, metres."""
+        shape, image = self._smooth, self.image
+        first, last = shape.sign * shape.first, shape.sign * shape.last
+        low, high = (image * np.isfinite(end) for end in self.extent)
         before, behind = np.column_stack([low * first[:, 0], last]), np.column_stack([first, high * last[:, -1]])
-        own = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLAT * np.abs(self.cells).max()]
-        return np.concatenate([own, *(2 * end - own for end in self._extent if np.isfinite(end))])
+        edges = self.grid.x_edges[np.abs(behind - before).max(axis=0) > FLAT * np.abs(self.shape).max()]
+        return np.concatenate([edges, *(2 * end - edges for end in self.extent if np.isfinite(end))])
 
     @cached_property
     def edges(self) -> FloatArray:
-        """Edges of the cells along x, metres, with those of the nearest images."""
-        return mirrored(self.grid.x_edges, self._extent)
+        """Edges of the cells along x and of their nearest images, metres."""
+        return mirrored(self.grid.x_edges, self.extent)
 
     @cached_property
-    def stays(self) -> BoolArray:
-        """Columns, with their nearest images, that are never split."""
-        return ~with_images(self.split, 1, self._extent)
+    def unsplit(self) -> BoolArray:
+        """Columns and nearest images that are never split."""
+        return ~with_images(self.split, 1, self.extent)
 
     @cached_property
-    def sent(self) -> Sent:
-        """Loads that stand for the moments along x of the cells and their nearest images: arrays (y, cell)."""
-        moments = with_images(self._along_x.moments.T, -self._image, self._extent).T
-        return sent(self.edges, moments)
+    def x_moments(self) -> MomentLoads:
+        """Loads with the moments along x of the cells and their nearest images: arrays (y, cell)."""
+        return moment_loads(self.edges, with_images(self._along_x.moments.T, -self.image, self.extent).T)
 
     @cached_property
-    def gathered(self) -> FloatArray:
-        """Load on the cells and their nearest images that far away along x makes the field of the smooth one."""
-        # The smooth load shares the force of the last two cells anew where less than half of the last is pressed.
-        return with_images(self._along_x.cell_means.T, self._image, self._extent) + self.sent.total.T
+    def far_load(self) -> FloatArray:
+        """Load on the cells and their nearest images with forces and first moments of the smooth load."""
+        # Joined cells of the smooth load have other means than the cells.
+        return with_images(self._along_x.cell_means.T, self.image, self.extent) + self.x_moments.total.T
 
-    @property
-    def parts(self) -> tuple[int, int]:
-        """Fine cells in one along x and y, of uniform cells."""
-        return (PARTS_X if self.split.any() else 1, PARTS_Y)
+    def fine_depths(self, z: FloatArray) -> BoolArray:
+        """Whether cells along y are refined at depths `z`."""
+        return np.asarray(z < REACH * self.grid.dy)
 
-    def near(self, z: FloatArray) -> BoolArray:
-        """Depths at which cells along y are refined, and uniform cells along x as well."""
-        reach = REACH * self.grid.dy
-        if self.grid.uniform and self.split.any():
-            reach = max(reach, REACH * self.grid.dx)
-        return np.asarray(z < reach)
+    def fine_depths_x(self, z: FloatArray) -> BoolArray:
+        """Whether uniform cells along x are refined at depths `z`."""
+        return np.asarray((z < REACH * self.grid.dx) & self.split.any())
 
     def columns(self, edges: list[FloatArray]) -> FloatArray:
-        """Means over columns between edges, metres, which may lie among the nearest images: array (column, y).
-
-        Those between the edges of each array, one after the other.
-        """
-        low, high = self._extent
-        at = np.concatenate(edges)
-        before, behind = at < low, at > high
-        inside = np.where(before, 2 * low - at, np.where(behind, 2 * high - at, at))
+        """Means over the columns between the edges of each array: array (column, y); edges may lie among images."""
+        low, high = self.extent
+        x = np.concatenate(edges)
+        before, behind = x < low, x > high
+        inside = np.where(before, 2 * low - x, np.where(behind, 2 * high - x, x))
         integral = self._along_x.integral(inside)
         if before.any():
-            integral[:, before] *= -self._image
+            integral[:, before] *= -self.image
         if behind.any():
             total = self._along_x.integral(self.grid.x_edges[-1:])
-            integral[:, behind] = total + self._image * (total - integral[:, behind])
-        between = np.ones(at.size - 1, bool)
-        between[np.cumsum([each.size for each in edges[:-1]], dtype=int) - 1] = False
-        return np.asarray(np.diff(integral, axis=1)[:, between].T / np.diff(at)[between, None])
+            integral[:, behind] = total + self.image * (total - integral[:, behind])
+        between = np.ones(x.size - 1, bool)
+        between[np.cumsum([array.size for array in edges[:-1]], dtype=int) - 1] = False
+        return np.asarray(np.diff(integral, axis=1)[:, between].T / np.diff(x)[between, None])
 
-    def along_y(self, columns: FloatArray) -> SmoothLoad:
-        """Columns (column, y) as smooth functions of y."""
-        return SmoothLoad.of(columns, self.y_edges, spilling=True)
+    def along_y(self, columns: FloatArray, shape: FloatArray) -> ShapedLoad:
+        """Load along y of columns (column, y) with a shape (column, y)."""
+        return SmoothLoad.of(shape, self.y_edges, spilling=True).shaped(columns)
 
-    def far(self) -> FloatArray:
-        """Load on the cells of the grid that makes the field of the smooth one at depths that are not near."""
-        cells = np.zeros(self.grid.shape)
-        columns = self.along_y(self._own(self.gathered)).gathered()
-        cells[:, self.first : self.first + columns.shape[1]] = columns
-        return cells
+    def coarse_load(self, *, fine_x: bool) -> tuple[FloatArray, Grid]:
+        """Load on uniform cells with the moments of the fine cells: whole along y, fine or whole along x."""
+        fine, grid = self.fine_load(0.0)
+        margin = NEIGHBOURS * self.grid.dy
+        y_range = (float(self.y_edges[0]) - margin, float(self.y_edges[-1]) + margin)
+        loads = coarsened(fine.T, PARTS_Y).T
+        cells = Grid.between(grid.x_edges, y_range, loads.shape[1])
+        return (loads, cells) if fine_x else self.coarsen_x(loads, cells)
 
-    def for_ends(self) -> tuple[FloatArray, Grid]:
-        """Load on cells that are split along y, and along x where an end sees how their load is distributed."""
-        return self._refined(*self._columns_for_ends(), 0.0)
+    def coarsen_x(self, loads: FloatArray, grid: Grid) -> tuple[FloatArray, Grid]:
+        """Load on uniform cells, whole along x with the moments of the fine cells, and the grid."""
+        if not self.split.any():
+            return loads, grid
+        spare, ended = NEIGHBOURS * PARTS_X, np.isfinite(self.extent)
+        padded = loads
+        for end, pad in zip(ended, ((spare, 0), (0, spare)), strict=True):
+            more = np.pad(loads, (pad, (0, 0)), mode="symmetric" if end else "constant")
+            beyond = self.image * (more[: pad[0]] if pad[0] else more[more.shape[0] - pad[1] :])
+            padded = np.concatenate([beyond, padded] if pad[0] else [padded, beyond])
+        # The moments extend beyond the cells, or into the image at an end.
+        loads = coarsened(padded, PARTS_X)[NEIGHBOURS:-NEIGHBOURS]
+        step, (before, behind) = self.grid.dx, (0 if end else NEIGHBOURS for end in ended)
+        loads = loads[NEIGHBOURS - before : loads.shape[0] - NEIGHBOURS + behind]
+        first, last = self.grid.x_range
+        x_edges = np.linspace(first - before * step, last + behind * step, loads.shape[0] + 1)
+        return loads, Grid.between(x_edges, grid.y_range, loads.shape[1])
 
-    def near_top(self, offset: float, *, split: bool) -> tuple[FloatArray, Grid]:
-        """Load on uniform cells that are split along y, and along x if wanted, and these.
-
-        Points at the distance `offset` along y from the middles of cells are in the middles of the fine ones.
-        """
-        edges = self.grid.x_edges
-        if not (split and self.split.any()):
-            return self._refined(edges, self._own(self.gathered), offset)
-        edges = _split(edges, self.split)
-        return self._refined(edges, self.columns([edges]), offset)
-
-    def _refined(self, edges: FloatArray, columns: FloatArray, offset: float) -> tuple[FloatArray, Grid]:
-        """Columns on cells that are split along y, and these."""
-        grid = self.grid
-        step = grid.dy / self.parts[1]
-        moved = offset - step * np.round(offset / step)
-        y_edges = grid.y_range[0] + moved + step * np.arange(self.parts[1] * grid.cells_y + 1.0)
-        if moved:  # one more, for what is left of the first or behind the last
-            y_edges = np.append(y_edges, y_edges[-1] + step) if moved < 0 else np.append(y_edges[0] - step, y_edges)
-        y_range = (float(y_edges[0]), float(y_edges[-1])) if moved else grid.y_range
-        cells = self._on(columns, y_edges)
-        return cells, Grid.between(edges, y_range, cells.shape[1])
-
-    def _own(self, columns: FloatArray) -> FloatArray:
-        """Columns without their images."""
-        images = self.grid.cells_x if np.isfinite(self._extent[0]) else 0
-        return columns[images : images + self.grid.cells_x]
-
-    def _columns_for_ends(self) -> tuple[FloatArray, FloatArray]:
-        """Edges and loads of columns, split where an end sees how their load is distributed."""
+    def end_load(self) -> tuple[FloatArray, Grid]:
+        """Load on cells that are split along y, and along x near the ends."""
         split = np.zeros(self.split.size, bool)
-        for end in self._extent:
+        for end in self.extent:
             if np.isfinite(end):
-                split[slice(*seen_apart(self.grid.x_edges, end))] = True
+                split[slice(*resolved_columns(self.grid.x_edges, end))] = True
         split &= self.split
         edges = _split(self.grid.x_edges, split)
-        columns = self.columns([edges])
-        # Columns that stay send the moments of their load to their neighbours.
-        kept = with_images(~split, 1, self._extent)
-        received = self._own(Sent(*(np.where(kept, each, 0.0) for each in self.sent)).total.T)
-        return edges, columns + np.repeat(received, np.where(split, PARTS_X, 1), axis=0)
+        unsplit = with_images(~split, 1, self.extent)
 
-    def _on(self, columns: FloatArray, y_edges: FloatArray) -> FloatArray:
-        """Means of columns (column, y) on other cells along y: array (column, cell)."""
-        cells = np.zeros((columns.shape[0], y_edges.size - 1))
-        seen = np.flatnonzero((y_edges[1:] > self.y_edges[0]) & (y_edges[:-1] < self.y_edges[-1]))
-        if seen.size:
-            some = slice(int(seen[0]), int(seen[-1]) + 1)
-            cells[:, some] = self.along_y(columns).gathered_on(y_edges[some.start : some.stop + 1])
-        return cells
+        def columns(cells: FineCells) -> FloatArray:
+            # The neighbours of unsplit columns carry their moments.
+            moments = MomentLoads(*(np.where(unsplit, loads, 0.0) for loads in cells.x_moments)).total.T
+            return cells.columns([edges]) + np.repeat(
+                self._without_images(moments), np.where(split, PARTS_X, 1), axis=0
+            )
+
+        return self._refined(edges, columns(self), columns(self.shape_cells), 0.0)
+
+    def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
+        """Load on uniform cells split along y, and along x where the shape is not flat, and the grid."""
+        # Points at the distance `offset` along y from the middles of cells are in the middles of fine cells.
+        edges = _split(self.grid.x_edges, self.split)
+        return self._refined(edges, self.columns([edges]), self.shape_cells.columns([edges]), offset)
+
+    def _refined(
+        self, edges: FloatArray, columns: FloatArray, shape: FloatArray, offset: float
+    ) -> tuple[FloatArray, Grid]:
+        """Load of columns on cells that are split along y, and the grid."""
+        step = self.grid.dy / PARTS_Y
+        moved = offset - step * np.round(offset / step)
+        y_edges = self.y_edges[0] + moved + step * np.arange(PARTS_Y * self.count + 1.0)
+        if moved:  # one more cell covers the remaining part of the first or the last
+            y_edges = np.append(y_edges, y_edges[-1] + step) if moved < 0 else np.append(y_edges[0] - step, y_edges)
+        cells = self.along_y(columns, shape).equivalent_means(y_edges)
+        return cells, Grid.between(edges, (float(y_edges[0]), float(y_edges[-1])), cells.shape[1])
+
+    def _without_images(self, columns: FloatArray) -> FloatArray:
+        """Columns without images."""
+        images = self.grid.cells_x if np.isfinite(self.extent[0]) else 0
+        return columns[images : images + self.grid.cells_x]
+
+
+def coarsened(fine: FloatArray, parts: int) -> FloatArray:
+    """Return loads with the moments of `fine` loads (fine cell, ...): (cell, ...), `NEIGHBOURS` more at either side."""
+    cells = np.arange(-NEIGHBOURS, NEIGHBOURS + 1.0)
+    middles = (np.arange(parts) - 0.5 * (parts - 1)) / parts
+    orders = np.arange(cells.size)[:, None]
+
+    def moments(centres: FloatArray, width: float) -> FloatArray:
+        return np.asarray(
+            ((centres + 0.5 * width) ** (orders + 1) - (centres - 0.5 * width) ** (orders + 1)) / (width * (orders + 1))
+        )
+
+    weights = np.linalg.solve(moments(cells, 1.0), moments(middles, 1 / parts)) / parts  # eq. (32c)
+    by_cell = fine.reshape(fine.shape[0] // parts, parts, *fine.shape[1:])
+    loads = np.zeros((by_cell.shape[0] + 2 * NEIGHBOURS, *fine.shape[1:]))
+    for number, row in enumerate(weights):
+        loads[number : number + by_cell.shape[0]] += np.tensordot(by_cell, row, axes=(1, 0))
+    return loads
 
 
 def mirrored(edges: FloatArray, extent: tuple[float, float]) -> FloatArray:
-    """Edges with those of the nearest images; each end of the body is an edge between columns."""
+    """Edges of columns and their nearest images; each end of the body is an edge."""
     low, high = extent
     all_edges = [edges]
     if np.isfinite(low):
@@ -244,11 +265,9 @@ def with_images(columns: Array, image: int, extent: tuple[float, float]) -> Arra
     return np.concatenate([*images[:low], columns, *images[:high]])
 
 
-def seen_apart(edges: FloatArray, x: float, narrow: float = 0.0) -> tuple[int, int]:
-    """First column around `x` whose load is seen to be distributed, and the one behind the last; alike if none is.
-
-    Columns wider than a part of their distance, of which `narrow` ones at either end are left out.
-    """
+def resolved_columns(edges: FloatArray, x: float, narrow: float = 0.0) -> tuple[int, int]:
+    """First column around `x` wider than a part of its distance, and the column behind the last; equal without any."""
+    # Columns up to the width `narrow` at either end are left out.
     widths = np.diff(edges)
     distance = np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
     wide = widths > WIDE * distance
@@ -256,13 +275,13 @@ def seen_apart(edges: FloatArray, x: float, narrow: float = 0.0) -> tuple[int, i
     before, behind = np.flatnonzero(~wide[:nearest]), np.flatnonzero(~wide[nearest:])
     lowest = int(before[-1]) + 1 if before.size else 0
     highest = nearest + int(behind[0]) if behind.size else widths.size
-    seen = np.flatnonzero(widths[lowest:highest] > narrow)
-    return (lowest + int(seen[0]), lowest + int(seen[-1]) + 1) if seen.size else (nearest, nearest)
+    resolved = np.flatnonzero(widths[lowest:highest] > narrow)
+    return (lowest + int(resolved[0]), lowest + int(resolved[-1]) + 1) if resolved.size else (nearest, nearest)
 
 
 def _split(edges: FloatArray, columns: BoolArray) -> FloatArray:
-    """Edges of columns of which some are split."""
+    """Edges of columns, some of them split."""
     inner = edges[:-1, None] + np.diff(edges)[:, None] * np.arange(PARTS_X) / PARTS_X
-    kept = np.ones(inner.shape, bool)
-    kept[:, 1:] = columns[:, None]
-    return np.append(inner[kept], edges[-1])
+    selected = np.ones(inner.shape, bool)
+    selected[:, 1:] = columns[:, None]
+    return np.append(inner[selected], edges[-1])

@@ -1,72 +1,50 @@
 """Influence of one cell on a uniform grid: alone, or with all its mirror images in two ends.
 
-Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. The nearest image is taken as it
-stands. The others vary smoothly over one period: the next few are evaluated, and those further away replaced by their
-load spread evenly (the midpoint rule with its first correction, read backwards), at Chebyshev points only, and
-interpolated.
+Mirroring a load evenly in both ends repeats it with the period ``2 length`` along x. Their fields vary
+smoothly over one period: the nearest few images are evaluated at Chebyshev points and interpolated, and a uniformly
+spread load replaces the distant ones (midpoint rule with its first correction).
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from contactstudy.arrays.grid import Grid
 from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
-NEAR_IMAGES = 5
-"""Images on either side that are evaluated one by one; those beyond are spread evenly. Accuracy."""
-
-FAR_LIMIT = 1e6
-"""Where the spread load ends, over the length. Accuracy; references of displacements count from it."""
-
-ROUNDING = 1e-9
-"""Part of a cell that is nothing. Accuracy."""
-
-CHEBYSHEV_X = 16
-"""Points along x from which the images' influence is interpolated. Accuracy."""
-
-LEFT = 1.5e-8
-"""Part of the images' influence that interpolation between few points may leave. Accuracy."""
+NEAR_IMAGES = 5  # images on either side before the uniformly spread load. Accuracy.
+FAR_LIMIT = 1e6  # end of the spread load over the length. Accuracy; displacements refer to it.
+ROUNDING = 1e-9  # rounding of an offset over a cell. Accuracy.
+CHEBYSHEV_X = 16  # points along x of the interpolated influence of images. Accuracy.
+IMAGE_CELL = 1e-3  # width of the cells that represent points, over the length. Accuracy.
+INTERPOLATION_ERROR = 1.5e-8  # relative error of the interpolated influence of images. Accuracy.
 
 
 def cell_kernel(corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float) -> FloatArray:
-    """Influence of a unit load on one cell at uniform offsets `x` and `y` from its centre.
-
-    Parameters
-    ----------
-    corner : callable
-        Corner function of broadcastable offsets ``(X, Y)``; it may return leading axes.
-    x, y : array
-        Offsets from cell to observer, with spacing `dx` and `dy`.
-    dx, dy : float
-        Cell size.
-
-    Returns
-    -------
-    array (..., x, y)
-    """
+    """Influence of a unit load on one cell at uniform offsets `x` and `y` from its centre: array (..., x, y)."""
     x_edges = snapped(np.append(x - 0.5 * dx, x[-1] + 0.5 * dx), dx)
     y_edges = np.append(y - 0.5 * dy, y[-1] + 0.5 * dy)
     return np.diff(np.diff(corner(x_edges[:, None], y_edges[None, :]), axis=-1), axis=-2)
 
 
 def snapped(offsets: FloatArray, size: float) -> FloatArray:
-    """Offsets from edges, 0 where rounding left a little: a step of traction has a logarithm there, cut off at 0."""
+    """Offsets from edges without rounding about 0, where a step of traction has a logarithm, cut off at 0."""
     return np.where(np.abs(offsets) < ROUNDING * size, 0.0, offsets)
 
 
 def mirrored_kernel(
     corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float
 ) -> FloatArray:
-    """Influence of a unit load on one cell and on all its images at distances ``2 length`` along x.
-
-    As `cell_kernel`; offsets along x stay within ``length`` (and half a cell). A quantity that grows with distance
-    contains the constant of a load that ends at ``FAR_LIMIT * length``.
-    """
+    """`cell_kernel` of a load and all its images at distances ``2 length``; offsets along x up to ``length``."""
+    # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``.
     images = image_kernel(corner, x, y, dx, dy, length, nearest=2 * length)
     return cell_kernel(corner, x, y, dx, dy) + images
 
@@ -74,17 +52,14 @@ def mirrored_kernel(
 def image_kernel(
     corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, *, nearest: float
 ) -> FloatArray:
-    """Influence of a unit load on each of a cell's images from the distance `nearest` on, every ``2 length``.
-
-    As `mirrored_kernel`, of which it is all but the cell itself.
-    """
+    """Influence of unit loads on the images of a cell from the distance `nearest` on, every ``2 length``."""
     period = 2 * length
     spread_from, spread_to = nearest + (NEAR_IMAGES - 0.5) * period, FAR_LIMIT * length
     shifts: list[float] = []
     weights: list[float] = []
 
     def add(start: float, stop: float, weight: float) -> None:
-        """Add a unit load per length between two distances, and its like on the other side."""
+        """Add a unit load per length between two distances on either side."""
         shifts.extend((start, stop, -stop, -start))
         weights.extend((-weight, weight, -weight, weight))
 
@@ -93,29 +68,70 @@ def image_kernel(
     add(spread_from, spread_to, dx / period)
     step = 0.1 * length
     for side in (-step, step):
-        slope = period / 24 * np.sign(side) / (2 * step)
+        slope = period / 24 * np.sign(side) / (2 * step)  # eq. (32e)
         add(spread_from + side - 0.5 * dx, spread_from + side + 0.5 * dx, slope)
 
-    at_x, from_points_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
-    at_y, from_points_y = few_points(y, length)
-    positions = np.add.outer(shifts, at_x)[..., None]
-    values = corner(positions, at_y + 0.5 * dy) - corner(positions, at_y - 0.5 * dy)
+    nodes_x, to_x = _chebyshev_points(x, length + dx, CHEBYSHEV_X)
+    nodes_y, to_y = interpolation_points(y, length)
+    positions = np.add.outer(shifts, nodes_x)[..., None]
+    values = corner(positions, nodes_y + 0.5 * dy) - corner(positions, nodes_y - 0.5 * dy)
     images = np.tensordot(weights, values, axes=(0, -3))
-    images = from_points_x @ images
-    return np.asarray(images if from_points_y is None else images @ from_points_y.T)
+    images = to_x @ images
+    return np.asarray(images if to_y is None else images @ to_y.T)
 
 
-def few_points(values: FloatArray, distance: float, left: float = LEFT) -> tuple[FloatArray, FloatArray | None]:
-    """Few points from which what loads far away do is interpolated to many, and the matrix (value, point) that does so.
+@dataclass(frozen=True)
+class FarImages:
+    """Images of a load except the nearest, of period ``2 length``, at few Chebyshev points along x."""
 
-    The loads are at a `distance` from all points, so on a span ``2 s`` each point divides what is left by
-    ``exp(asinh(distance / s))``. Where no fewer points would do: `values` and None.
-    """
+    length: float  # distance between the ends, metres
+    image: int  # sign of the load's mirror image
+    count: int  # number of points. Accuracy: each point reduces the error by a factor of 6.
+
+    @cached_property
+    def _nodes(self) -> FloatArray:
+        return np.asarray(chebyshev.chebpts1(self.count))
+
+    @cached_property
+    def _coefficients(self) -> FloatArray:
+        return np.asarray(np.linalg.inv(chebyshev.chebvander(self._nodes, self.count - 1)))
+
+    def values(self, x: FloatArray) -> FloatArray:
+        """Matrix (position, point) that interpolates to distances from the first end."""
+        return np.asarray(chebyshev.chebvander(2 * x / self.length - 1, self.count - 1) @ self._coefficients)
+
+    def means(self, edges: FloatArray) -> FloatArray:
+        """Matrix (point, cell) of means over the cells between `edges`, distances from the first end."""
+        scaled = 2 * edges / self.length - 1
+        primitives = np.array([chebyshev.chebval(scaled, chebyshev.chebint(row)) for row in np.eye(self.count)])
+        return np.asarray(self._coefficients.T @ (np.diff(primitives, axis=1) / np.diff(scaled)))
+
+    def influence(self, corner: CornerFunction, y: FloatArray, dy: float, level: FloatArray) -> FloatArray:
+        """Influence (..., point, point, y) of a unit force per length of y, over `dy`; a row of images adds `level`."""
+        points, width = 0.5 * self.length * (self._nodes + 1), IMAGE_CELL * self.length
+        rows = (
+            (np.subtract.outer(points, points), 2 * self.length, 1),
+            (np.add.outer(points, points) - self.length, 3 * self.length, self.image),
+        )
+        total = np.zeros(())
+        for distances, nearest, sign in rows:
+            kernel = image_kernel(corner, distances.ravel(), y, width, dy, self.length, nearest=nearest) / width
+            kernel = kernel + dy * level[..., None, None]
+            total = total + sign * kernel.reshape(*kernel.shape[:-2], *distances.shape, y.size)
+        return total
+
+
+def interpolation_points(
+    values: FloatArray, distance: float, error: float = INTERPOLATION_ERROR
+) -> tuple[FloatArray, FloatArray | None]:
+    """Points for the interpolation of a field of distant loads, and its matrix (value, point), None at `values`."""
+    # For loads at a `distance` from all points of a span ``2 s`` each point divides the error by ``exp(asinh(distance /
+    # s))``.
     low, high = float(values.min()), float(values.max())
     half = 0.5 * (high - low)
     if not half:
         return values[:1], np.ones((values.size, 1)) if values.size > 1 else None
-    count = int(np.ceil(-np.log(left) / np.arcsinh(distance / half))) + 1
+    count = int(np.ceil(-np.log(error) / np.arcsinh(distance / half))) + 1
     if count >= values.size:
         return values, None
     points, matrix = _chebyshev_points(values - 0.5 * (low + high), half, count)
@@ -123,9 +139,112 @@ def few_points(values: FloatArray, distance: float, left: float = LEFT) -> tuple
 
 
 def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[FloatArray, FloatArray]:
-    """Chebyshev points of ``-span..span``, and the matrix that interpolates from them to `values`."""
+    """Chebyshev points of ``-span..span``, and the interpolation matrix to `values`."""
     points = chebyshev.chebpts1(count)
     matrix = np.linalg.solve(
         chebyshev.chebvander(points, count - 1).T, chebyshev.chebvander(values / span, count - 1).T
     )
     return span * points, np.asarray(matrix.T, dtype=np.float64)
+
+
+@dataclass(frozen=True)
+class Influence:
+    """Components of a field around a unit load on one cell; compared by value, as part of a cached request."""
+
+    corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
+    """Corner functions (component, ...) of broadcastable offsets ``X, Y`` and depths, and Poisson's ratio."""
+    poisson: float
+    load: Load
+    sign_along_x: tuple[int, ...]  # per component, 1 or -1 if it is even or odd in the offset along x and along y
+    sign_along_y: tuple[int, ...]
+    image_level: tuple[float, ...]
+    """Per component, the constant that the images of a unit load per area add to the kernel (`mirrored_kernel`): the
+    reference of a quantity that grows with distance."""
+
+    @classmethod
+    def of(
+        cls,
+        corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray],
+        poisson: float,
+        load: Load,
+        under_pressure: tuple[tuple[int, ...], tuple[int, ...]],
+        image_level: tuple[float, ...] | None = None,
+    ) -> Influence:
+        """Influence of a load in any direction, from the parities along x and y of the components under a pressure."""
+        along_x, along_y = under_pressure
+        return cls(
+            corner,
+            poisson,
+            load,
+            tuple(load.sign_x * sign for sign in along_x),
+            tuple(load.sign_y * sign for sign in along_y),
+            (0.0,) * len(along_x) if image_level is None else image_level,
+        )
+
+    @property
+    def components(self) -> int:
+        """Number of components."""
+        return len(self.sign_along_x)
+
+    def corner_at(self, depth: float) -> CornerFunction:
+        """Corner functions at one depth."""
+        return lambda x, y: self.corner(x, y, depth, self.poisson)
+
+    def kernel(self, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, depth: float) -> FloatArray:
+        """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
+        if np.isinf(length):
+            return cell_kernel(self.corner_at(depth), x, y, dx, dy)
+        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length)
+        return np.asarray(kernel + dx * dy * np.array(self.image_level)[:, None, None])
+
+
+LOAD_POINTS = 10
+"""Chebyshev points along x of a load in the far images. Accuracy: each point reduces the error by a factor of 6."""
+
+
+def far_images(
+    load: FloatArray,
+    influence: Influence,
+    grid: Grid,
+    first: int,
+    x: FloatArray,
+    y: FloatArray,
+    z: FloatArray,
+    extent: tuple[float, float],
+) -> FloatArray:
+    """Field of all images of a load except the nearest; `first` is its first column along y in the grid."""
+    low, length = extent[0], extent[1] - extent[0]
+    images = FarImages(length, influence.load.sign_x, LOAD_POINTS)
+    gathered = (images.means(grid.x_edges - low) * grid.widths) @ load
+    before = max(-first, 0)
+    behind = max(first + load.shape[1] - grid.cells_y, 0)
+    centres = grid.y_range[0] + grid.dy * (np.arange(-before, grid.cells_y + behind) + 0.5)
+    (nodes_load, from_load), (nodes_y, to_y), (depths, to_z) = (
+        interpolation_points(axis, length) for axis in (centres, y, z)
+    )
+    loaded = slice(before + first, before + first + load.shape[1])
+    if from_load is not None:
+        gathered = gathered @ from_load[loaded]
+    else:
+        gathered = np.pad(gathered, ((0, 0), (loaded.start, centres.size - loaded.stop)))
+    offsets, number = np.unique(np.subtract.outer(nodes_y, nodes_load).round(_digits(grid.dy)), return_inverse=True)
+    number = number.reshape(nodes_y.size, nodes_load.size)
+    field = np.zeros((influence.components, LOAD_POINTS, nodes_y.size, depths.size))
+    for depth in range(depths.size):
+        corner = influence.corner_at(float(depths[depth]))
+        kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
+        for row in range(nodes_y.size):
+            field[:, :, row, depth] = np.tensordot(kernel[..., number[row]], gathered, axes=2)
+    to_x = images.values(x - low)
+    field = np.tensordot(field, to_x, axes=(1, 1))
+    if to_z is not None:
+        field = np.tensordot(field, to_z, axes=(2, 1))
+        field = field.swapaxes(2, 3)
+    if to_y is not None:
+        field = np.moveaxis(np.tensordot(field, to_y, axes=(1, 1)), 3, 1)
+    return np.asarray(field.transpose(0, 3, 1, 2))
+
+
+def _digits(size: float) -> int:
+    """Decimals of equal positions, whose difference is a small part of `size`."""
+    return int(np.ceil(-np.log10(ROUNDING * size)))

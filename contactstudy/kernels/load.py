@@ -1,4 +1,4 @@
-"""Directions of a load on the top of a body, and what a reflection does to each."""
+"""Directions of a load on the top of a body, and their parities under reflection."""
 
 from __future__ import annotations
 
@@ -7,22 +7,7 @@ from typing import NamedTuple
 
 
 class Load(Enum):
-    """Direction of a load on the top.
-
-    A reflection in a plane ``x = const`` or ``y = const`` keeps a load or turns it round. This sign decides three
-    things: the sign of the load's mirror image in a free end, whether a field component is even or odd against its
-    parity under a pressure, and whether a kernel's Fourier transform carries a factor i against that of a pressure.
-
-    Attributes
-    ----------
-    sign_x, sign_y : int
-        1 if the reflection along x, along y keeps the load, -1 if it turns it round.
-
-    Examples
-    --------
-    >>> Load.ALONG_Y.sign_x, Load.ALONG_Y.sign_y
-    (1, -1)
-    """
+    """Direction of a load on the top; sign_x, sign_y: 1 if a reflection along x, along y keeps the load, -1 if not."""
 
     NORMAL = ("pressure, positive into the body", 1, 1)
     ALONG_X = ("traction on the body along +x", -1, 1)
@@ -35,23 +20,9 @@ class Load(Enum):
 
 
 class Response(NamedTuple):
-    """What a load in one direction displaces in the same or another one: one of nine pairs.
+    """Displacement in one direction under a load in one direction."""
 
-    Attributes
-    ----------
-    displacement : Load
-        Direction of the displacement: that of the load which does work on it.
-    load : Load
-        Direction of the load.
-
-    Examples
-    --------
-    >>> across = Response(Load.ALONG_X, Load.ALONG_Y)
-    >>> across.sign_x, across.sign_y, across.reciprocal == Response(Load.ALONG_Y, Load.ALONG_X)
-    (-1, -1, True)
-    """
-
-    displacement: Load
+    displacement: Load  # direction of the displacement: the load in this direction does work on it
     load: Load
 
     @property
@@ -66,9 +37,8 @@ class Response(NamedTuple):
 
     @property
     def reciprocal(self) -> Response:
-        """The pair whose kernel is this one seen backwards."""
+        """The pair with exchanged directions: its kernel is this one at opposite offsets."""
         return Response(self.load, self.displacement)
 
 
-SINKS = Response(Load.NORMAL, Load.NORMAL)
-"""How far a pressure sinks the top."""
+NORMAL_RESPONSE = Response(Load.NORMAL, Load.NORMAL)  # normal displacement of the top under a pressure

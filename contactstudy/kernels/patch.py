@@ -1,4 +1,4 @@
-"""Uniformly loaded rectangle on a half-space: the stresses below, in closed form.
+"""Uniformly loaded rectangle on a half-space: stresses and displacements at any depth, in closed form.
 
 Every quantity is a second mixed difference, over the rectangle's corners, of a corner function of the offset
 ``(X, Y, z)`` from corner to observer. The corner functions follow from the Boussinesq and Cerruti potentials
@@ -6,7 +6,12 @@ Every quantity is a second mixed difference, over the rectangle's corners, of a 
     V = int int dA / r,   chi = int int ln(r + z) dA,   Theta = int int [z ln(r + z) - r] dA
 
 (A. E. H. Love, Phil. Trans. R. Soc. A 228 (1929); K. L. Johnson, Contact Mechanics (1985), section 3.2). Terms that
-depend on one of X and Y alone cancel in the difference and are left out, which also avoids loss of digits.
+depend on one of X and Y alone cancel in the difference and are left out, which also avoids loss of digits. The
+displacements are
+
+    pressure p:        4 pi G u_x = -(1 - 2 nu) chi_x - z V_x,   4 pi G u_z = 2 (1 - nu) V - z V_z
+    traction q on y:   4 pi G u_x = 2 nu Theta_xy - z chi_xy,    4 pi G u_y = 2 V + 2 nu Theta_yy - z chi_yy,
+                       4 pi G u_z = (1 - 2 nu) chi_y - z V_y
 """
 
 from __future__ import annotations
@@ -16,47 +21,24 @@ import numpy as np
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 
-TINY = 1e-150
-"""Least denominator. Its square is still a number, and offsets in metres are never so small unless they vanish."""
+TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres
 
 
-def _inverse_sinh_ratio(numerator: FloatArray, other: FloatArray, z: FloatArray | float) -> FloatArray:
-    """``asinh(numerator / hypot(other, z))``, finite where the denominator vanishes (a corner's edge)."""
-    return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(other, z), 1e-30)))
+def _inverse_sinh_ratio(numerator: FloatArray, offset: FloatArray, z: FloatArray | float) -> FloatArray:
+    """``asinh(numerator / hypot(offset, z))``, finite where the denominator vanishes (the edge of a corner)."""
+    return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(offset, z), 1e-30)))
 
 
-def _together(*components: FloatArray) -> FloatArray:
+def _stacked(*components: FloatArray) -> FloatArray:
     """Components over ``2 pi`` as one array (component, ...)."""
-    together = np.empty((len(components), *components[0].shape))
-    for one, own in zip(together, components, strict=True):
-        np.multiply(own, 1 / (2 * np.pi), out=one)
-    return together
+    stacked = np.empty((len(components), *components[0].shape))
+    for target, values in zip(stacked, components, strict=True):
+        np.multiply(values, 1 / (2 * np.pi), out=target)
+    return stacked
 
 
 def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-    """Corner functions of the six stresses under unit pressure, in the order xx, yy, zz, xy, xz, yz.
-
-    Parameters
-    ----------
-    x, y : array
-        Offsets from corner to observer, broadcastable to one shape.
-    z : array or float
-        Depths, not negative, broadcastable to the same.
-    poisson : float
-        Poisson's ratio.
-
-    Returns
-    -------
-    array of shape (6, ...)
-        With ``p`` on a rectangle the stress is ``p`` times the second mixed difference of these.
-
-    Examples
-    --------
-    >>> edge = np.array([-1.0, 1.0])
-    >>> corner = normal_corner(edge[:, None], edge[None, :], 0.0, 0.3)
-    >>> (np.diff(np.diff(corner, axis=1), axis=2)[:3, 0, 0]).round(6).tolist()
-    [-0.8, -0.8, -1.0]
-    """
+    """Corner functions (6, ...) of xx, yy, zz, xy, xz, yz; unit pressure has their second mixed difference."""
     xx, yy = x * x, y * y
     r = np.sqrt(xx + yy + z * z)
     xy = x * y
@@ -67,7 +49,7 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
     v_xx, v_yy = -xy * along_x, -xy * along_y
     free = 1 - 2 * poisson
-    return _together(
+    return _stacked(
         2 * poisson * v_z - free * chi_xx - z * v_xx,
         2 * poisson * v_z - free * chi_yy - z * v_yy,
         v_z + z * (v_xx + v_yy),
@@ -78,43 +60,83 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
 
 
 def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-    """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`.
-
-    Examples
-    --------
-    >>> edge = np.array([-1.0, 1.0])
-    >>> corner = tangential_corner(edge[:, None], edge[None, :], 0.0, 0.3)
-    >>> round(float(np.diff(np.diff(corner, axis=1), axis=2)[5, 0, 0]), 6)
-    -1.0
-    """
+    """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`."""
     xx, yy = x * x, y * y
     r = np.sqrt(xx + yy + z * z)
     safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
     v_y = _inverse_sinh_ratio(x, y, z)
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
-    x_r, y_r, last = x / r_z, y / r_z, z * x * along_y
-    return _together(
+    x_r, y_r, term = x / r_z, y / r_z, z * x * along_y
+    return _stacked(
         2 * poisson * (v_y - x_r) - z / safe_r * x_r,
-        2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * last,
-        z * last,
+        2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * term,
+        z * term,
         _inverse_sinh_ratio(y, x, z) - 2 * poisson * y_r - z / safe_r * y_r,
         -z / safe_r,
-        -np.arctan2(x * y, z * r) + y * last,
+        -np.arctan2(x * y, z * r) + y * term,
     )
 
 
 def axial_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-    """Corner functions of the six stresses under unit shear traction along +x: those along +y with x and y exchanged.
-
-    Examples
-    --------
-    >>> edge = np.array([-1.0, 1.0])
-    >>> corner = axial_corner(edge[:, None], edge[None, :], 0.0, 0.3)
-    >>> round(float(np.diff(np.diff(corner, axis=1), axis=2)[4, 0, 0]), 6)
-    -1.0
-    """
+    """Corner functions of the six stresses under unit traction along +x: those along +y with x and y exchanged."""
     return tangential_corner(y, x, z, poisson)[[1, 0, 2, 3, 5, 4]]
 
 
 STRESS_CORNERS = {Load.NORMAL: normal_corner, Load.ALONG_X: axial_corner, Load.ALONG_Y: tangential_corner}
 """Corner functions of the six stresses, by the direction of the load."""
+
+
+class _Potentials:
+    """Corner functions of the potentials' derivatives at offsets ``(X, Y, z)``."""
+
+    def __init__(self, x: FloatArray, y: FloatArray, z: FloatArray | float) -> None:
+        r = np.sqrt(x * x + y * y + z * z)
+        xy = x * y
+        self.r, self.z = r, z
+        self.log = np.log(np.maximum(r + z, TINY))
+        self.asinh_x = np.arcsinh(x / np.maximum(np.hypot(y, z), TINY ** (1 / 5)))
+        self.asinh_y = np.arcsinh(y / np.maximum(np.hypot(x, z), TINY ** (1 / 5)))
+        self.v_z = -np.arctan2(xy, z * r)
+        self.chi_xx = np.arctan2(xy * (r - z), x * x * r + y * y * z)
+        self.chi_yy = np.arctan2(xy * (r - z), y * y * r + x * x * z)
+        self.v = x * self.asinh_y + y * self.asinh_x + z * self.v_z
+        self.chi_x = y * self.log + z * self.asinh_y + x * self.chi_xx
+        self.chi_y = x * self.log + z * self.asinh_x + y * self.chi_yy
+        self.theta_yy = -y * self.asinh_x + z * self.chi_yy
+
+
+def normal_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit pressure: array (3, ...)."""
+    potentials = _Potentials(x, y, z)
+    free = 1 - 2 * poisson
+    return np.stack(
+        [
+            -free * potentials.chi_x - z * potentials.asinh_y,
+            -free * potentials.chi_y - z * potentials.asinh_x,
+            2 * (1 - poisson) * potentials.v - z * potentials.v_z,
+        ]
+    )
+
+
+def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions of ``4 pi G (u_x, u_y, u_z)`` under unit shear traction along +y; otherwise as for pressure."""
+    potentials = _Potentials(x, y, z)
+    return np.stack(
+        [
+            2 * poisson * (z * potentials.log - potentials.r) - z * potentials.log,
+            2 * potentials.v + 2 * poisson * potentials.theta_yy - z * potentials.chi_yy,
+            (1 - 2 * poisson) * potentials.chi_y - z * potentials.asinh_x,
+        ]
+    )
+
+
+def axial_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+    """Corner functions under unit shear traction along +x: those along +y with x and y exchanged."""
+    return tangential_displacement_inside(y, x, z, poisson)[[1, 0, 2]]
+
+
+DISPLACEMENT_CORNERS = {  # corner functions of the three displacements, by the direction of the load
+    Load.NORMAL: normal_displacement_inside,
+    Load.ALONG_X: axial_displacement_inside,
+    Load.ALONG_Y: tangential_displacement_inside,
+}

@@ -1,14 +1,15 @@
 """A load on cells as a smooth function: its square is linear between the faces and the middle of each cell.
 
-Near the border of a contact a pressure goes like the square root of the distance, and its square is linear. Faces get
-the square that lies on the line between the neighbours, middles the value that keeps the force of the cell, so the
-function is continuous and every cell carries what it did. Where a load falls to nothing the border lies inside the
-last cell, where its force puts it; a load that ends without falling, as at a sharp end, ends in a step.
+Near the border of a contact a pressure is proportional to the square root of the distance, and its square is linear.
+The square on a face is interpolated linearly from the neighbours, and the force of the cell determines the value in the
+middle: the function is continuous. Where a load falls to zero, the force of the last cell determines the border inside
+this cell; a load that ends without falling, as at a sharp end, ends in a step.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -16,83 +17,61 @@ import numpy as np
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 
 STEEPEST_FACE = 1.4
-"""Largest value on a face over the smaller of its neighbours': cells keep their force up to 1.5. Accuracy."""
+"""Largest value on a face over the smaller neighbour: above 1.5 a cell cannot keep its force. Accuracy."""
 
-ITERATIONS = 8
-"""Newton's iterations of the middles. Accuracy."""
+EQUAL = 0.999
+"""Least ratio of neighbouring loads that count as equal. Accuracy: on few cells the middle two differ by rounding,
+which must not determine the end of a load."""
 
-ALIKE = 0.999
-"""Part of a neighbour's load from which on a cell counts as loaded alike. Accuracy: on few cells the two in the middle
-are alike but for rounding, which must not decide how a load ends."""
-
-TOGETHER = 16_384
-"""Rows and positions that are evaluated at once. Speed: what they make stays in the processor's cache."""
+LEAST_NEIGHBOUR = 0.5
+"""Least mean of the shape in a neighbouring cell, over the mean in the cell, for a determined ratio. Accuracy."""
 
 NARROW = 0.5
-"""Part of the last cell below which its force and that of the cell before are shared. Accuracy: contacts solved on
-cells put too little into a last cell of which less is pressed, and too much into the one before."""
+"""Loaded part of the last cell below which the last two cells share their force. Accuracy: the discrete contact puts
+too little force into a last cell with a smaller loaded part, and too much into its neighbour."""
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothLoad:
-    """Loads along rows of cells as smooth functions.
+    """Loads along rows of cells as smooth functions."""
 
-    Attributes
-    ----------
-    edges : array (cell + 1)
-        Edges of the cells, metres.
-    sign : array (row, cell)
-        Sign of the load.
-    first, middle, last : array (row, cell)
-        Magnitude of the load on the first face, at the knot and on the last face; between them its square is linear.
-    knot : array (row, cell)
-        Where in the cell the knot is, from 0 to 1.
-    """
-
-    edges: FloatArray
-    sign: FloatArray
+    edges: FloatArray  # (cell + 1): edges of the cells, metres
+    sign: FloatArray  # (row, cell): sign of the load
     first: FloatArray
+    """(row, cell): magnitude of the load on the first face, at the knot and on the last face; between them its
+    square is linear."""
     middle: FloatArray
     last: FloatArray
-    knot: FloatArray
+    knot: FloatArray  # (row, cell): position of the knot in the cell, from 0 to 1
+    joined: BoolArray  # (row, cell): cells that exchange force with the next cell of their row
 
     @classmethod
     def of(cls, cells: FloatArray, edges: FloatArray, *, spilling: bool = False) -> SmoothLoad:
-        """Smooth functions through the loads `cells` (row, cell).
-
-        Where `spilling`, a load may reach half a cell beyond its last one: cells whose centre is not pressed have none.
-        """
+        """Smooth functions through the loads `cells` (row, cell); `spilling`: half a cell further."""
         loads, widths = np.abs(cells), np.diff(edges)
         sign = np.sign(cells)
         rows = loads.shape[0]
-        # Faces: between loaded cells of one sign; where the sign changes the load passes zero.
+        # The load is zero on faces where the sign changes.
         squared = loads**2
         between = (squared[:, :-1] * widths[1:] + squared[:, 1:] * widths[:-1]) / (widths[1:] + widths[:-1])
         least = np.minimum(loads[:, :-1], loads[:, 1:])
-        same = sign[:, :-1] == sign[:, 1:]
+        equal_signs = sign[:, :-1] == sign[:, 1:]
         faces = np.zeros((rows, widths.size + 1))
-        faces[:, 1:-1] = np.where(same, np.minimum(np.sqrt(between), STEEPEST_FACE * least), 0.0)
+        faces[:, 1:-1] = np.where(equal_signs, np.minimum(np.sqrt(between), STEEPEST_FACE * least), 0.0)
         first, last = faces[:, :-1].copy(), faces[:, 1:].copy()
         middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
-        fixed = np.zeros(loads.shape, bool)
+        fixed, joined = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
         forwards = _Row(loads, sign, widths, first, middle, last, knot, fixed)
-        forwards.end(spilling=spilling)
-        backwards = _Row(
-            loads[:, ::-1],
-            sign[:, ::-1],
-            widths[::-1],
-            last[:, ::-1],
-            middle[:, ::-1],
-            first[:, ::-1],
-            knot[:, ::-1],
-            fixed[:, ::-1],
-        )
+        for cell_row, cell in forwards.shape_ends(spilling=spilling):
+            joined[cell_row, cell] = True
+        backwards = forwards.reversed()
         np.subtract(1.0, knot, out=knot)
-        backwards.end(spilling=spilling)
+        for cell_row, cell in backwards.shape_ends(spilling=spilling):
+            joined[cell_row, widths.size - 2 - cell] = True
         np.subtract(1.0, knot, out=knot)
         free = ~fixed & (loads > 0)
         middle[free] = _middle(loads[free], first[free], last[free])
-        return cls(edges, sign, first, middle, last, knot)
+        return cls(edges, sign, first, middle, last, knot, joined)
 
     @property
     def cell_means(self) -> FloatArray:
@@ -101,106 +80,174 @@ class SmoothLoad:
             self.knot * _mean(self.first, self.middle) + (1 - self.knot) * _mean(self.middle, self.last)
         )
 
+    def shaped(self, cells: FloatArray) -> ShapedLoad:
+        """Return loads `cells` (row, cell) of this shape: the shape times a ratio that is linear in each cell."""
+        # Where the shape is 0, the load equals the ratio. Each cell keeps its force; joined cells keep their sum.
+        widths, (rows, count) = np.diff(self.edges), cells.shape
+        force, moment, _ = self.moments_in(np.arange(count), self.edges[1:])
+        empty = force == 0
+        force, moment = np.where(empty, widths, force), np.where(empty, 0.5 * widths**2, moment)
+        sign, first, middle, last = (
+            np.where(empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
+        )
+        shape = SmoothLoad(self.edges, sign, first, middle, last, self.knot, self.joined)
+        total, centroid = cells * widths, self.edges[:-1] + moment / force
+        # Joined cells form a group with one ratio; other groups contain one cell.
+        before = np.pad(self.joined[:, :-1], ((0, 0), (1, 0)))
+        start = np.maximum.accumulate(np.where(before, 0, np.arange(count)), axis=1)
+        stop = np.minimum.accumulate(np.where(self.joined, count, np.arange(count))[:, ::-1], axis=1)[:, ::-1]
+        if self.joined.any():
+            moment = force * centroid
+            total, force, moment = (_group_sums(values, start) for values in (total, force, moment))
+            centroid = moment / force
+        ratio = total / force
+        mean = np.abs(force / (self.edges[1:][stop] - self.edges[:-1][start]))
+        distances, rises = [], []
+        row = np.arange(rows)[:, None]
+        for neighbour, exists in (
+            (np.maximum(start - 1, 0), start > 0),
+            (np.minimum(stop + 1, count - 1), stop < count - 1),
+        ):
+            # A neighbour with a small mean determines its ratio badly.
+            valid = exists & ~empty & ~empty[row, neighbour] & (mean[row, neighbour] > LEAST_NEIGHBOUR * mean)
+            distances.append(np.where(valid, centroid[row, neighbour] - centroid, 0.0))
+            rises.append(ratio[row, neighbour] - ratio)
+        # The slope of the parabola through the ratios of both neighbours; with one neighbour the ratio is constant.
+        (back, ahead), (fall, rise) = distances, rises
+        product = np.where((back < 0) & (ahead > 0), back * ahead * (ahead - back), np.inf)
+        slope = (fall * ahead**2 - rise * back**2) / product
+        return ShapedLoad(shape, ratio + slope * (self.edges[:-1] - centroid), slope)
+
+    def moments_in(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Force, first and second moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
+        width = np.diff(self.edges)[cell]
+        part = np.clip((x - self.edges[cell]) / width, 0.0, 1.0)
+        first, middle, last, knot, sign = (
+            values[:, cell] for values in (self.first, self.middle, self.last, self.knot, self.sign)
+        )
+        before = _Piece.of(first, middle, np.minimum(part, knot), knot)
+        behind = _Piece.of(middle, last, np.maximum(part - knot, 0.0), 1 - knot)
+        force, moment, second = behind.force, behind.moment, behind.second_moment
+        second += knot * (2 * moment + knot * force)
+        moment += knot * force
+        return (
+            sign * width * (before.force + force),
+            sign * width**2 * (before.moment + moment),
+            sign * width**3 * (before.second_moment + second),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class ShapedLoad:
+    """Loads along rows of cells: a shape times a ratio that is linear in each cell."""
+
+    shape: SmoothLoad
+    ratio: FloatArray  # (row, cell): ratio at the start of each cell and its derivative, 1/m
+    slope: FloatArray
+
+    @property
+    def edges(self) -> FloatArray:
+        """Edges of the cells, metres."""
+        return self.shape.edges
+
+    @cached_property
+    def _cell_moments(self) -> tuple[FloatArray, FloatArray]:
+        """Force and first moment about its start of each cell: arrays (row, cell)."""
+        cell = np.arange(self.edges.size - 1)
+        return self._moments_in(cell, self.edges[1:])
+
+    def _moments_in(self, cell: IntArray, x: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Force and first moment between the start of each `cell` and `x`, about the start: arrays (row, x)."""
+        force, moment, second = self.shape.moments_in(cell, x)
+        ratio, slope = self.ratio[:, cell], self.slope[:, cell]
+        return ratio * force + slope * moment, ratio * moment + slope * second
+
+    @property
+    def cell_means(self) -> FloatArray:
+        """Mean in each cell: array (row, cell)."""
+        return self._cell_moments[0] / np.diff(self.edges)
+
     @property
     def moments(self) -> FloatArray:
         """First moment about each cell's centre, Pa m2: array (row, cell)."""
-        knot = self.knot
-        before = knot**2 * _first_moment(self.first, self.middle)
-        behind = (1 - knot) ** 2 * _first_moment(self.middle, self.last)
-        behind += (1 - knot) * knot * _mean(self.middle, self.last)
-        return np.asarray((self.sign * (before + behind) - 0.5 * self.cell_means) * np.diff(self.edges) ** 2)
+        force, moment = self._cell_moments
+        return moment - 0.5 * np.diff(self.edges) * force
 
-    def gathered(self) -> FloatArray:
-        """Load per area on the same cells that far away makes the field of the smooth one: array (row, cell)."""
-        return self.cell_means + sent(self.edges, self.moments).total
-
-    def integral(self, at: FloatArray) -> FloatArray:
-        """Integral of each row from its first edge to the positions `at`, metres: array (row, position)."""
-        cell, before, behind, _ = self._pieces(at)
-        widths = np.diff(self.edges)
-        inside = widths[cell] * (before.force + behind.force)
-        return np.asarray(_sum_before(self.cell_means * widths)[:, cell] + self.sign[:, cell] * inside)
+    def integral(self, x: FloatArray) -> FloatArray:
+        """Integral of the load up to the positions: array (row, x)."""
+        cell = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, self.edges.size - 2)
+        return np.asarray(_sum_before(self._cell_moments[0])[:, cell] + self._moments_in(cell, x)[0])
 
     def means(self, edges: FloatArray) -> FloatArray:
         """Means between other edges, metres: array (row, cell)."""
         return np.asarray(np.diff(self.integral(edges), axis=1) / np.diff(edges))
 
-    def gathered_on(self, edges: FloatArray) -> FloatArray:
-        """Load per area between other edges that away from them makes the field of the smooth one."""
-        found = np.empty((self.sign.shape[0], edges.size - 1))
-        step = max(1, TOGETHER // max(edges.size, self.edges.size))
-        for start in range(0, found.shape[0], step):
-            rows = slice(start, start + step)
-            arrays = (each[rows] for each in (self.sign, self.first, self.middle, self.last, self.knot))
-            force, moment = (np.diff(each, axis=1) for each in SmoothLoad(self.edges, *arrays).integrals(edges))
-            moment -= (0.5 * (edges[1:] + edges[:-1]) - self.edges[0]) * force
-            found[rows] = force / np.diff(edges) + sent(edges, moment).total
-        return found
-
-    def integrals(self, at: FloatArray) -> tuple[FloatArray, FloatArray]:
-        """Integrals of the load, and of its moment about the first edge, up to the positions `at`: arrays (row, at)."""
-        cell, before, behind, knot = self._pieces(at)
-        widths, starts = np.diff(self.edges), self.edges[:-1] - self.edges[0]
-        forces = self.cell_means * widths
-        inside = before.force + behind.force
-        turning = before.moment + behind.moment + knot * behind.force
-        force = _sum_before(forces)[:, cell] + self.sign[:, cell] * widths[cell] * inside
-        moment = _sum_before(self.moments + (starts + 0.5 * widths) * forces)[:, cell]
-        moment += self.sign[:, cell] * widths[cell] * (starts[cell] * inside + widths[cell] * turning)
-        return force, moment
-
-    def _pieces(self, at: FloatArray) -> tuple[IntArray, _Piece, _Piece, FloatArray]:
-        """Cells of positions, the pieces of the load there before the knot and behind it, and the knot."""
-        last_cell = self.edges.size - 2
-        cell = np.clip(np.searchsorted(self.edges, at, side="right") - 1, 0, last_cell)
-        part = np.clip((at - self.edges[cell]) / np.diff(self.edges)[cell], 0.0, 1.0)
-        first, middle, last, knot = (each[:, cell] for each in (self.first, self.middle, self.last, self.knot))
-        before = _Piece.of(first, middle, np.minimum(part, knot), knot)
-        return cell, before, _Piece.of(middle, last, np.maximum(part - knot, 0.0), 1 - knot), knot
+    def equivalent_means(self, edges: FloatArray) -> FloatArray:
+        """Return loads on cells between other edges, with forces and first moments of the load: array (row, cell)."""
+        inner = self.edges[(self.edges > edges[0]) & (self.edges < edges[-1])]
+        points = np.union1d(edges, inner)
+        middles = 0.5 * (points[1:] + points[:-1])
+        cell = np.clip(np.searchsorted(self.edges, middles, side="right") - 1, 0, self.edges.size - 2)
+        # Differences of sums over all cells would lose digits.
+        upto, start = self._moments_in(cell, points[1:]), self._moments_in(cell[:1], points[:1])
+        cell_starts = np.append(True, np.diff(cell) > 0)
+        piece = np.clip(np.searchsorted(edges, middles, side="right") - 1, 0, edges.size - 2)
+        first = np.flatnonzero(np.append(True, np.diff(piece) > 0))
+        force, moment = (
+            sums - np.where(cell_starts, 0.0, np.concatenate([initial, sums[:, :-1]], axis=1))
+            for sums, initial in zip(upto, start, strict=True)
+        )
+        force[:, 0] -= start[0][:, 0]
+        moment[:, 0] -= start[1][:, 0]
+        moment -= (0.5 * (edges[1:] + edges[:-1])[piece] - self.edges[cell]) * force
+        force, moment = (np.add.reduceat(values, first, axis=1) for values in (force, moment))
+        return force / np.diff(edges) + moment_loads(edges, moment).total
 
 
-class Sent(NamedTuple):
-    """Loads per area that stand for the moments of cells: arrays (row, cell), by the cell that they stand for.
+def _group_sums(values: FloatArray, start: IntArray) -> FloatArray:
+    """Sum over the group of each cell (row, cell), whose first cell is `start`."""
+    group = start + np.arange(values.shape[0])[:, None] * values.shape[1]
+    return np.asarray(np.bincount(group.ravel(), values.ravel(), values.size)[group])
 
-    Attributes
-    ----------
-    before, own, behind : array (row, cell)
-        On the cell before, on the cell itself and on the one behind.
-    """
 
-    before: FloatArray
-    own: FloatArray
+class MomentLoads(NamedTuple):
+    """Loads per area on three cells with the first moment of the middle one: arrays (row, cell), by the middle cell."""
+
+    before: FloatArray  # (row, cell): loads on the previous cell, on the cell, and on the next cell
+    centre: FloatArray
     behind: FloatArray
 
     @property
     def total(self) -> FloatArray:
-        """What every cell receives."""
-        total = self.own.copy()
+        """Sum of the loads on every cell."""
+        total = self.centre.copy()
         total[:, :-1] += self.before[:, 1:]
         total[:, 1:] += self.behind[:, :-1]
         return total
 
 
-def sent(edges: FloatArray, moments: FloatArray) -> Sent:
-    """Put forces on each cell and its neighbours that have its moment, no resultant and no second moment."""
+def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
+    """Return loads on each cell and its neighbours with the moment of the cell, without resultant and second moment."""
     widths = np.diff(edges)
     if widths.size == 1:
-        return Sent(*(np.zeros(moments.shape) for _ in range(3)))
-    apart = 0.5 * (widths[1:] + widths[:-1])
+        return MomentLoads(*(np.zeros(moments.shape) for _ in range(3)))
+    spacings = 0.5 * (widths[1:] + widths[:-1])
     # The first and the last cell have one neighbour.
-    ahead, back = np.append(apart, np.inf), np.append(np.inf, apart)
+    ahead, back = np.append(spacings, np.inf), np.append(np.inf, spacings)
     share = np.ones(widths.size)
     share[1:-1] = back[1:-1] / (ahead[1:-1] + back[1:-1])
-    behind = moments * share / ahead
+    behind = moments * share / ahead  # eq. (32d)
     share = np.ones(widths.size)
     share[1:-1] = ahead[1:-1] / (ahead[1:-1] + back[1:-1])
     before = -moments * share / back
-    return Sent(before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0))
+    return MomentLoads(
+        before / np.append(1.0, widths[:-1]), -(before + behind) / widths, behind / np.append(widths[1:], 1.0)
+    )
 
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """Rows of cells seen in one direction, in which their loads end."""
+    """Rows of cells in one direction; their loads end at the last loaded cells."""
 
     loads: FloatArray
     sign: FloatArray
@@ -211,59 +258,80 @@ class _Row:
     knot: FloatArray
     fixed: BoolArray
 
-    def end(self, *, spilling: bool) -> None:
-        """Shape the cells behind which there is no load."""
+    def reversed(self) -> _Row:
+        """Return the same arrays in the opposite direction."""
+        return _Row(
+            self.loads[:, ::-1],
+            self.sign[:, ::-1],
+            self.widths[::-1],
+            self.last[:, ::-1],
+            self.middle[:, ::-1],
+            self.first[:, ::-1],
+            self.knot[:, ::-1],
+            self.fixed[:, ::-1],
+        )
+
+    def shape_ends(self, *, spilling: bool) -> list[tuple[IntArray, IntArray]]:
+        """Shape the last loaded cells; return rows and cells that exchange force with the next cell."""
         loads, sign = self.loads, self.sign
         loaded = loads > 0
         ends = loaded.copy()
         ends[:, :-1] &= ~loaded[:, 1:]
         row, cell = np.nonzero(ends)
-        own = loads[row, cell]
-        self.last[row, cell] = own
+        end_load = loads[row, cell]
+        self.last[row, cell] = end_load
 
-        def before(steps: int) -> FloatArray:
-            """Load of the cells some steps before, 0 where there is none of the same sign."""
-            at = np.maximum(cell - steps, 0)
-            found = np.where(sign[row, at] == sign[row, cell], loads[row, at], 0.0)
-            return np.where(cell >= steps, found, 0.0)
+        def previous(steps: int) -> FloatArray:
+            """Return loads of the cells some steps before; 0 for another sign."""
+            index = np.maximum(cell - steps, 0)
+            values = np.where(sign[row, index] == sign[row, cell], loads[row, index], 0.0)
+            return np.where(cell >= steps, values, 0.0)
 
-        one, two, three = before(1), before(2), before(3)
-        face, room = self._face(cell, one, two, 1), self.widths[cell]
-        falling = np.flatnonzero((two > ALIKE * one) & (one > own / ALIKE) & (face > 0))
+        load_1, load_2, load_3 = previous(1), previous(2), previous(3)
+        face, width = self._face(cell, load_1, load_2, 1), self.widths[cell]
+        falling = np.flatnonzero((load_2 > EQUAL * load_1) & (load_1 > end_load / EQUAL) & (face > 0))
         row, cell = row[falling], cell[falling]
-        own, one, two, three, face, room = (each[falling] for each in (own, one, two, three, face, room))
+        end_load, load_1, load_2, load_3, face, width = (
+            values[falling] for values in (end_load, load_1, load_2, load_3, face, width)
+        )
         self.first[row, cell] = face
         self.last[row, cell - 1] = face
-        # The square falls linearly from the face: over 3/2 of the mean over the face's value, if that is in the cell.
-        reach = 1.5 * own / face
+        # The square falls linearly from the face to zero; the force determines the distance over the width.
+        reach = 1.5 * end_load / face  # eq. (32b)
         inside = reach <= 1
-        at = row[inside], cell[inside]
-        self.knot[at], self.middle[at], self.last[at], self.fixed[at] = reach[inside], 0.0, 0.0, True
-        # Not into a cell at the end of the row, nor beside another contact.
+        index = row[inside], cell[inside]
+        self.knot[index], self.middle[index], self.last[index], self.fixed[index] = reach[inside], 0.0, 0.0, True
+        # The load extends neither into the last cell of the row nor to a cell beside another contact.
         last = self.widths.size - 1
         beyond = spilling & (reach > 1) & (reach < 1.5) & (cell < last)
         beyond &= loads[row, np.minimum(cell + 2, last)] == 0
         full = ~inside & ~beyond
-        at = row[full], cell[full]
-        self.last[at] = np.minimum(_other_face(own[full], face[full]), own[full])
+        index = row[full], cell[full]
+        self.last[index] = np.minimum(_opposite_face(end_load[full], face[full]), end_load[full])
         self._spill(row[beyond], cell[beyond], face[beyond], reach[beyond])
-        # Too little in the last cell: the last two share their force.
-        face = self._face(cell, two, three, 2)
-        width = self.widths[np.maximum(cell - 1, 0)]
-        length = 1.5 * (one * width + own * room) / np.where(face > 0, face, np.inf)
+        spilled = row[beyond], cell[beyond]
+        # A narrow loaded part of the last cell: the last two cells share their force.
+        face = self._face(cell, load_2, load_3, 2)
+        previous_width = self.widths[np.maximum(cell - 1, 0)]
+        length = 1.5 * (load_1 * previous_width + end_load * width) / np.where(face > 0, face, np.inf)
         shared = np.flatnonzero(
-            (reach < NARROW) & (three > ALIKE * two) & (face > 0) & (length > width) & (length < width + room)
+            (reach < NARROW)
+            & (load_3 > EQUAL * load_2)
+            & (face > 0)
+            & (length > previous_width)
+            & (length < previous_width + width)
         )
         row, cell = row[shared], cell[shared]
-        face, width, room, length = (each[shared] for each in (face, width, room, length))
+        face, previous_width, width, length = (values[shared] for values in (face, previous_width, width, length))
         self.last[row, cell - 2] = self.first[row, cell - 1] = face
-        self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * width / length)
-        self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - width / length)
+        self.middle[row, cell - 1] = face * np.sqrt(1 - 0.5 * previous_width / length)
+        self.last[row, cell - 1] = self.first[row, cell] = face * np.sqrt(1 - previous_width / length)
         self.knot[row, cell - 1], self.fixed[row, cell - 1] = 0.5, True
-        self.knot[row, cell] = (length - width) / room
+        self.knot[row, cell] = (length - previous_width) / width
+        return [spilled, (row, cell - 1)]
 
     def _spill(self, row: IntArray, cell: IntArray, face: FloatArray, reach: FloatArray) -> None:
-        """Let the square fall to nothing in the cell behind the last one."""
+        """Shape the last loaded cell and the next, in which the square falls to zero."""
         self.middle[row, cell] = face * np.sqrt(1 - 0.5 / reach)
         self.last[row, cell] = self.first[row, cell + 1] = face * np.sqrt(1 - 1 / reach)
         self.fixed[row, cell] = True
@@ -272,17 +340,17 @@ class _Row:
         self.sign[row, cell + 1] = self.sign[row, cell]
 
     def _face(self, cell: IntArray, near: FloatArray, far: FloatArray, steps: int) -> FloatArray:
-        """Value on the last face of the cells `steps` before, on the line through their square and the one before."""
-        own = self.widths[np.maximum(cell - steps, 0)]
-        other = self.widths[np.maximum(cell - steps - 1, 0)]
-        squared = near**2 - (far**2 - near**2) * own / (own + other)
+        """Value on the last face of the cells `steps` before, extrapolated linearly in the square."""
+        near_width = self.widths[np.maximum(cell - steps, 0)]
+        far_width = self.widths[np.maximum(cell - steps - 1, 0)]
+        squared = near**2 - (far**2 - near**2) * near_width / (near_width + far_width)  # eq. (32b)
         return np.sqrt(np.maximum(squared, 0.0))
 
 
 def _mean(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Mean of a function whose square is linear, from its values at both ends."""
+    """Mean of a function with a linear square, from the values at both ends."""
     total = a + b
-    return np.asarray(2 / 3 * (a * a + a * b + b * b) / np.where(total > 0, total, 1.0))
+    return np.asarray(2 / 3 * (a * a + a * b + b * b) / np.where(total > 0, total, 1.0))  # eq. (32a)
 
 
 def _first_moment(a: FloatArray, b: FloatArray) -> FloatArray:
@@ -293,46 +361,59 @@ def _first_moment(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(2 / 15 * cubes / (total * total))
 
 
+def _second_moment(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Second moment of such a function about its first end, over the length cubed."""
+    total = a + b
+    total = np.where(total > 0, total, 1.0)
+    powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
+    return np.asarray(2 / 105 * powers / (total * total * total))
+
+
 class _Piece(NamedTuple):
-    """Part of a function whose square is linear: its values at both ends, and how long it is over the cell."""
+    """Part of a function with a linear square: values at both ends, and length over the width of the cell."""
 
     first: FloatArray
     last: FloatArray
-    along: FloatArray
+    length: FloatArray
 
     @classmethod
-    def of(cls, a: FloatArray, b: FloatArray, along: FloatArray, length: FloatArray) -> _Piece:
-        """Return the first `along` of the `length` from `a` to `b`."""
-        squared = a * a + (b * b - a * a) * (along / np.where(length > 0, length, 1.0))
-        return cls(a, np.sqrt(np.maximum(squared, 0.0)), along)
+    def of(cls, a: FloatArray, b: FloatArray, length: FloatArray, total: FloatArray) -> _Piece:
+        """First part, of a `length`, of a piece of length `total` with the values `a` and `b` at its ends."""
+        squared = a * a + (b * b - a * a) * (length / np.where(total > 0, total, 1.0))
+        return cls(a, np.sqrt(np.maximum(squared, 0.0)), length)
 
     @property
     def force(self) -> FloatArray:
         """Integral over the piece."""
-        return self.along * _mean(self.first, self.last)
+        return self.length * _mean(self.first, self.last)
 
     @property
     def moment(self) -> FloatArray:
-        """First moment about where it begins."""
-        return self.along**2 * _first_moment(self.first, self.last)
+        """First moment about the start."""
+        return self.length**2 * _first_moment(self.first, self.last)
+
+    @property
+    def second_moment(self) -> FloatArray:
+        """Second moment about the start."""
+        return self.length**3 * _second_moment(self.first, self.last)
 
 
 def _sum_before(values: FloatArray) -> FloatArray:
-    """Sum what is before each cell of a row, and all of it."""
+    """Return sums over the cells before each cell of a row, and over all cells."""
     return np.asarray(np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0))))
 
 
 def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
-    """Value in the middle of a cell that gives it its mean, by Newton's method from above: the mean is convex in it."""
+    """Value in the middle of a cell with a given mean, by Newton's method: the mean is convex in the value."""
     value = 1.5 * mean
-    for _ in range(ITERATIONS):
+    for _ in range(8):
         excess = 0.5 * (_mean(first, value) + _mean(value, last)) - mean
         slope = sum((value**2 + 2 * value * face) / (value + face) ** 2 for face in (first, last)) / 3
         value = np.maximum(value - excess / slope, 1e-12 * mean)
     return np.asarray(value)
 
 
-def _other_face(mean: FloatArray, face: FloatArray) -> FloatArray:
-    """Value at the other end of a function whose square is linear, from its mean and one end."""
+def _opposite_face(mean: FloatArray, face: FloatArray) -> FloatArray:
+    """Value at one end of a function with a linear square, from the mean and the opposite end."""
     half = 0.5 * (1.5 * mean - face)
     return np.asarray(half + np.sqrt(np.maximum(half**2 + face * (1.5 * mean - face), 0.0)))

@@ -1,4 +1,4 @@
-"""Strips of load along y: the kernels that all nine displacements of the top are made of, and their integrals.
+"""Displacements of the top under loads on cells: the kernels of strips of load along y, and their integrals.
 
 ``k(X, Y)`` is the displacement at a distance X from a strip, differenced over a cell along y, and ``F'' = k`` its
 double primitive in X. With ``R**2 = X**2 + Y**2``:
@@ -10,17 +10,30 @@ double primitive in X. With ``R**2 = X**2 + Y**2``:
     of X Y / R**3:   k = -X / R,          F = -X R / 2 - Y**2 / 2 asinh(X / |Y|)
 
 (Love's rectangle integrated once more; terms that cancel in the differences are left out). The first three are even in
-X, the last two odd, so distances and their sign are enough.
+X, the last two odd: distances and their sign determine the kernels. ``P' = k`` is the
+corner function of a loaded rectangle.
+
+There are two observers: the centre of a uniform cell, ``P((m + 1/2) dx) - P((m - 1/2) dx)`` (eq. (39a)), and the
+mean over the width of a column, below. `Grid.observes_means` selects one. With forces ``f = w p`` per length of y (w:
+width of a column) the mean displacement of a column, at its centre along y, is
+
+    u_i = sum_j K_ij f_j,   K_ij = (1 / (w_i w_j)) int_i dx int_j dx' k(x - x', Y),   eq. (35)
+
+symmetric to the last bit for the normal displacement under a pressure. The integrals are mixed differences of F over
+the edges of the columns. A mirrored column lies at the sum of the distances from the mirror.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray, IntArray
+from contactstudy.kernels.convolution import even_spectrum, odd_spectrum
+from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, cell_kernel, mirrored_kernel
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import TINY
 
@@ -29,34 +42,16 @@ Function = Callable[[FloatArray, FloatArray], FloatArray]
 
 @dataclass(frozen=True)
 class Strip:
-    """Kernel of a strip of load along y, at ``X >= 0`` and ``Y > 0``, and what its integrals need.
+    """Kernel of a strip of load along y, at ``X >= 0`` and ``Y > 0``, with its integrals."""
 
-    Attributes
-    ----------
-    kernel : callable
-        ``k(X, Y)``, up to terms that do not depend on Y.
-    curvature : callable
-        ``d2k / dX2``.
-    slope : callable
-        ``dk / dX``.
-    primitive : callable
-        Primitive of k in X.
-    double_primitive : callable
-        Double primitive of k in X, up to terms that cancel in the differences.
-    sign_x, sign_y : int
-        1 or -1 if what the strip is made of is even or odd in X and in Y.
-    row : float or None
-        For one whose row of images grows without end: its integral over X is ``2 ln(2 X / Y) + row``.
-    """
-
-    kernel: Function
-    curvature: Function
-    slope: Function
-    primitive: Function
-    double_primitive: Function
-    sign_x: int
+    kernel: Function  # ``k(X, Y)``, up to terms that do not depend on Y
+    curvature: Function  # ``d2k / dX2``
+    primitive: Function  # primitive of k in X
+    double_primitive: Function  # double primitive of k in X, up to terms that cancel in the differences
+    sign_x: int  # 1 or -1 if the kernel of a point load is even or odd in X and in Y
     sign_y: int
     row: float | None = None
+    """For a kernel with a divergent row of images: the integral over X is ``2 ln(2 X / Y) + row``."""
 
 
 def _squared(x: FloatArray, y: FloatArray) -> FloatArray:
@@ -67,12 +62,11 @@ def _log(x: FloatArray, y: FloatArray) -> FloatArray:
     return np.asarray(0.5 * np.log(np.maximum(_squared(x, y), TINY)))
 
 
-INVERSE = Strip(
-    kernel=lambda x, y: np.arcsinh(y / x),
+INVERSE = Strip(  # of 1 / R
+    kernel=lambda x, y: np.arcsinh(y / x),  # eq. (36)
     curvature=lambda x, y: y * (2 * x * x + y * y) / (x * x * _squared(x, y) * np.hypot(x, y)),
-    slope=lambda x, y: -y / (x * np.hypot(x, y)),
     primitive=lambda x, y: x * np.arcsinh(y / x) + y * np.arcsinh(x / y),
-    double_primitive=lambda x, y: (
+    double_primitive=lambda x, y: (  # eq. (38)
         0.5 * x * x * np.arcsinh(y / np.maximum(x, TINY))
         + x * y * np.arcsinh(x / y)
         - 0.5 * y * x * x / (np.hypot(x, y) + y)
@@ -81,70 +75,251 @@ INVERSE = Strip(
     sign_y=1,
     row=0.0,
 )
-"""Of 1 / R."""
 
-ACROSS = Strip(
+SQUARE_X = Strip(  # of X**2 / R**3
     kernel=lambda x, y: y / np.hypot(x, y),
     curvature=lambda x, y: y * (2 * x * x - y * y) / np.hypot(x, y) ** 5,
-    slope=lambda x, y: -x * y / np.hypot(x, y) ** 3,
     primitive=lambda x, y: y * np.arcsinh(x / y),
-    # less its value at X = 0, which cancels
+    # without its value at X = 0, which cancels
     double_primitive=lambda x, y: x * y * np.arcsinh(x / y) - y * x * x / (np.hypot(x, y) + y),
     sign_x=1,
     sign_y=1,
     row=-2.0,
 )
-"""Of X**2 / R**3."""
 
-AHEAD = Strip(
-    kernel=_log,
+GRADIENT_Y = Strip(  # of Y / R**2
+    kernel=_log,  # eq. (36)
     curvature=lambda x, y: (y * y - x * x) / _squared(x, y) ** 2,
-    slope=lambda x, y: x / _squared(x, y),
     primitive=lambda x, y: x * _log(x, y) + y * np.arctan2(x, y),
-    double_primitive=lambda x, y: (
+    double_primitive=lambda x, y: (  # eq. (39)
         0.5 * x * x * _log(x, y) + x * y * np.arctan2(x, y) - 0.25 * y * y * np.log1p((x / y) ** 2)
     ),
     sign_x=1,
     sign_y=-1,
 )
-"""Of Y / R**2."""
 
-BESIDE = Strip(
+GRADIENT_X = Strip(  # of X / R**2
     kernel=lambda x, y: np.arctan2(y, x),
     curvature=lambda x, y: 2 * x * y / _squared(x, y) ** 2,
-    slope=lambda x, y: -y / _squared(x, y),
     primitive=lambda x, y: x * np.arctan2(y, x) + y * _log(x, y),
     double_primitive=lambda x, y: 0.5 * x * x * np.arctan2(y, x) + x * y * _log(x, y) + 0.5 * y * y * np.arctan2(x, y),
     sign_x=-1,
     sign_y=1,
 )
-"""Of X / R**2."""
 
-DIAGONAL = Strip(
+MIXED = Strip(  # of X Y / R**3
     kernel=lambda x, y: -x / np.hypot(x, y),
     curvature=lambda x, y: 3 * x * y * y / np.hypot(x, y) ** 5,
-    slope=lambda x, y: -y * y / np.hypot(x, y) ** 3,
     primitive=lambda x, y: -x * x / (np.hypot(x, y) + y),
     double_primitive=lambda x, y: -0.5 * x * np.hypot(x, y) - 0.5 * y * y * np.arcsinh(x / y),
     sign_x=-1,
     sign_y=-1,
 )
-"""Of X Y / R**3."""
 
 P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
 
 
-def strips_of(response: Response, poisson: float) -> tuple[tuple[float, Strip], ...]:
-    """Return strips, with factors, whose sum is ``4 pi G u`` (surface.py)."""
+Strips = tuple[tuple[float, Strip], ...]  # strips and their factors in a sum
+
+
+def strips_of(response: Response, poisson: float) -> Strips:
+    """Return strips, with factors, whose sum is ``4 pi G u`` (Cerruti; Johnson, Contact Mechanics, section 3.6)."""
+    # With the potentials V, chi, Theta of patch.py: u_z[p] = 2 (1 - nu) V, u_x[p] = -(1 - 2 nu) chi_x = -u_z[q_x],
+    # u_x[q_x] = 2 V + 2 nu Theta_xx, u_y[q_x] = u_x[q_y] = 2 nu Theta_xy, and with x and y exchanged.
     free = 1 - 2 * poisson
     return {
         Response(P, P): ((2 * (1 - poisson), INVERSE),),
-        Response(X, X): ((2 * (1 - poisson), INVERSE), (2 * poisson, ACROSS)),
-        Response(Y, Y): ((2.0, INVERSE), (-2 * poisson, ACROSS)),
-        Response(P, X): ((free, BESIDE),),
-        Response(P, Y): ((free, AHEAD),),
-        Response(X, P): ((-free, BESIDE),),
-        Response(Y, P): ((-free, AHEAD),),
-        Response(X, Y): ((2 * poisson, DIAGONAL),),
-        Response(Y, X): ((2 * poisson, DIAGONAL),),
+        Response(X, X): ((2 * (1 - poisson), INVERSE), (2 * poisson, SQUARE_X)),
+        Response(Y, Y): ((2.0, INVERSE), (-2 * poisson, SQUARE_X)),
+        Response(P, X): ((free, GRADIENT_X),),
+        Response(P, Y): ((free, GRADIENT_Y),),
+        Response(X, P): ((-free, GRADIENT_X),),
+        Response(Y, P): ((-free, GRADIENT_Y),),
+        Response(X, Y): ((2 * poisson, MIXED),),
+        Response(Y, X): ((2 * poisson, MIXED),),
     }[response]
+
+
+def corner_function(strips: Strips) -> CornerFunction:
+    """Corner function of a loaded rectangle: the sum of the strips' primitives, of signed offsets X and Y."""
+
+    def corner(x: FloatArray, y: FloatArray) -> FloatArray:
+        distance_x, distance_y = np.maximum(np.abs(x), TINY), np.maximum(np.abs(y), TINY)
+        total = np.zeros(np.broadcast_shapes(x.shape, y.shape))
+        for factor, strip in strips:
+            values = factor * strip.primitive(distance_x, distance_y)
+            # P is odd in X where k is even, and k is odd in Y where its density is even.
+            values = values * np.sign(x) if strip.sign_x > 0 else values
+            total += values * np.sign(y) if strip.sign_y > 0 else values
+        return total
+
+    return corner
+
+
+def row_level(strips: Strips, image: int, length: float, reference: float) -> float:
+    """Return the ``4 pi G u`` per load that makes the displacement beside a row of images zero at the reference."""
+    if image < 0:
+        return 0.0
+    logarithm = np.log(2 * FAR_LIMIT * length / reference)
+    return float(
+        sum(-factor * (logarithm + 0.5 * strip.row) / length for factor, strip in strips if strip.row is not None)
+    )
+
+
+def surface_kernel(
+    response: Response,
+    poisson: float,
+    x: FloatArray,
+    y: FloatArray,
+    cell: tuple[float, float],
+    *,
+    length: float = np.inf,
+    reference: float = np.inf,
+) -> FloatArray:
+    """Displacement times ``4 pi G`` of the surface from a unit load on one cell, at uniform offsets: array (x, y)."""
+    strips = strips_of(response, poisson)
+    if np.isinf(length):
+        return cell_kernel(corner_function(strips), x, y, *cell)  # eq. (39a)
+    level = row_level(strips, response.load.sign_x, length, reference)
+    return mirrored_kernel(corner_function(strips), x, y, *cell, length) + cell[0] * cell[1] * level
+
+
+FAR_COLUMNS = 24.0
+"""Distance of two columns, over the wider one, for an expansion about their centres. Accuracy: there the difference of
+F loses more digits than the expansion neglects."""
+
+IMAGE_POINTS = 16  # Chebyshev points along x of the interpolated far images, for both columns. Accuracy.
+BLOCK = 16_384  # distances along x and y per evaluation. Speed: the values fit into the processor's cache.
+
+
+@dataclass(frozen=True)
+class Lateral:
+    """Cells along y: values at their edges to the transform on twice as many cells."""
+
+    dy: float  # cell size along y, metres
+    cells: int
+    even: bool  # whether the kernel is even in y; the transform of an odd kernel lacks its factor i
+
+    @property
+    def edges(self) -> FloatArray:
+        """Offsets half a cell beyond 0, 1, 2, ... cells, metres."""
+        return np.asarray((np.arange(self.cells + 1) + 0.5) * self.dy)
+
+    @property
+    def matrix(self) -> FloatArray:
+        """Matrix (edge, wavenumber) that takes the difference over each cell and its transform."""
+        numbers = np.arange(self.cells + 1)
+        phase = np.pi * np.outer(numbers, numbers) / self.cells
+        difference = np.eye(self.cells + 1) - np.eye(self.cells + 1, k=-1)
+        if self.even:  # F is odd in Y: the difference over the first cell is twice its value
+            difference[0, 0] = 2.0
+            ends = np.full(self.cells + 1, 2.0)
+            ends[[0, -1]] = 1.0
+            return np.asarray(difference.T @ (ends[:, None] * np.cos(phase)))
+        difference[0, 0] = 0.0
+        ends = np.full(self.cells + 1, -2.0)
+        ends[[0, -1]] = 0.0
+        return np.asarray(difference.T @ (ends[:, None] * np.sin(phase)))
+
+
+@dataclass(frozen=True)
+class ColumnsRequest:
+    """Edges, cells and mirrors of columns."""
+
+    edges: FloatArray  # (cell + 1): edges of the columns, metres
+    dy: float  # cell size along y and number of cells
+    cells_y: int
+    extent: tuple[float, float]  # positions of the mirrors, metres; infinite for none
+    reference: float = np.inf
+    """With two mirrors: distance along y at which a displacement that grows with distance is zero, metres."""
+
+    def kernel(self, response: Response, poisson: float) -> FloatArray:
+        """Mean displacement, times ``4 pi G``, of columns per force on columns and images: (wavenumber, cell, cell)."""
+        return self.influence(strips_of(response, poisson), response.load.sign_x)
+
+    def influence(self, strips: Strips, image: int) -> FloatArray:
+        """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
+        edges, (low, high) = self.edges, self.extent
+        lateral = Lateral(self.dy, self.cells_y, strips[0][1].sign_y > 0)
+        pairs = _Pairs.of(edges, lateral)
+        for factor, strip in strips:
+            pairs.add(factor, strip, np.subtract.outer(edges, edges))
+            if np.isfinite(low):
+                pairs.add(image * factor, strip, np.add.outer(edges - low, edges - low), image=True)
+            if np.isfinite(high):
+                from_high = np.add.outer(high - edges, high - edges)
+                pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
+        kernel = pairs.transformed()
+        if np.isfinite(low) and np.isfinite(high):
+            images = FarImages(high - low, image, IMAGE_POINTS)
+            level = row_level(strips, image, high - low, self.reference)
+            offsets = self.dy * np.arange(self.cells_y + 1.0)
+            far = images.influence(corner_function(strips), offsets, self.dy, np.array(level))
+            spectrum = even_spectrum(far) if lateral.even else odd_spectrum(far)
+            means = images.means(edges - low)
+            kernel += means.T @ np.ascontiguousarray(spectrum.transpose(2, 0, 1)) @ means
+        return kernel
+
+
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """Sum of influences between columns, before the transform along y."""
+
+    widths: FloatArray  # widths of the columns, metres
+    lateral: Lateral  # cells along y
+    total: FloatArray  # (cell, cell, offset): the sum, contiguous along y
+    table: FloatArray  # (edge, edge, offset): memory for double primitives
+
+    @classmethod
+    def of(cls, edges: FloatArray, lateral: Lateral) -> _Pairs:
+        """Zero influence between columns with these edges."""
+        count, offsets = edges.size, lateral.edges.size
+        total, table = (np.zeros((size, size, offsets)) for size in (count - 1, count))
+        return cls(np.diff(edges), lateral, total, table)
+
+    def add(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
+        """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""
+        widths, total, table, y = self.widths, self.total, self.table, self.lateral.edges
+        separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
+        far = np.tril(separation > FAR_COLUMNS * np.maximum.outer(widths, widths))
+        # Edges of columns near each other.
+        near = np.zeros(distances.shape, bool)
+        for corner in product((slice(None, -1), slice(1, None)), repeat=2):
+            near[corner] |= np.tril(~far)
+        backwards = 1 if image else strip.sign_x
+        for rows, columns in _blocks(near | near.T, y.size):
+            values = strip.double_primitive(distances[rows, columns, None], y)
+            table[columns, rows] = backwards * values
+            table[rows, columns] = values
+        # The edges of an image run backwards; eq. (37).
+        factors = np.where(far | far.T, 0.0, -factor if image else factor) / (widths[:, None] * widths)
+        step = max(1, BLOCK // (widths.size * y.size))
+        for start in range(0, widths.size, step):
+            stop = min(start + step, widths.size)
+            lower, upper = slice(start, stop), slice(start + 1, stop + 1)
+            part = table[upper, :-1] + table[lower, 1:]
+            part -= table[upper, 1:]
+            part -= table[lower, :-1]
+            part *= factors[lower, :, None]
+            total[lower] += part
+        for rows, columns in _blocks(far, y.size):
+            x, squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
+            # Expansion of eq. (35) about the centres, to fourth order.
+            values = factor * (strip.kernel(x, y) + squares / 24 * strip.curvature(x, y))
+            total[rows, columns] += values
+            above = rows > columns  # the image of a column may be far from the column
+            total[columns[above], rows[above]] += backwards * values[above]
+
+    def transformed(self) -> FloatArray:
+        """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
+        cells = self.widths.size
+        flat = self.total.reshape(cells**2, -1)
+        return np.asarray((self.lateral.matrix.T @ flat.T).reshape(-1, cells, cells))
+
+
+def _blocks(marked: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
+    """Yield blocks of marked pairs below the diagonal and on it."""
+    rows, columns = np.nonzero(np.tril(marked))
+    step = max(1, BLOCK // offsets)
+    for start in range(0, rows.size, step):
+        yield rows[start : start + step], columns[start : start + step]

@@ -2,14 +2,28 @@
 
 In H every load is extended evenly about both ends, so it is a sum of modes ``cos(k_n x)``, ``k_n = n pi / L``. Modes
 with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``parity = +1, -1``) never mix. The first
-few terms are summed as they stand; for the others the sum is turned into an integral along a ray that leaves the real
-axis (Abel and Plana's formula): with ``g`` analytic and real on the real axis,
+few terms form a sum; the others an integral along a ray from the real axis (formula of Abel and Plana): with ``g``
+analytic and real on the real axis,
 
     sum_n g(k_n) cos(k_n x) = Re int_ray g(k) e(k) L dk / (2 pi),
     e(k) = [exp(i k x) + parity exp(i k (L - x))] / (1 - parity exp(i k L)).
 
-The two exponentials are the contributions seen from either end, and both decay along the ray. A quarter space is the
-limit of one end only: the ray starts at ``k = 0`` and the second exponential is gone (``parity = 0``).
+Both exponentials, the contributions of the two ends, decay along the ray. A quarter space has one end: the ray starts
+at ``k = 0`` without the second exponential (``parity = 0``).
+
+The single-mirror scheme serves comparisons. H carries ``P_h1`` on 0 .. L and its mirror images on -L .. 0 and L .. 2L;
+V1 and V2 are half-spaces with their faces at x = 0 and x = L, each mirrored at the top. The equation set contains the
+load on the top and the normal stress on the ends, with the stress of the opposite half-space; some shear remains on
+the ends (Z. M. Zhang, W. Wang, P. L. Wong, An explicit solution for the elastic quarter-space problem in matrix
+formulation, Int. J. Solids Struct. 50 (2013) 976, for two ends). It differs from the exact set in three terms:
+
+* H's normal stress on end I comes from a load and its image, and from the second image alone: per load at x' it is
+  ``exp(i k x') (1 + parity exp(i k L) / 2)``, the first terms of the exact geometric series;
+* a face load ``S`` meets the normal stress ``parity (1 + kappa L) exp(-kappa L) S`` of the opposite half-space, so
+  ``T = 1 / (1 + parity (1 + kappa L) exp(-kappa L))``;
+* the load of V on the top, ``K(x) = exp(-kappa x) (a - b kappa x)`` with ``b = k_z**2 / kappa**2`` and
+  ``a = b + 2 nu k_y**2 / kappa**2``, acts on H between 0 and L only: its spectrum lacks the tail beyond L and has an
+  image.
 """
 
 from __future__ import annotations
@@ -24,33 +38,19 @@ from contactstudy.cache import ArrayKey
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
-from contactstudy.overlapping.slab import slab_factors
 
 
 @dataclass(frozen=True, eq=False)
 class AxialModes:
-    """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them.
+    """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them."""
 
-    Attributes
-    ----------
-    length : float
-        Distance between the ends, metres; infinite for a quarter space.
-    parity : int
-        +1 or -1 for loads even or odd about mid-length, 0 for one end only.
-    discrete : array
-        Wavenumbers ``k_n`` that are summed one by one, 1/m.
-    ray, weights : complex array
-        Nodes and weights of the rest, 1/m.
-    reach : float
-        Distance from the end beyond which nothing counts at these wavenumbers, metres; infinite with two ends.
-    """
-
-    length: float
-    parity: int
-    discrete: FloatArray
-    ray: ComplexArray
+    length: float  # distance between the ends, metres; infinite for a quarter space
+    parity: int  # +1 or -1 for loads even or odd about mid-length, 0 for one end only
+    discrete: FloatArray  # wavenumbers ``k_n`` that are summed one by one, 1/m
+    ray: ComplexArray  # nodes and weights of the rest, 1/m
     weights: ComplexArray
     reach: float = np.inf
+    """Distance from the end beyond which waves of these wavenumbers are negligible, metres; infinite with two ends."""
 
     @cached_property
     def _identity(self) -> tuple[Hashable, ...]:
@@ -58,11 +58,9 @@ class AxialModes:
         return type(self), self.length, self.parity, self.reach, *(ArrayKey(array) for array in arrays)
 
     def __eq__(self, other: object) -> bool:
-        """Whether all wavenumbers and weights are the same."""
         return isinstance(other, AxialModes) and self._identity == other._identity
 
     def __hash__(self) -> int:
-        """Hash of the wavenumbers and weights."""
         return hash(self._identity)
 
     @property
@@ -73,39 +71,30 @@ class AxialModes:
     @property
     def load_weights(self) -> ComplexArray:
         """Factor from ``int P(x) cosine(x) dx`` to the weighted spectrum of P."""
-        single = np.where(self.discrete == 0, 1.0, 2.0) / self.length
+        single = np.where(self.discrete == 0, 1.0, 2.0) / self.length  # eq. (7)
         return np.concatenate([single, self.weights * (1 if self.parity else 2) / np.pi])
 
     @property
     def face_weights(self) -> ComplexArray:
-        """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of what they leave on top."""
+        """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of their load on the top."""
         return self.load_weights * (4 if self.parity else 2)
 
-    def left_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
-        """Weighted spectrum of what V leaves on the top per scaled face load: array (wavenumber, depth).
-
-        Parameters
-        ----------
-        core : complex array (depth, wavenumber)
-            Coupling core ``M`` of equations.py.
-        depth : array
-            Depth wavenumbers ``k_z``, 1/m.
-        lateral, poisson : float
-            Wavenumber ``k_y``, 1/m, and Poisson's ratio.
-        """
-        return np.asarray(self.face_weights[:, None] * core.T)
+    def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
+        """Weighted spectrum of the load of V on the top per scaled face load: array (wavenumber, depth)."""
+        return np.asarray(self.face_weights[:, None] * core.T)  # eq. (23), without T / kappa
 
     def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
-        """Factor ``T`` on what a normal stress freed on the ends leaves on the top."""
+        """Factor ``T``: load on the top per normal stress removed from the ends."""
         return slab_factors(kappa, self.length, self.parity)[0]
 
     def applied(self, kappa: ComplexArray) -> ComplexArray:
         """Load on a face per normal stress freed there."""
         return np.ones_like(kappa)
 
-    def beside_face(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
-        """Amplitude of V's harmonic from either face per normal stress freed there, and its ``tau`` (slab.py)."""
+    def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Amplitude of V's harmonic from either face per normal stress removed, and its ``tau``."""
         factor, tau = slab_factors(kappa, self.length, self.parity)
+        # eq. (25), the slab of eqs. (19) and (20) as two waves
         return factor / (1 - self.parity * np.exp(-kappa * self.length) if self.parity else 1.0), tau
 
     @property
@@ -113,28 +102,28 @@ class AxialModes:
         """``cosine(0)``: from weighted spectrum to the value on end I."""
         return self.cosine(np.zeros(1))[:, 0]
 
-    def _seen_from_both_ends(self, x: FloatArray, sign: int) -> ComplexArray:
+    def _waves_of_ends(self, x: FloatArray, sign: int) -> ComplexArray:
         near = np.exp(1j * np.outer(self.ray, x))
         if not self.parity:
             return np.asarray(np.where(x > self.reach, 0.0, near))
         far = np.exp(1j * np.outer(self.ray, self.length - x))
-        closing = 1 - self.parity * np.exp(1j * self.ray * self.length)
+        closing = 1 - self.parity * np.exp(1j * self.ray * self.length)  # eq. (31)
         return np.asarray((near + sign * self.parity * far) / closing[:, None])
 
     def cosine(self, x: FloatArray) -> ComplexArray:
-        """Return what stands for ``cos(k x)`` at positions `x`: array (wavenumber, x)."""
-        return np.concatenate([np.cos(np.outer(self.discrete, x)), self._seen_from_both_ends(x, +1)])
+        """Return waves ``cos(k x)``, on the ray the sum of both ends, at positions `x`: array (wavenumber, x)."""
+        return np.concatenate([np.cos(np.outer(self.discrete, x)), self._waves_of_ends(x, +1)])
 
     def sine(self, x: FloatArray) -> ComplexArray:
-        """Return what stands for ``sin(k x)`` at positions `x`: array (wavenumber, x)."""
-        return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._seen_from_both_ends(x, -1)])
+        """Return waves ``sin(k x)``, on the ray the sum of both ends, at positions `x`: array (wavenumber, x)."""
+        return np.concatenate([np.sin(np.outer(self.discrete, x)), -1j * self._waves_of_ends(x, -1)])
 
     def wave(self, load: Load, x: FloatArray) -> ComplexArray:
         """Waves that a load in one direction is a sum of: `cosine`, or `sine` for one that its image reverses."""
         return self.cosine(x) if load.sign_x > 0 else self.sine(x)
 
     def cell_integrals(self, load: Load, edges: FloatArray) -> ComplexArray:
-        """Integrals of `wave` over the cells between `edges`: array (wavenumber, cell)."""
+        """Integrals of `wave` over the cells between `edges`, as in eq. (7): array (wavenumber, cell)."""
         edges = np.minimum(edges, self.reach)
         k = np.where(self.wavenumbers == 0, 1.0, self.wavenumbers)[:, None]
         if load.sign_x < 0:
@@ -147,30 +136,12 @@ class AxialModes:
 DECAY_LENGTHS = 14.0
 """Decay lengths from the corner beyond which a wavenumber along y adds nothing: exp(-14) = 8e-7. Accuracy."""
 
-SEPARATE_ENDS = 20.0
-"""Decay lengths beyond which the two ends do not affect each other: exp(-20) = 2e-9. Accuracy."""
+SEPARATE_ENDS = 20.0  # decay lengths beyond which the two ends do not affect each other: exp(-20) = 2e-9. Accuracy.
 
 
 def axial_modes(length: float, lateral: float, shortest: float, resolution: Resolution) -> list[AxialModes]:
-    """Axial modes of a body for wavenumbers along y from `lateral` on.
-
-    Parameters
-    ----------
-    length : float
-        Distance between the ends, metres; infinite for a quarter space.
-    lateral : float
-        Smallest wavenumber along y that they serve, 1/m.
-    shortest : float
-        Shortest distance that matters, metres; it bounds the ray.
-    resolution : Resolution
-        Quadrature settings.
-
-    Returns
-    -------
-    list of AxialModes
-        Even and odd for two ends; one entry, with infinite length and parity 0, for a quarter space and for ends too
-        far apart to know of each other, each of which is then a quarter space.
-    """
+    """Axial modes for wavenumbers along y from `lateral` on: even and odd; of parity 0 for a single or far end."""
+    # `shortest` is the least distance that matters; it bounds the ray.
     last = max(resolution.reach / shortest, 4 * lateral)
     if lateral * length > SEPARATE_ENDS:
         reach = DECAY_LENGTHS / lateral
@@ -178,10 +149,87 @@ def axial_modes(length: float, lateral: float, shortest: float, resolution: Reso
         return [AxialModes(np.inf, 0, np.zeros(0), ray, weights, reach)]
     spacing = np.pi / length
     # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
-    start = (resolution.modes - 0.5) * spacing
+    start = (resolution.modes - 0.5) * spacing  # eq. (32)
     ray, weights = ray_nodes(0.5 * spacing, last, resolution)
     numbers = np.arange(resolution.modes)
     return [
         AxialModes(length, parity, spacing * numbers[numbers % 2 == remainder], start + ray, weights)
         for parity, remainder in ((1, 0), (-1, 1))
     ]
+
+
+def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -> tuple[ComplexArray, ComplexArray]:
+    """Factors ``T`` and ``tau`` of a slab; 1 and 0 for a half-space."""
+    # With ``t = kappa length / 2``: even parity ``T = 2 sinh(t)**2 / (sinh(2t) + 2t)``, ``tau = t (coth(t) - 1)``; odd
+    # parity ``T = 2 cosh(t)**2 / (sinh(2t) - 2t)``, ``tau = t (tanh(t) - 1)``.
+    if not parity:
+        return np.ones(kappa.shape, np.complex128), np.zeros(kappa.shape, np.complex128)
+    doubled = np.asarray(kappa * length, dtype=np.complex128)
+    decay = np.exp(-doubled)
+    denominator = 1 - decay**2 + parity * 2 * doubled * decay
+    if parity < 0:  # bending: sinh(2t) - 2t would cancel
+        square = doubled**2
+        series = 1 + square / 20 * (1 + square / 42 * (1 + square / 72 * (1 + square / 110)))
+        denominator = np.where(np.abs(doubled) < 0.5, decay * doubled**3 / 3 * series, denominator)
+    factor = (1 - parity * decay) ** 2 / denominator  # eq. (24)
+    return factor, parity * doubled * decay / (1 - parity * decay)
+
+
+@dataclass(frozen=True, eq=False)
+class SingleMirrorModes(AxialModes):
+    """Axial wavenumbers of one parity when loads are mirrored once; all lie on the ray."""
+
+    @property
+    def load_weights(self) -> ComplexArray:
+        """Factor from ``int P(x) cosine(x) dx`` to the weighted spectrum of P and its two images at end I."""
+        second_image = 0.5 * self.parity * np.exp(1j * self.ray * self.length)
+        return np.asarray(self.weights / np.pi * (1 + second_image))
+
+    def _waves_of_ends(self, x: FloatArray, sign: int) -> ComplexArray:
+        near = np.exp(1j * np.outer(self.ray, x))
+        far = np.exp(1j * np.outer(self.ray, self.length - x))
+        return np.asarray(near + sign * self.parity * far)
+
+    def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
+        """Weighted spectrum of the load of V1 and V2 on 0 .. L and of its two images: array (wavenumber, depth)."""
+        length, k = self.length, self.ray[:, None]
+        kappa = np.sqrt(depth**2 + lateral**2)
+        b = (depth / kappa) ** 2
+        a = b + 2 * poisson * (lateral / kappa) ** 2
+        across, decay = np.exp(1j * k * length), np.exp(-kappa * length)
+        far_value = a - b * kappa * length
+        # int_0^inf K(L + x) exp(i k x) dx: the tail that is not there, on either side
+        decreasing = kappa - 1j * k
+        tail = decay * (far_value - b * kappa / decreasing) / decreasing
+        # int_0^L K(x) exp(i k (L - x)) dx: V1's load in the image beyond end II, V2's in that beyond end I
+        increasing = kappa + 1j * k
+        image = (across * (a - b * kappa / increasing) - decay * (far_value - b * kappa / increasing)) / increasing
+        truncation = self.parity * (image - tail) - across * tail
+        return np.asarray(self.weights[:, None] / np.pi * (4 * core.T + kappa * truncation))
+
+    def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
+        """Factor ``T``: the load on a face per normal stress removed."""
+        scaled = np.asarray(kappa * self.length, dtype=np.complex128)
+        decay = np.exp(-scaled)
+        if self.parity > 0:
+            return np.asarray(1 / (1 + (1 + scaled) * decay))
+        return np.asarray(1 / (-np.expm1(-scaled) - scaled * decay))
+
+    def applied(self, kappa: ComplexArray) -> ComplexArray:
+        """Load on a face per normal stress removed: the opposite half-space removes a part."""
+        return self.face_factor(kappa)
+
+    def face_amplitude(self, kappa: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Amplitude of either half-space's harmonic per normal stress removed, and ``tau = 0``."""
+        return self.face_factor(kappa), np.zeros_like(kappa)
+
+
+def modes_between_ends(
+    length: float, lateral: float, shortest: float, resolution: Resolution, *, mirrored_once: bool
+) -> list[AxialModes]:
+    """Axial modes as `axial_modes` makes them, or with loads mirrored once; far ends are quarter spaces in both."""
+    if not mirrored_once or lateral * length > SEPARATE_ENDS:
+        return axial_modes(length, lateral, shortest, resolution)
+    last = max(resolution.reach / shortest, 4 * lateral)
+    ray, weights = ray_nodes(lateral / 36, last, resolution)
+    return [SingleMirrorModes(length, parity, np.zeros(0), ray, weights) for parity in (1, -1)]

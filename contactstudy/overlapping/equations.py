@@ -4,9 +4,9 @@ With the weighted spectra of axial.py, ``D = k_x**2 + k_y**2 + k_z**2`` and the 
 
     M(k_x, k_z) = k_x**2 k_z**2 / D**2 + nu k_y**2 / D
 
-a top load ``P`` leaves on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and
-a face load ``S`` leaves on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
-``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` tells the slab from a half-space. The ends are
+a top load ``P`` has on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and
+a face load ``S`` has on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
+``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` is the factor of the slab (axial.py). The ends are
 free when
 
     S = (4/pi) sum (M / k) (P + R),    R = int (4 M T / kappa) S dk_z,
@@ -24,7 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import linalg
 
-from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes
 from contactstudy.overlapping.quadrature import (
@@ -43,7 +43,7 @@ def coupling_core(
     inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
     """Core ``M(k_x, k_z)``, from ``1 / D``: array (depth, axial)."""
-    core = (depth * depth)[:, None] * inverse
+    core = (depth * depth)[:, None] * inverse  # eq. (17)
     core *= axial * axial
     core += poisson * lateral**2
     core *= inverse
@@ -55,6 +55,7 @@ def normal_on_end(
 ) -> ComplexArray:
     """Face load that frees the end from a unit top pressure, from ``1 / D``: array (depth, axial)."""
     k = np.sqrt(axial * axial + lateral**2)
+    # eq. (16), from the transforms of eq. (15)
     return np.asarray(coupling_core(inverse, axial, depth, lateral, poisson) * (4 / np.pi / k))
 
 
@@ -64,6 +65,7 @@ def lateral_on_end(
     """Face load that frees the end from a unit top traction along y, without its factor i: array (depth, axial)."""
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     k2 = axial2 + lateral**2
+    # eq. (18)
     bracket = 2 * poisson * lateral**2 - axial2 * (k2 - depth2) * inverse
     bracket *= inverse
     bracket *= -(2 / np.pi) * lateral / k2
@@ -73,13 +75,12 @@ def lateral_on_end(
 def axial_on_end(
     inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
-    """Face load that frees the end from a unit top traction along x, a sine series: array (depth, axial).
-
-    The traction leaves ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (the column of
-    `lateral_on_end` with x and y exchanged), of which this is the cosine transform along z, reversed.
-    """
+    """Face load that frees the end from a unit top traction along x, a sine series: array (depth, axial)."""
+    # The traction makes ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end
+    # (`lateral_on_end` with x and y exchanged), with the cosine transform along z of opposite sign.
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     k2 = axial2 + lateral**2
+    # eq. (29a)
     bracket = 2 * (k2 + poisson * lateral**2) - axial2 * (k2 - depth2) * inverse
     bracket *= inverse
     bracket *= -(2 / np.pi) * axial / k2
@@ -90,64 +91,65 @@ ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_X: axial_on_end, Load.ALONG_Y: 
 """Face load that frees the end from a unit load on the top, by its direction."""
 
 
-def real_product(left: ComplexArray, right: ComplexArray) -> FloatArray:
+def real_product(first: ComplexArray, second: ComplexArray) -> FloatArray:
     """Real part of ``left @ right`` over the last axis of `left` and the first of `right`, as one real product."""
-    # Real and imaginary parts lie side by side in memory; those of the conjugate are reversed where they multiply.
-    flat_left = np.ascontiguousarray(left).reshape(-1, left.shape[-1]).view(np.float64)
-    flat_right = np.ascontiguousarray(right.reshape(right.shape[0], -1).T.conj()).view(np.float64)
-    return np.asarray((flat_left @ flat_right.T).reshape(*left.shape[:-1], *right.shape[1:]))
+    # Real and imaginary parts alternate in memory: the product with the conjugate is the real part.
+    flat_first = np.ascontiguousarray(first).reshape(-1, first.shape[-1]).view(np.float64)
+    flat_second = np.ascontiguousarray(second.reshape(second.shape[0], -1).T.conj()).view(np.float64)
+    return np.asarray((flat_first @ flat_second.T).reshape(*first.shape[:-1], *second.shape[1:]))
+
+
+class Factorisation:
+    """LU factors of a matrix, read-only: ``scipy.linalg.lu_solve`` changes its pivots during the call (SciPy 1.17)."""
+
+    def __init__(self, matrix: FloatArray) -> None:
+        self._factors, pivots = linalg.lu_factor(matrix)
+        rows = list(range(len(pivots)))
+        for row, pivot in enumerate(pivots.tolist()):
+            rows[row], rows[pivot] = rows[pivot], rows[row]
+        self._rows: IntArray = np.array(rows)
+
+    def solve(self, right: FloatArray) -> FloatArray:
+        """Solution (row, column) of the equations with right sides (row, column)."""
+        lower = linalg.blas.dtrsm(1.0, self._factors, right[self._rows], lower=1, diag=1)
+        return np.asarray(linalg.blas.dtrsm(1.0, self._factors, lower))
+
+    def solve_transposed(self, right: FloatArray) -> FloatArray:
+        """Solution (row, column) of the equations of the transposed matrix."""
+        upper = linalg.blas.dtrsm(1.0, self._factors, right, trans_a=1)
+        solution = np.empty(right.shape)
+        solution[self._rows] = linalg.blas.dtrsm(1.0, self._factors, upper, lower=1, diag=1, trans_a=1)
+        return solution
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        return int(self._factors.nbytes + self._rows.nbytes)
 
 
 class AuxiliaryLoads(NamedTuple):
-    """Loads on the auxiliary bodies, for one wavenumber along y.
-
-    Attributes
-    ----------
-    equivalent : complex array (wavenumber, column)
-        Weighted spectrum, before `AxialModes.cosine`, of the load that is added on the top of H.
-    depth : complex array
-        Depth wavenumbers on their ray, where the face loads are an analytic function.
-    face_load : complex array (depth, column)
-        Normal stress freed on the faces of V, times the quadrature's weights.
-    """
+    """Loads on the auxiliary bodies, for one wavenumber along y."""
 
     equivalent: ComplexArray
-    depth: ComplexArray
-    face_load: ComplexArray
+    """(wavenumber, column): weighted spectrum, before `AxialModes.cosine`, of the load that is added on the top of
+    H."""
+    depth: ComplexArray  # depth wavenumbers on their ray, where the face loads are an analytic function
+    face_load: ComplexArray  # (depth, column): normal stress freed on the faces of V, times the quadrature's weights
 
 
 @dataclass(frozen=True, eq=False)
 class EquationSet:
-    """The equation set for one wavenumber along y and one parity, factorised.
+    """The equation set for one wavenumber along y and one parity, factorised."""
 
-    Attributes
-    ----------
-    modes : AxialModes
-        Axial wavenumbers.
-    lateral : float
-        Wavenumber ``k_y``, 1/m.
-    poisson : float
-        Poisson's ratio.
-    depth : array
-        Depth wavenumbers ``k_z``, 1/m.
-    scale : array
-        ``T dk_z / kappa`` at the depth nodes.
-    core : complex array (depth, wavenumber)
-        Coupling core ``M`` between depth nodes and axial wavenumbers.
-    top : complex array (wavenumber, depth)
-        Weighted spectrum, before `AxialModes.cosine`, of what a scaled face load leaves on the top.
-    factor : tuple of array
-        Factorised matrix ``1 / scale - N`` of the set.
-    """
-
-    modes: AxialModes
-    lateral: float
+    modes: AxialModes  # axial wavenumbers
+    lateral: float  # wavenumber ``k_y``, 1/m
     poisson: float
-    depth: FloatArray
-    scale: FloatArray
-    core: ComplexArray
+    depth: FloatArray  # depth wavenumbers ``k_z``, 1/m
+    scale: FloatArray  # ``T dk_z / kappa`` at the depth nodes
+    core: ComplexArray  # (depth, wavenumber): coupling core ``M`` between depth nodes and axial wavenumbers
     top: ComplexArray
-    factor: tuple[FloatArray, FloatArray]
+    """(wavenumber, depth): weighted spectrum, before `AxialModes.cosine`, of the top load from a scaled face load."""
+    factorisation: Factorisation  # of the set's matrix ``1 / scale - N``
 
     @classmethod
     def build(
@@ -161,69 +163,66 @@ class EquationSet:
         axial = modes.wavenumbers
         core = coupling_core(inverse_square(axial, depth, lateral), axial, depth, lateral, poisson)
         k = np.sqrt(axial**2 + lateral**2)
-        top = modes.left_on_top(core, depth, lateral, poisson)
+        top = modes.load_on_top(core, depth, lateral, poisson)
         end = core * (4 / np.pi / k * modes.on_end)
-        matrix = np.diag(1 / scale) - real_product(end, top)
-        return cls(modes, lateral, poisson, depth, scale, core, top, linalg.lu_factor(matrix))
+        matrix = np.diag(1 / scale) - real_product(end, top)  # eq. (27)
+        return cls(modes, lateral, poisson, depth, scale, core, top, Factorisation(matrix))
 
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
-        arrays = (self.depth, self.scale, self.core, self.top, *self.factor)
-        return sum(array.nbytes for array in arrays)
+        return sum(part.nbytes for part in (self.depth, self.scale, self.core, self.top, self.factorisation))
 
     def solve(self, source: FloatArray) -> FloatArray:
-        """Scaled face loads ``scale * S`` from what the top load alone asks for at the depth nodes."""
-        return np.asarray(linalg.lu_solve(self.factor, source))
+        """Scaled face loads ``scale * S`` from the source of a top load at the depth nodes."""
+        return self.factorisation.solve(source)
+
+    def load_to_faces(self, load: Load) -> ComplexArray:
+        """Face loads that free the ends from unit modes of a top load in H alone: array (depth, wavenumber)."""
+        # The matrix of a traction along y lacks its factor i; the modes of a traction along x are sines.
+        axial = self.modes.wavenumbers
+        if load is Load.NORMAL:  # as normal_on_end, from the stored core
+            return self.core * (4 / np.pi / np.sqrt(axial**2 + self.lateral**2))
+        inverse = inverse_square(axial, self.depth, self.lateral)
+        return ON_END[load](inverse, axial, self.depth, self.lateral, self.poisson)
 
     def source(self, load: Load, spectrum: ComplexArray) -> FloatArray:
-        """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone.
-
-        That of a traction along y lacks its factor i; the spectrum of one along x is that of a sine series.
-        """
-        axial = self.modes.wavenumbers
-        if load is Load.NORMAL:  # as normal_on_end, from the core that is at hand
-            operator = self.core * (4 / np.pi / np.sqrt(axial**2 + self.lateral**2))
-        else:
-            inverse = inverse_square(axial, self.depth, self.lateral)
-            operator = ON_END[load](inverse, axial, self.depth, self.lateral, self.poisson)
-        return real_product(operator, spectrum)
+        """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone."""
+        return real_product(self.load_to_faces(load), spectrum)
 
     def on_top(self, scaled_face_load: FloatArray) -> ComplexArray:
-        """Weighted spectrum, before `cosine`, of the load that the faces leave on the top."""
-        return np.asarray(self.top @ scaled_face_load)
+        """Weighted spectrum, before `cosine`, of the top load from the faces."""
+        return np.asarray(self.top @ scaled_face_load)  # eq. (26a)
 
     def auxiliary_loads(
         self, spectrum: ComplexArray, loads: Sequence[Load], *, shortest: float, resolution: Resolution
     ) -> AuxiliaryLoads:
-        """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn.
-
-        Parameters
-        ----------
-        spectrum : complex array (wavenumber, column)
-            Weighted spectrum of the distribution.
-        loads : sequence of Load
-            Directions; the columns of the first come first.
-        shortest : float
-            Smallest distance from a loaded corner that matters, metres.
-        resolution : Resolution
-            Quadrature settings.
-        """
+        """Solve for the loads on H and V that free the ends from one distribution, acting in each direction in turn."""
         equivalent = self.on_top(self.solve(np.hstack([self.source(load, spectrum) for load in loads])))
-        last = max(resolution.ray_reach / shortest, 4 * self.lateral)
-        depth, weights = ray_nodes(0.5 * self.lateral, last, resolution)
-        axial = self.modes.wavenumbers
+        depth, weights = self.ray(shortest, resolution)
         columns = spectrum.shape[1]
         total = self.modes.on_end[:, None] * equivalent
-        own = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
-        if Load.NORMAL in own:
-            total[:, own[Load.NORMAL]] += spectrum
-        # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
-        face_load = np.zeros((depth.size, total.shape[1]), np.complex128)
-        for k, normal, asis in ((axial, total, spectrum), (axial.conj(), total.conj(), spectrum.conj())):
-            given = inverse_square(k, depth, self.lateral), k, depth, self.lateral, self.poisson
-            face_load += 0.5 * (normal_on_end(*given) @ normal)
-            for load, place in own.items():
-                if load is not Load.NORMAL:
-                    face_load[:, place] += 0.5 * (ON_END[load](*given) @ asis)
+        slices = {load: slice(i * columns, (i + 1) * columns) for i, load in enumerate(loads)}
+        if Load.NORMAL in slices:
+            total[:, slices[Load.NORMAL]] += spectrum
+        upper, lower = self.ray_to_faces(Load.NORMAL, depth)
+        face_load = upper @ total + lower @ total.conj()  # eq. (26)
+        for load, part in slices.items():
+            if load is not Load.NORMAL:
+                upper, lower = self.ray_to_faces(load, depth)
+                face_load[:, part] += upper @ spectrum + lower @ spectrum.conj()
         return AuxiliaryLoads(equivalent, depth, weights[:, None] * face_load)
+
+    def ray(self, shortest: float, resolution: Resolution) -> tuple[ComplexArray, ComplexArray]:
+        """Depth wavenumbers on their ray, and the weights of the quadrature."""
+        return ray_nodes(0.5 * self.lateral, max(resolution.ray_reach / shortest, 4 * self.lateral), resolution)
+
+    def ray_to_faces(self, load: Load, depth: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+        """Face loads at complex `depth` wavenumbers from modes and from their conjugate: arrays (depth, wavenumber)."""
+        # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
+        axial = self.modes.wavenumbers
+        upper, lower = (
+            0.5 * ON_END[load](inverse_square(k, depth, self.lateral), k, depth, self.lateral, self.poisson)
+            for k in (axial, axial.conj())
+        )
+        return upper, lower

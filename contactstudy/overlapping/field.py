@@ -1,13 +1,13 @@
-"""A field that the free ends add to the mirrored half-space, from the equivalent loads.
+"""A field of the free ends beside the mirrored half-space's, from the equivalent loads.
 
 For each wavenumber along y the equivalent load ``R`` (in H) and the face loads ``S`` (in V) are evaluated on their
 rays, where every factor decays with the distance from the loaded corner; the field is a sum of separable terms
-``f(k, x) g(k, z)``, taken as matrix products. Only points within reach of a corner take part at a high wavenumber.
+``f(k, x) g(k, z)``: matrix products. A high wavenumber includes only positions within reach of a corner.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
@@ -18,38 +18,27 @@ from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import DECAY_LENGTHS
 from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
-from contactstudy.overlapping.lateral import LateralColumns
-from contactstudy.overlapping.panels import POSITIONS_PER_PANEL, graded_interpolation
-from contactstudy.overlapping.problem import EndProblem, View, parity_parts, views_of
+from contactstudy.overlapping.lateral import LateralColumns, LateralPanel, lateral_columns
+from contactstudy.overlapping.problem import EndProblem, View, make_views, parity_parts
+from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, graded_interpolation
 from contactstudy.threads import one_blas_thread
 
-SAME_POSITION = 12
-"""Digits to which positions over the length agree that are the same distance from either end. Accuracy."""
+POSITION_DIGITS = 12  # digits of positions over the length that are equal by symmetry. Accuracy.
 
 
 @dataclass(frozen=True)
 class Harmonics:
-    """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y.
+    """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y."""
 
-    Attributes
-    ----------
-    below_equivalent_load : callable
-        From equation set, equivalent load (wavenumber, column), cosine and sine (wavenumber, x) and depths to
-        amplitudes (component, x, z, column).
-    beside_face_load : callable
-        From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
-        to the same.
-    even_in_y, odd_in_y : list of int
-        Components that under a pressure even in y are even or odd.
-    odd_along_x : list of int
-        Components that change sign when seen from the other end.
-    """
-
-    below_equivalent_load: Callable[[EquationSet, ComplexArray, ComplexArray, ComplexArray, FloatArray], FloatArray]
-    beside_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
-    even_in_y: list[int]
+    of_equivalent_load: Callable[[EquationSet, ComplexArray, ComplexArray, ComplexArray, FloatArray], FloatArray]
+    """From equation set, equivalent load (wavenumber, column), cosine and sine (wavenumber, x) and depths to
+    amplitudes (component, x, z, column)."""
+    of_face_load: Callable[[EquationSet, ComplexArray, ComplexArray, FloatArray, FloatArray], FloatArray]
+    """From equation set, depth wavenumbers, weighted face loads (depth, column), distances from the end and depths
+    to the same."""
+    even_in_y: list[int]  # components that under a pressure even in y are even or odd
     odd_in_y: list[int]
-    odd_along_x: list[int]
+    odd_along_x: list[int]  # components that change sign from one end to the other
 
     @property
     def count(self) -> int:
@@ -57,77 +46,66 @@ class Harmonics:
         return len(self.even_in_y) + len(self.odd_in_y)
 
 
-class Place(NamedTuple):
-    """Points where a field is wanted: the tensor product of `x`, `y` and `z`, metres."""
+class Points(NamedTuple):
+    """Positions of a field: the tensor product of `x`, `y` and `z`, metres."""
 
     x: FloatArray
     y: FloatArray
     z: FloatArray
 
 
-TOGETHER = 2000
-"""Points, of the positions and depths of all places, up to which these are evaluated at once. Speed."""
+JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
 
 
 @dataclass(frozen=True, eq=False)
 class _Folded:
-    """A place as its field is summed: at few positions, seen from the nearest end, never on the loaded corner itself.
+    """Positions of the sum over wavenumbers: few, by their distance from the nearest end, off the loaded corner."""
 
-    Attributes
-    ----------
-    x, y, z : array
-        Points of the sum; the last depth is that a little below the corner if the place has the corner.
-    where, beyond : array
-        Which of `x` each position is, and whether it is nearer to the far end.
-    interpolation : array or None
-        From the positions to the place's own; None where they are the same.
-    corner : tuple of array, or None
-        Numbers of `x` and of the depths that are on the corner; None if the place does not have it.
-    """
-
-    x: FloatArray
+    x: FloatArray  # positions of the sum; the last depth is a little below the corner if the corner is a position
     y: FloatArray
     z: FloatArray
-    where: IntArray
+    where: IntArray  # index of each position in `x`, and whether the far end is nearer
     beyond: BoolArray
-    interpolation: FloatArray | None
+    interpolation: FloatArray | None  # from the positions of the sum to all positions; None where they are equal
     corner: tuple[IntArray, IntArray] | None
+    """Indices of `x` and of the depths on the corner; None if the corner is not a position."""
 
     @classmethod
-    def of(cls, problem: EndProblem, place: Place) -> _Folded:
-        """Fold a place: many positions along x are interpolated from fewer that are graded towards the ends."""
+    def of(cls, problem: EndProblem, points: Points) -> _Folded:
+        """Fold positions: many positions along x are interpolated from fewer, graded towards the ends."""
         length, offset = problem.length, problem.corner_offset
-        fewer = graded_interpolation(place.x, length, POSITIONS_PER_PANEL)
-        positions, interpolation = (place.x, None) if fewer is None else fewer
+        fewer = graded_interpolation(points.x, length, POSITIONS_PER_PANEL)
+        positions, interpolation = (points.x, None) if fewer is None else fewer
         if np.isinf(length):
             x, where = positions, np.arange(positions.size)
         else:
-            half, where = np.unique(np.round(problem.from_end(positions) / length, SAME_POSITION), return_inverse=True)
+            half, where = np.unique(
+                np.round(problem.from_end(positions) / length, POSITION_DIGITS), return_inverse=True
+            )
             x = length * half
-        on_corner = np.flatnonzero(x < offset), np.flatnonzero(place.z < offset)
+        on_corner = np.flatnonzero(x < offset), np.flatnonzero(points.z < offset)
         has_corner = bool(on_corner[0].size and on_corner[1].size)
-        z = np.append(place.z, offset) if has_corner else place.z
+        z = np.append(points.z, offset) if has_corner else points.z
         corner = on_corner if has_corner else None
-        return cls(x, place.y, z, where, positions > 0.5 * length, interpolation, corner)
+        return cls(x, points.y, z, where, positions > 0.5 * length, interpolation, corner)
 
     @property
     def distance(self) -> FloatArray:
         """Distance of the points from the loaded corner: array (x, z)."""
         distance = np.hypot(self.x[:, None], self.z[None, :])
         if self.corner is not None:
-            # What is summed there is not used.
             distance[self.corner[0][:, None], self.corner[1]] = np.inf
         return distance
 
     def unfolded(self, fields: Mapping[int, FloatArray], odd_along_x: list[int]) -> FloatArray:
-        """Field (load, component, x, y, z) at the place from the sums by parity (load, component, x, z, y)."""
+        """Field (load, component, x, y, z) at all positions from the sums by parity (load, component, x, z, y)."""
         if self.corner is not None:
             rows, columns = self.corner
             for field in fields.values():
                 field[:, :, rows[:, None], columns] = field[:, :, rows, -1:]
             fields = {parity: field[:, :, :, :-1] for parity, field in fields.items()}
-        loads, count, _, *rest = next(iter(fields.values())).shape
-        result = np.empty((loads, count, self._size, *rest))
+        loads, count, _, *shape = next(iter(fields.values())).shape
+        result = np.empty((loads, count, self._size, *shape))
         for number, (parity, field) in enumerate(fields.items()):
             signs = np.array([-parity if component in odd_along_x else parity for component in range(count)])
             if self.interpolation is None:
@@ -140,36 +118,33 @@ class _Folded:
         """Copy or add a sum to a result at the same positions, beyond mid-length with the `signs` of its components."""
         beyond = np.where(signs == 0, 1, signs)[:, None, None]
         for row, (number, far) in enumerate(zip(self.where.tolist(), self.beyond.tolist(), strict=True)):
-            own = field[:, :, number]
+            values = field[:, :, number]
             if added:
-                result[:, :, row] += beyond * own if far else own
+                result[:, :, row] += beyond * values if far else values
             elif far:
-                np.multiply(beyond, own, out=result[:, :, row])
+                np.multiply(beyond, values, out=result[:, :, row])
             else:
-                result[:, :, row] = own
+                result[:, :, row] = values
 
     def _interpolate(self, field: FloatArray, signs: IntArray, result: FloatArray, added: bool) -> None:
-        """Likewise to the place's own positions."""
+        """Interpolate a sum to all positions."""
         for component, sign in enumerate(signs.tolist()):
             spread = self._spread(sign)
             for load in range(field.shape[0]):
-                own = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
-                place = result[load, component].reshape(self._size, -1)
+                values = np.ascontiguousarray(field[load, component]).reshape(field.shape[2], -1)
+                target = result[load, component].reshape(self._size, -1)
                 if added:
-                    place += spread @ own
+                    target += spread @ values
                 else:
-                    np.matmul(spread, own, out=place)
+                    np.matmul(spread, values, out=target)
 
     @property
     def _size(self) -> int:
-        """Number of the place's own positions along x."""
+        """Number of positions along x."""
         return self.where.size if self.interpolation is None else self.interpolation.shape[0]
 
     def _spread(self, sign: int) -> FloatArray:
-        """Matrix from the positions of the sum to the place's own, for a field that is `sign` times its image.
-
-        0 stands for one end only, which has no image.
-        """
+        """Matrix from the positions of the sum to all, for a field that is `sign` times its image; 0 with one end."""
         assert self.interpolation is not None
         spread = np.zeros((self.where.size, self.x.size))
         spread[np.arange(self.where.size), self.where] = np.where(self.beyond, sign or 1, 1)
@@ -178,7 +153,7 @@ class _Folded:
 
 @dataclass(frozen=True, eq=False)
 class _Task:
-    """A field that is wanted at several places."""
+    """Problem, harmonics and positions of a field."""
 
     problem: EndProblem
     harmonics: Harmonics
@@ -187,86 +162,128 @@ class _Task:
 
     @property
     def y(self) -> FloatArray:
-        """Positions along y of all places, one after another."""
-        return np.concatenate([place.y for place in self.places])
+        """Positions along y of all tensor products, one after another."""
+        return np.concatenate([points.y for points in self.places])
 
 
 def end_fields(
-    problem: EndProblem, harmonics: Harmonics, places: Sequence[Place], *, reference: float | None = None
+    problem: EndProblem, harmonics: Harmonics, places: Sequence[Points], *, reference: float | None = None
 ) -> list[dict[Load, FloatArray]]:
-    """Field that the free ends add to the half-space with all mirrored loads, at several places.
-
-    What the body answers to the load is solved for once for all places.
-
-    Parameters
-    ----------
-    problem : EndProblem
-        Body and load.
-    harmonics : Harmonics
-        Which field.
-    places : sequence of Place
-        Points inside the body.
-    reference : float, optional
-        For a field whose amplitudes have a pole at wavenumber 0 along y, as displacements between two ends have:
-        where along y its rigid part is zero, metres.
-
-    Returns
-    -------
-    list of dict of Load to array (component, x, y, z)
-        At each place, under the load in each of the problem's directions.
-    """
+    """Field of the free ends beside the half-space with all mirrored loads: array (component, x, y, z)."""
     fields: list[dict[Load, FloatArray]] = [{} for _ in places]
     with one_blas_thread():
         for alike in problem.alike():
-            folded = [_Folded.of(alike, place) for place in places]
+            folded = [_Folded.of(alike, points) for points in places]
             cells = alike.columns[1]
             parts = {0: cells} if np.isinf(alike.length) else parity_parts(cells, alike.sign_x)
             sums = _sum_over_wavenumbers(_Task(alike, harmonics, folded, reference), parts)
-            for found, place, own in zip(fields, folded, sums, strict=True):
-                found |= dict(zip(alike.loads, place.unfolded(own, harmonics.odd_along_x), strict=True))
+            for by_load, points, parities in zip(fields, folded, sums, strict=True):
+                by_load |= dict(zip(alike.loads, points.unfolded(parities, harmonics.odd_along_x), strict=True))
     return fields
 
 
 def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> list[dict[int, FloatArray]]:
-    """Field (load, component, x, z, y) at each place by parity: the integral over the wavenumber along y."""
+    """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
     problem, harmonics, places = task.problem, task.harmonics, task.places
     counts = (len(problem.loads), harmonics.count)
     result = [
-        {parity: np.zeros((*counts, place.x.size, place.z.size, place.y.size)) for parity in parts} for place in places
+        {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parts}
+        for points in places
     ]
-    distances, y = [place.distance for place in places], task.y
-    nearest = min(float(distance.min()) for distance in distances)
-    shortest = max(nearest, problem.corner_offset)
-    ends = np.cumsum([place.y.size for place in places])
-    for panel in problem.panels(y, shortest, task.reference):
-        if panel.nodes[0] * nearest >= DECAY_LENGTHS:
-            break
-        for columns in problem.batches(panel, parts, y):
-            # Only points within reach of a corner take part.
-            near = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
-            seen = [(np.flatnonzero(own.any(axis=1)), np.flatnonzero(own.any(axis=0))) for own in near]
-            if not any(rows.size for rows, _ in seen):
-                break
-            points = [(place.x[rows], place.z[depths]) for place, (rows, depths) in zip(places, seen, strict=True)]
-            amplitudes = _amplitudes(problem, harmonics, points, columns, shortest)
-            for parity in parts:
-                for i, load in enumerate(problem.loads):
-                    even, odd = columns.synthesis(load, parity)
-                    for at, (rows, depths), stop, own in zip(result, seen, ends, amplitudes, strict=True):
-                        if not rows.size:
-                            continue
-                        alike = own[i][..., columns.parities == parity]
-                        here = slice(stop - at[parity].shape[-1], stop)
-                        shape, block = (rows.size, depths.size, -1), _block(rows, depths)
-                        for component in range(harmonics.count):
-                            wave = even if component in harmonics.even_in_y else odd
-                            flat = alike[component].reshape(rows.size * depths.size, -1)
-                            at[parity][i, component][block] += (flat @ wave[:, here]).reshape(shape)
+    ends = np.cumsum([points.y.size for points in places])
+    for _, columns, indices, amplitudes in _panel_amplitudes(
+        task, lambda panel: lateral_columns(panel, parts, problem.grid, task.y)
+    ):
+        for parity in parts:
+            for i, load in enumerate(problem.loads):
+                even, odd = columns.synthesis(load, parity)
+                for total, (rows, depths), stop, near_points in zip(result, indices, ends, amplitudes, strict=True):
+                    if not rows.size:
+                        continue
+                    columns_of_parity = near_points[i][..., columns.parities == parity]
+                    section = slice(stop - total[parity].shape[-1], stop)
+                    shape, block = (rows.size, depths.size, -1), _block(rows, depths)
+                    for component in range(harmonics.count):
+                        wave = even if component in harmonics.even_in_y else odd
+                        flat = columns_of_parity[component].reshape(rows.size * depths.size, -1)
+                        total[parity][i, component][block] += (flat @ wave[:, section]).reshape(shape)
     return result
 
 
+class _PanelAmplitudes(NamedTuple):
+    """Amplitudes (load, component, x, z, wavenumber, column) in one panel; `indices` select x and z within reach."""
+
+    panel: LateralPanel
+    columns: LateralColumns
+    indices: list[tuple[IntArray, IntArray]]
+    amplitudes: list[FloatArray]
+
+
+def _panel_amplitudes(
+    task: _Task, columns_of: Callable[[LateralPanel], LateralColumns | None]
+) -> Iterator[_PanelAmplitudes]:
+    """Amplitudes of the columns of each panel."""
+    problem, places = task.problem, task.places
+    distances = [points.distance for points in places]
+    nearest = min(float(distance.min()) for distance in distances)
+    shortest = max(nearest, problem.corner_offset)
+    for panel in problem.panels(task.y, shortest, task.reference):
+        if panel.nodes[0] * nearest >= DECAY_LENGTHS:
+            break
+        columns = columns_of(panel)
+        if columns is None:
+            continue
+        reached = [columns.nodes[0] * distance < DECAY_LENGTHS for distance in distances]
+        indices = [
+            (np.flatnonzero(near_points.any(axis=1)), np.flatnonzero(near_points.any(axis=0)))
+            for near_points in reached
+        ]
+        if not any(rows.size for rows, _ in indices):
+            break
+        axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(places, indices, strict=True)]
+        amplitudes = _amplitudes(problem, task.harmonics, axes, columns, shortest)
+        yield _PanelAmplitudes(panel, columns, indices, amplitudes)
+
+
+class UnitFields(NamedTuple):
+    """Field of the free ends under unit loads on the cells along x, in one panel of wavenumbers along y."""
+
+    # The field under a load (cell_x, cell_y) is the sum of ``amplitudes`` times the load times the filters.
+
+    amplitudes: FloatArray  # (component, x, node, cell_x, z): amplitudes at the nodes
+    filters: FloatArray  # (component, node, cell_y, y): from a load along y to the part of each node at the positions y
+
+
+def unit_fields(
+    problem: EndProblem, harmonics: Harmonics, points: Points, *, reference: float | None = None
+) -> Iterator[UnitFields]:
+    """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
+    (load,) = problem.loads
+    task = _Task(problem, harmonics, [_Folded.of(problem, points)], reference)
+    cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
+    signs = (0,) if np.isinf(problem.length) else (1, -1)
+    parts = [0.5 * (cells + problem.sign_x * parity * cells[::-1]) if parity else cells for parity in signs]
+    parities = np.repeat(signs, problem.grid.cells_x)
+    (folded,) = task.places
+    for panel, _, ((rows, depths),), (near_points,) in _panel_amplitudes(
+        task, lambda panel: LateralColumns.unit(panel, np.concatenate(parts, axis=1), parities)
+    ):
+        shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
+        fields = {}
+        for parity in signs:
+            field = np.zeros(shape)
+            field[(slice(None), slice(None), *_block(rows, depths))] = near_points[..., parities == parity]
+            fields[parity] = field.reshape(*shape[:4], -1)
+        unfolded = folded.unfolded(fields, harmonics.odd_along_x)[0]
+        even, odd = panel.filters(problem.grid, points.y)
+        even, odd = (even, odd) if load.sign_y > 0 else (odd, -even)
+        filters = np.stack([even if number in harmonics.even_in_y else odd for number in range(harmonics.count)])
+        count, size = harmonics.count, points.x.size
+        yield UnitFields(unfolded.reshape(count, size, panel.nodes.size, -1, points.z.size), filters)
+
+
 def _block(rows: IntArray, columns: IntArray) -> tuple[slice | IntArray, slice | IntArray]:
-    """Index of rows and columns in ascending order, as slices if none between them is missing: these are faster."""
+    """Index of rows and columns in ascending order, as slices if the range is complete: faster."""
     if all(numbers[-1] - numbers[0] + 1 == numbers.size for numbers in (rows, columns)):
         return slice(rows[0], rows[-1] + 1), slice(columns[0], columns[-1] + 1)
     return rows[:, None], columns
@@ -279,7 +296,7 @@ def _amplitudes(
     columns: LateralColumns,
     shortest: float,
 ) -> list[FloatArray]:
-    """Answers to a batch of columns at the points (x, z): arrays (load, component, x, z, wavenumber, column)."""
+    """Amplitudes of columns at the positions (x, z): arrays (load, component, x, z, wavenumber, column)."""
     count = len(problem.loads)
     amplitudes = [
         np.zeros((count, harmonics.count, x.size, z.size, columns.nodes.size, columns.parities.size)) for x, z in points
@@ -287,30 +304,37 @@ def _amplitudes(
     starts = np.cumsum([0, *(x.size for x, _ in points)])
     stops = np.cumsum([z.size for _, z in points])
     depths = np.concatenate([z for _, z in points])
-    for view in views_of(problem, columns, np.concatenate([x for x, _ in points]), shortest):
-        own = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
-        together = view.x.size * depths.size <= TOGETHER
+    for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
+        view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
+        together = view.x.size * depths.size <= JOINT_POINTS
         for number, lateral in enumerate(columns.nodes):
             system, loads = problem.auxiliary_loads(view, float(lateral), number, shortest)
-            every = _answer(harmonics, system, loads, view, slice(None), depths) if together else None
-            for found, (_, z), start, stop, at in zip(amplitudes, points, starts, stops, own, strict=False):
-                if not at.size:
+            fields = _evaluate(harmonics, system, loads, view, slice(None), depths) if together else None
+            for amplitude, (_, z), start, stop, selected in zip(
+                amplitudes, points, starts, stops, view_rows, strict=False
+            ):
+                if not selected.size:
                     continue
-                if every is None:
-                    field = _answer(harmonics, system, loads, view, at, z)
+                if fields is None:
+                    field = _evaluate(harmonics, system, loads, view, selected, z)
                 else:
-                    field = every[:, at, stop - z.size : stop]
+                    field = fields[:, selected, stop - z.size : stop]
                 by_load = field.reshape(*field.shape[:3], count, -1)
-                rows, numbers = (view.rows[at] - start)[:, None, None], np.arange(z.size)[:, None]
+                rows, numbers = (view.rows[selected] - start)[:, None, None], np.arange(z.size)[:, None]
                 for i in range(count):
-                    found[i][:, rows, numbers, number, view.columns] = by_load[:, :, :, i]
+                    amplitude[i][:, rows, numbers, number, view.columns] = by_load[:, :, :, i]
     return amplitudes
 
 
-def _answer(
-    harmonics: Harmonics, system: EquationSet, loads: AuxiliaryLoads, view: View, at: IntArray | slice, z: FloatArray
+def _evaluate(
+    harmonics: Harmonics,
+    system: EquationSet,
+    loads: AuxiliaryLoads,
+    view: View,
+    selected: IntArray | slice,
+    z: FloatArray,
 ) -> FloatArray:
     """Field of both auxiliary bodies at some of a view's positions: array (component, x, z, column)."""
-    field = harmonics.below_equivalent_load(system, loads.equivalent, view.cosine[:, at], view.sine[:, at], z)
-    field += harmonics.beside_face_load(system, loads.depth, loads.face_load, view.x[at], z)
+    field = harmonics.of_equivalent_load(system, loads.equivalent, view.cosine[:, selected], view.sine[:, selected], z)
+    field += harmonics.of_face_load(system, loads.depth, loads.face_load, view.x[selected], z)
     return field

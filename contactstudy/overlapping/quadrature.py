@@ -1,8 +1,13 @@
 """Quadratures over wavenumbers: Gauss-Legendre's on panels, and the trapezoidal rule over their logarithm.
 
-What is integrated along axial and depth wavenumbers is smooth over their logarithm ``u``: its nearest poles lie at the
-angle `Resolution.angle` from the path. The trapezoidal rule of step h over u leaves ``exp(-2 pi angle / h)`` there,
-with half the nodes of Gauss's on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
+Integrands along axial and depth wavenumbers are smooth over their logarithm ``u``: the nearest poles lie at the angle
+`Resolution.angle` from the path. The trapezoidal rule of step h over u has the error ``exp(-2 pi angle / h)``, with
+half the nodes of Gauss's on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
+
+
+Displacements of the free ends vary on the scale of the distance from the end. On panels that double away from the end,
+with a few Gauss points each, interpolation is accurate for every grid, and the operator of a long roller costs little
+more than for a short roller.
 """
 
 from __future__ import annotations
@@ -22,18 +27,12 @@ from contactstudy.kernels.load import Load
 @lru_cache(maxsize=32)
 def _gauss(order: int) -> tuple[FloatArray, FloatArray]:
     nodes, weights = np.polynomial.legendre.leggauss(order)
+    nodes.flags.writeable = weights.flags.writeable = False
     return nodes, weights
 
 
 def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of composite Gauss-Legendre quadrature on the panels between `edges`.
-
-    Examples
-    --------
-    >>> nodes, weights = panel_nodes(np.array([0.0, 1.0, 3.0]), 4)
-    >>> round(float(weights @ nodes**5), 6)
-    121.5
-    """
+    """Nodes and weights of composite Gauss-Legendre quadrature on the panels between `edges`."""
     nodes, weights = _gauss(order)
     half = 0.5 * np.diff(edges)[:, None]
     middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
@@ -41,28 +40,16 @@ def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
 
 
 def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
-    """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial.
-
-    Examples
-    --------
-    >>> lagrange(np.array([0.0, 1.0, 2.0]), np.array([0.5])).tolist()
-    [[0.375, 0.75, -0.125]]
-    """
+    """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial."""
     matrix = np.empty((points.size, nodes.size))
     for i, node in enumerate(nodes):
-        others = np.delete(nodes, i)
-        matrix[:, i] = np.prod((points[:, None] - others) / (node - others), axis=1)
+        poles = np.delete(nodes, i)
+        matrix[:, i] = np.prod((points[:, None] - poles) / (node - poles), axis=1)
     return matrix
 
 
 def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
-    """Panel edges ``0, first, ratio first, ratio**2 first, ...`` up to at least `last`.
-
-    Examples
-    --------
-    >>> growing_edges(1.0, 7.0).tolist()
-    [0.0, 1.0, 2.0, 4.0, 8.0]
-    """
+    """Panel edges ``0, first, ratio first, ratio**2 first, ...`` up to at least `last`."""
     panels = max(1, int(np.ceil(np.log(last / first) / np.log(ratio))) + 1)
     return np.concatenate([[0.0], first * ratio ** np.arange(panels)])
 
@@ -80,7 +67,7 @@ Accuracy: below it lies 1e-7 of that scale."""
 class Resolution:
     """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 2e-5 of a load.
 
-    Reaches are over the smallest distance from a loaded corner that is asked for: points nearer to it refine them.
+    Reaches are over the smallest distance of a position from a loaded corner.
 
     Parameters
     ----------
@@ -92,11 +79,11 @@ class Resolution:
     reach : float
         Largest axial and depth wavenumber, times the smallest distance from a loaded corner.
     ray_reach : float
-        Likewise on the ray of depth wavenumbers, where the loads are evaluated and no longer solved for.
+        The same on the ray of depth wavenumbers, where the loads are evaluated.
     modes : int
         Axial modes that are summed one by one.
     lateral_nodes : int
-        Wavenumbers along y per panel at which the body is asked.
+        Equation sets per panel of wavenumbers along y.
     lateral_ratio : float
         Growth of these panels, whose nodes are Gauss's over the logarithm.
     lateral_order : int
@@ -121,7 +108,6 @@ class Resolution:
     lateral_reach: float = 10.0
 
     def __post_init__(self) -> None:
-        """Refuse settings with which the ends would carry traction that looks like a result."""
         for name in ("modes", "lateral_nodes", "lateral_order"):
             checks.count(name, getattr(self, name), least=2)
         for name in ("reach", "ray_reach", "lateral_reach"):
@@ -141,16 +127,8 @@ class Resolution:
 
 
 def scale_nodes(first: float, last: float, step: float) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of an integral from 0 to about `last`, of what is smooth over the logarithm from `first` on.
-
-    The trapezoidal rule over ``u`` with ``k = start exp(u - exp(-u))``, where k falls to 0 doubly exponentially.
-
-    Examples
-    --------
-    >>> nodes, weights = scale_nodes(1.0, 1e6, 0.25)
-    >>> nodes.size, bool(abs(weights @ (1 + nodes) ** -2.0 - 1) < 3e-6)
-    (74, True)
-    """
+    """Nodes and weights from 0 to about `last`, for integrands smooth over the logarithm from `first` on."""
+    # The trapezoidal rule over ``u`` with ``k = start exp(u - exp(-u))``, where k falls to 0 doubly exponentially.
     start = START * first
     lowest, highest = int(np.floor(LOWEST / step)), int(np.ceil(np.log(last / start) / step))
     u = step * np.arange(lowest, highest + 1.0)
@@ -163,3 +141,63 @@ def ray_nodes(first: float, last: float, resolution: Resolution) -> tuple[Comple
     nodes, weights = scale_nodes(first, last, resolution.step)
     turn = np.exp(1j * resolution.angle)
     return nodes * turn, weights * turn
+
+
+POSITIONS_PER_PANEL = 8  # Gauss positions per panel along x. Accuracy.
+
+
+def graded_positions(reach: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
+    """Edges of panels from 0 to `reach` that double from `finest`, and `order` Gauss positions in each."""
+    panels = max(1, int(np.ceil(np.log2(reach / finest) - 1e-9)))
+    edges = growing_edges(reach / 2.0**panels, reach)[: panels + 2]
+    return edges, panel_nodes(edges, order)[0]
+
+
+def cell_moments(edges: FloatArray, positions: FloatArray, cell_edges: FloatArray) -> FloatArray:
+    """Integrals over each cell of the Lagrange polynomials on each panel's positions: array (position, cell)."""
+    order = positions.size // (edges.size - 1)
+    moments = np.zeros((positions.size, cell_edges.size - 1))
+    breaks = np.union1d(edges, np.clip(cell_edges, edges[0], edges[-1]))
+    points, weights = panel_nodes(breaks, order)
+    middles = np.repeat(0.5 * (breaks[1:] + breaks[:-1]), order)
+    panel = np.clip(np.searchsorted(edges, middles) - 1, 0, edges.size - 2)
+    cell = np.searchsorted(cell_edges, middles) - 1
+    for number in range(edges.size - 1):
+        inside = (panel == number) & (cell >= 0) & (cell < moments.shape[1])
+        nodes = slice(number * order, (number + 1) * order)
+        shares = weights[inside, None] * lagrange(positions[nodes], points[inside])
+        np.add.at(moments[nodes].T, cell[inside], shares)
+    return moments
+
+
+def graded_interpolation(x: FloatArray, length: float, order: int) -> tuple[FloatArray, FloatArray] | None:
+    """Few positions graded towards the ends, and the matrix that interpolates from them to many positions `x`."""
+    half = 0.5 * length if np.isfinite(length) else float(x.max())
+    near_first = x <= half
+    from_end = np.where(near_first, x, length - x)
+    inside = from_end > 0
+    if not inside.any():
+        return None
+    finest = float(from_end[inside].min())
+    if not half > finest:
+        return None
+    panels = max(1, int(np.ceil(np.log2(half / finest))))
+    edges = finest * (half / finest) ** (np.arange(panels + 1) / panels)
+    positions = panel_nodes(edges, order)[0]
+    count = positions.size
+    sides = 2 if np.isfinite(length) else 1
+    on_end = np.flatnonzero(~inside)
+    if sides * count + on_end.size >= x.size:
+        return None
+    matrix = np.zeros((x.size, sides * count + on_end.size))
+    panel = np.clip(np.searchsorted(edges, from_end) - 1, 0, panels - 1)
+    for number in range(panels):
+        nodes = slice(number * order, (number + 1) * order)
+        for side, on_side in enumerate((near_first, ~near_first)[:sides]):
+            points = np.flatnonzero(inside & on_side & (panel == number))
+            matrix[points, side * count + nodes.start : side * count + nodes.stop] = lagrange(
+                positions[nodes], from_end[points]
+            )
+    matrix[on_end, sides * count + np.arange(on_end.size)] = 1.0
+    parts = [positions, length - positions] if sides == 2 else [positions]
+    return np.concatenate([*parts, x[on_end]]), matrix

@@ -1,47 +1,293 @@
-"""What the free ends add to the displacements of the top, on uniform cells: a symmetric operator, compressed."""
+"""Displacements of the top from the free ends, between positions graded towards the ends.
+
+The normal displacement of the top of V is zero: the body has the displacement of H under ``P_h = p + R``. The part of
+``p`` is the mirrored half-space; the part of ``R`` is, for each wavenumber along y and each parity,
+
+    u(x) = C p,   C(x, x') = c at(x)^T (1 / scale - N)^-1 at(x'),   at(x; k_z) = (4/pi) sum M cosine(x) / k
+
+(equations.py): a symmetric operator, smooth except at the ends. The same holds for all nine pairs of displacements and
+loads. Let the mirrored half-space under load i have the normal stress ``s_i`` on the ends, without shear or
+displacement along x. By reciprocity with the state that removes ``s_j``, the work of load i on the displacement of the
+top from removing ``s_j`` is ``s_i^T G s_j``, with the symmetric compliance G of the ends: the same
+``c (1 / scale - N)^-1``, between the sources of load i and load j.
+
+C is sampled at positions graded towards the ends and transformed along y to the wavenumbers of the zero-padded grid,
+once per body and window. Far along y a finite-length body is a plate in plane stress, so C grows like ``1 / k_y``: the
+displacement is stated relative to the top far away, at ``|y| = reference``. A force along x bends that plate, and the
+displacement along x grows like ``1 / k_y**3``: its curvature is zero there as well.
+
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import chain
+from typing import NamedTuple
 
 import numpy as np
+from scipy import linalg
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import FreedEnds
+from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.end_kernel import EndKernel, seen_alike
+from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes, modes_between_ends
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.lateral import ALONE, BENDING_POLES, POLES, LateralPanel, lateral_panels
+from contactstudy.overlapping.quadrature import POSITIONS_PER_PANEL, Resolution, cell_moments, graded_positions
+
+MORE_NODES = 2
+"""Wavenumbers along y per panel beyond those for a field: an operator is built once for every load. Accuracy."""
+
+STEEPER = 1.25  # angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed.
+
+FINER = 8
+"""Cells along y over the finest resolved distance from an end, if cells along x are narrow at the end.
+Accuracy."""
+
+
+class EndRequest(NamedTuple):
+    """Request of a kernel of the ends."""
+
+    freed: FreedEnds  # ends, at 0 and at its length (infinite: one end)
+    material: Material
+    dy: float  # cell size along y, metres, and number of cells
+    cells_y: int
+    span: float  # length that the cells cover from ``x = 0``, metres
+    finest: float  # finest resolved distance from the ends, metres
+    responses: tuple[Response, ...]  # pairs of displacement and load
+    reference: float  # distance along y at which the displacement of a finite-length body is zero, metres
+    resolution: Resolution  # quadrature settings
+
+    @classmethod
+    def of(
+        cls,
+        freed: FreedEnds,
+        material: Material,
+        grid: Grid,
+        responses: tuple[Response, ...],
+        reference: float,
+        resolution: Resolution,
+    ) -> EndRequest:
+        """Request of a grid that begins at ``x = 0``; cells of any width along x share it."""
+        finest = grid.dx
+        if not grid.uniform:
+            # Next to a loaded end the pressure follows the ends' part down to some hundredths of the contact's width.
+            end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
+            finest = grid.dy / FINER if end_width <= 2 * grid.dy else grid.dy
+        resolution = resolution.for_loads(chain.from_iterable(responses))
+        resolution = replace(
+            resolution,
+            angle=STEEPER * resolution.angle,
+            step=STEEPER * resolution.step,
+            lateral_nodes=resolution.lateral_nodes + MORE_NODES,
+        )
+        return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, responses, reference, resolution)
+
+    @property
+    def parities(self) -> tuple[int, ...]:
+        """Parities that the ends do not mix."""
+        return (1, -1) if np.isfinite(self.freed.length) else (0,)
+
+
+@dataclass(frozen=True, eq=False)
+class EndKernel:
+    """The ends' part of the displacement between graded positions."""
+
+    request: EndRequest  # the request
+    edges: FloatArray  # panels along x, from end I to mid-length (or over the span), and Gauss positions in them
+    positions: FloatArray
+    samples: Mapping[Response, list[FloatArray]]
+    """(wavenumber, position, position): per parity, displacement at the positions from a load there, without the
+    factor i of kernels odd along y."""
+
+    def add_to(self, kernel: FloatArray, response: Response, cell_edges: FloatArray) -> None:
+        """Add the displacement averaged over cells from forces on cells to an array (wavenumber, cell, cell)."""
+        widths = np.diff(cell_edges)
+        sides = self.moments(cell_edges)
+        for parity, samples in zip(self.request.parities, self.samples[response], strict=True):
+            observed, loaded = (sum_of_ends(sides, parity * direction.sign_x) / widths for direction in response)
+            for total, sampled in zip(kernel, samples, strict=True):
+                total += observed.T @ sampled @ loaded
+
+    def moments(self, cell_edges: FloatArray) -> list[FloatArray]:
+        """Integrals over the cells of the polynomials on the positions, from each end: arrays (position, cell)."""
+        sides = [cell_moments(self.edges, self.positions, cell_edges)]
+        length = self.request.freed.length
+        if np.isfinite(length):
+            sides.append(cell_moments(self.edges, self.positions, length - cell_edges[::-1])[:, ::-1])
+        return sides
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        return sum(array.nbytes for array in chain.from_iterable(self.samples.values()))
+
+
+def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
+    """Sum over both ends for a load with an image of `sign` times the load; the value of a single end."""
+    return np.asarray(sides[0] + sign * sides[1]) if len(sides) > 1 else sides[0]
+
+
+@dataclass(frozen=True, eq=False)
+class Waves:
+    """Positions in axial modes: shared by all wavenumbers along y of these modes."""
+
+    modes: AxialModes  # the modes
+    positions: FloatArray  # positions within their reach, metres
+    by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
+
+    @classmethod
+    def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> Waves:
+        """Waves for all directions of some responses."""
+        within = positions[positions <= modes.reach]
+        directions = dict.fromkeys(
+            chain.from_iterable((response.load, response.displacement) for response in responses)
+        )
+        weights = modes.load_weights[:, None]
+        by_load = {load: weights * modes.wave(load, within) for load in directions}
+        return cls(modes, within, by_load)
+
+
+def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortest: float) -> list[FloatArray]:
+    """Correction between the graded positions within reach at one wavenumber, for each of the responses."""
+    modes, material, responses = waves.modes, request.material, request.responses
+    factor = (1 - material.poisson) / material.shear_modulus * (np.pi if modes.parity else np.pi / 2)
+    system = EquationSet.build(modes, wavenumber, material.poisson, shortest, request.resolution)
+    loads = dict.fromkeys(response.load for response in responses)
+    if isinstance(modes, SingleMirrorModes):  # no reciprocity: its ends carry shear
+        k = np.sqrt(modes.wavenumbers**2 + wavenumber**2)  # eq. (28)
+        compliance = modes.cosine(waves.positions) * ((1 - material.poisson) / material.shear_modulus / k)[:, None]
+        top = {load: system.on_top(system.solve(system.source(load, waves.by_load[load]))) for load in loads}
+        return [np.real(compliance.T @ top[response.load]) for response in responses]
+    sources = {load: system.source(load, spectrum) for load, spectrum in waves.by_load.items()}
+    face_loads = {load: system.solve(sources[load]) for load in loads}
+    kernels = []
+    for displacement, load in responses:
+        kernel = sources[displacement].T @ face_loads[load]  # eqs. (29) and (29b), sources of eq. (28a)
+        if displacement in face_loads:
+            # Reciprocity up to rounding, which two ends amplify.
+            reverse = kernel if displacement is load else sources[load].T @ face_loads[displacement]
+            kernel = 0.5 * (kernel + reverse.T)
+        kernels.append(factor * _phase(Response(displacement, load)) * kernel)
+    return kernels
+
+
+def _phase(response: Response) -> int:
+    """Sign of a kernel without its factor i: the conjugate of ``i s`` does the work."""
+    return -1 if response.displacement.sign_y < 0 < response.load.sign_y else 1
+
+
+@cached("end kernels", lambda kernel: kernel.nbytes)
+def end_kernel(request: EndRequest) -> EndKernel:
+    """Kernel of the ends of a body."""
+    length, mirrored_once = request.freed
+    relative = np.isfinite(length) and not mirrored_once
+    window = 2 * request.dy * request.cells_y
+    shortest = 0.5 * request.finest
+    # So far that a load on a single cell at the edge is right to 1e-4 there; smooth ones need half of it.
+    last = 2 * max(2.0 * np.pi / request.dy, 6.0 / request.finest)
+    reference = request.reference if relative else None
+    half = 0.5 * length if np.isfinite(length) else request.span
+    edges, positions = graded_positions(half, shortest, POSITIONS_PER_PANEL)
+    spread: dict[Response, list[FloatArray]] = {}
+    shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
+    for poles in sorted({_poles(response) for response in request.responses}):
+        first = ALONE[poles] / min(length, 4 * max(request.span, window))
+        panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles)
+        responses = [response for response in request.responses if _poles(response) == poles]
+        numbers = [request.responses.index(response) for response in responses]
+        size, parities = positions.size, len(request.parities)
+        totals = np.zeros((len(responses), parities, request.cells_y + 1, size**2))
+        for panel, even, odd in _lateral_transforms(panels, request.dy, request.cells_y):
+            samples = np.zeros((len(responses), parities, panel.nodes.size, size, size))
+            for node, sampled in enumerate(_samples(request, panel, positions, shortest, shared_samples)):
+                reach = sampled.shape[-1]
+                samples[:, :, node, :reach, :reach] = sampled[:, numbers].swapaxes(0, 1)
+            for response, total, response_samples in zip(responses, totals, samples, strict=True):
+                for sums, parity_samples in zip(total, response_samples, strict=True):
+                    add_product(sums, even if response.sign_y > 0 else odd, parity_samples.reshape(-1, size**2))
+        shape = (request.cells_y + 1, size, size)
+        for response, total in zip(responses, totals, strict=True):
+            spread[response] = [sums.reshape(shape) for sums in total]
+    return EndKernel(request, edges, positions, spread)
+
+
+def _poles(response: Response) -> int:
+    """Order of a response's pole at wavenumber 0 along y."""
+    return BENDING_POLES if Load.ALONG_X in response else POLES
+
+
+def _samples(
+    request: EndRequest,
+    panel: LateralPanel,
+    positions: FloatArray,
+    shortest: float,
+    shared_samples: dict[float, FloatArray],
+) -> Iterator[FloatArray]:
+    """Kernel at each of a panel's wavenumbers, if not yet `known`: arrays (parity, response, position, position)."""
+    length, mirrored_once = request.freed
+    smallest = float(panel.nodes[0])
+    modes = modes_between_ends(length, smallest, shortest, request.resolution, mirrored_once=mirrored_once)
+    waves = [Waves.of(mode, positions, request.responses) for mode in modes]
+    shared = len({_poles(response) for response in request.responses}) > 1
+    for wavenumber in panel.nodes.tolist():
+        sampled = shared_samples.get(wavenumber)
+        if sampled is None:
+            sampled = np.array([sampled_kernel(mode_waves, wavenumber, request, shortest) for mode_waves in waves])
+            # Ends without interaction: either parity has half of a quarter space.
+            if len(request.parities) > len(modes):
+                sampled = 0.5 * np.repeat(sampled, 2, axis=0)
+            if shared:
+                shared_samples[wavenumber] = sampled
+        yield sampled
+
+
+def _lateral_transforms(
+    panels: Sequence[LateralPanel], dy: float, cells_y: int
+) -> Iterator[tuple[LateralPanel, FloatArray, FloatArray]]:
+    """Each panel, with matrices (grid wavenumber, sample) for even and odd kernels to the padded grid's transform."""
+    offsets: FloatArray = dy * np.arange(cells_y + 1.0)
+    phase = np.pi * np.outer(np.arange(cells_y + 1), np.arange(cells_y + 1)) / cells_y
+    ends = np.full(cells_y + 1, 2.0)
+    ends[0] = ends[-1] = 1.0
+    # An odd kernel -sin(k y) has the transform 2i sum sin sin; with its factor i taken outside, +2 sum sin sin.
+    transforms = np.cos(phase) * ends, np.sin(phase) * np.where(ends == 1.0, 0.0, 2.0)
+    for panel in panels:
+        averaged = dy * np.sinc(panel.fine * dy / (2 * np.pi))
+        even, odd = (
+            transform @ (waves.T * averaged) for transform, waves in zip(transforms, panel.waves(offsets), strict=True)
+        )
+        if panel.interpolation is not None:
+            even, odd = even @ panel.interpolation, odd @ panel.interpolation
+        yield panel, even, odd
+
+
+def add_product(total: FloatArray, first: FloatArray, second: FloatArray) -> None:
+    """Add ``left @ right`` to `total`, a contiguous array, in its place."""
+    # The transposes are in Fortran's order: BLAS copies nothing.
+    linalg.blas.dgemm(1.0, second.T, np.ascontiguousarray(first).T, 1.0, total.T, overwrite_c=True)
 
 
 @dataclass(frozen=True, eq=False)
 class EndCorrection:
-    """The ends' part of the displacements, acting on transforms along y of the zero-padded grid.
+    """The ends' part of the displacements, acting on transforms along y of the zero-padded grid."""
 
-    Attributes
-    ----------
-    parities : tuple of int
-        Parities that the ends do not mix; 0 alone for one end.
-    moments : dict of Load to list of array (position, cell)
-        By direction and per parity, from cells to graded positions. Two parities know the cells up to the middle
-        only: those beyond are folded onto them.
-    kernels : dict of Response to list of array (wavenumber, position, position)
-        Per parity, displacement at the graded positions from a load there, without the factor i of kernels odd along y.
-    cell : float
-        Cell size along x.
-    """
-
-    parities: tuple[int, ...]
+    parities: tuple[int, ...]  # parities that the ends do not mix; 0 alone for one end
     moments: Mapping[Load, list[FloatArray]]
+    """(position, cell): by direction and per parity, from cells to graded positions. With two parities the cells
+    beyond the middle are folded onto the first half."""
     kernels: Mapping[Response, list[FloatArray]]
-    cell: float
+    """(wavenumber, position, position): per parity, displacement at the graded positions from a load there, without
+    the factor i of kernels odd along y."""
+    cell: float  # cell size along x
 
     def gathered(self, load: Load, transform: ComplexArray) -> list[FloatArray]:
-        """Per parity, a load's transform (cell, wavenumber) on the graded positions, to be seen by `displaced`.
-
-        Arrays (real or imaginary part, wavenumber, position): a product of a kernel with one column at a time is three
-        times faster than with both.
-        """
+        """Per parity, a load's transform on the graded positions: (real or imaginary part, wavenumber, position)."""
+        # A product of a kernel with one column at a time is three times faster than with both.
         # The operator is real: real products on pairs of real and imaginary part are four times faster.
         pairs = np.ascontiguousarray(transform).view(np.float64)
         folded = zip(self.moments[load], self._folded(pairs, load.sign_x), strict=True)
@@ -90,10 +336,7 @@ class EndCorrection:
         return values
 
     def coarsened(self) -> EndCorrection:
-        """Return the correction on cells of twice the size: good enough for a first guess, and made in no time.
-
-        The lower half of the wavenumbers is the coarse grid's, but for the small part that its cells alias.
-        """
+        """Return the correction on cells of twice the size, for a first guess: the lower half of the wavenumbers."""
         coarse: dict[Load, list[FloatArray]] = {}
         for direction, moments in self.moments.items():
             joined = []
@@ -121,7 +364,7 @@ class EndCorrection:
         parities, sides = ends.request.parities, ends.moments(grid.x_edges)
         moments = {
             direction: [
-                np.ascontiguousarray(seen_alike(sides, parity * direction.sign_x)[:, : near if parity else None])
+                np.ascontiguousarray(sum_of_ends(sides, parity * direction.sign_x)[:, : near if parity else None])
                 for parity in parities
             ]
             for direction in dict.fromkeys(chain.from_iterable(ends.samples))

@@ -9,8 +9,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.labels import WIDEST_NAME, folded
-from contactstudy.plots.style import line_styles, new_axes
+from contactstudy.plots.style import LEGEND_WIDTH, fold_text, line_styles, new_axes
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import checked_drop
 
@@ -18,37 +17,36 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 POINTS = 4001
-"""Points that a profile is drawn with. Speed."""
 
 
 def plot_profile(
     profile: Profile, length: float, ax: Axes | None = None, *, deepest: float | None = None, **style: Any
 ) -> Axes:
-    """Draw the generatrix of a roller: material that is missing lies downwards.
+    """Draw the generatrix of a roller, with the drop downwards.
 
     Parameters
     ----------
     profile : Profile
-        What to draw.
+        Profile to draw.
     length : float
         Length of the roller, metres.
     ax : Axes, optional
-        Where to draw; default: a new figure.
+        Axes to draw in; default: a new figure.
     deepest : float, optional
-        Largest drop on the axis, metres; default: what is drawn. Crowns of micrometres beside fillets of tenths of a
-        millimetre need it.
+        Largest drop on the axis, metres; default: the largest of the profile. Limit it for crowns of micrometres beside
+        fillets of tenths of a millimetre.
     **style
-        For the line, as in matplotlib.
+        Style of the line, as in matplotlib.
 
     Returns
     -------
     Axes
-        With the line added. Where a drop is infinite the line ends.
+        The line ends where the drop is infinite.
 
     Raises
     ------
     InvalidInputError
-        If `profile` is no profile, or does not fit the length, or a number is not positive.
+        If `profile` is not a profile or does not fit the length, or a number is not positive.
 
     Examples
     --------
@@ -76,18 +74,18 @@ def plot_profile(
 def plot_profiles(
     profiles: Mapping[str, Profile], length: float, ax: Axes | None = None, *, deepest: float | None = None
 ) -> Axes:
-    """Compare the generatrices of several rollers of one length; dark to light, each with its own dashes.
+    """Compare the generatrices of rollers of one length.
 
     Parameters
     ----------
     profiles : mapping of str to Profile
-        What to draw, by the names in the legend.
+        Profiles by their names in the legend.
     length : float
         Length of the rollers, metres.
     ax : Axes, optional
-        Where to draw; default: a new figure.
+        Axes to draw in; default: a new figure.
     deepest : float, optional
-        Largest drop on the axis, metres; default: what is drawn.
+        Largest drop on the axis, metres; default: the largest of the profiles.
 
     Returns
     -------
@@ -96,7 +94,7 @@ def plot_profiles(
     Raises
     ------
     InvalidInputError
-        If there is nothing to draw, or for the reasons of :func:`plot_profile`.
+        If `profiles` is empty, or :func:`plot_profile` raises it.
 
     Examples
     --------
@@ -109,7 +107,7 @@ def plot_profiles(
     if not profiles:
         raise InvalidInputError("profiles", dict(profiles), "at least one profile")
     for (name, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
-        ax = plot_profile(profile, length, ax, deepest=deepest, label=folded(name, WIDEST_NAME), **style)
+        ax = plot_profile(profile, length, ax, deepest=deepest, label=fold_text(name, LEGEND_WIDTH), **style)
     assert ax is not None
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

@@ -11,26 +11,27 @@ from contactstudy import checks
 from contactstudy.analysis import dimension_along, in_plane, measure, positions, single_case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.labels import fold_labels
-from contactstudy.plots.singular import capped
-from contactstudy.plots.style import COLORS, Units, new_axes, units
+from contactstudy.plots.singular import cap_field
+from contactstudy.plots.style import COLORS, Units, fold_labels, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.contour import QuadContourSet
 
-LEVELS = 12
-"""About how many contours are drawn."""
+LEVELS = 12  # Approximate number of contours
+NEAR_PLANE = 0.15  # Distance from a plane, over the Hertz half-width, within which the largest value is marked in it
 
 
-def _contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:
-    """Draw filled contours with every second level drawn as a line."""
-    drawn = ax.contourf(across, down, values, levels=levels, cmap=COLORS)
-    ax.contour(drawn, levels=np.asarray(drawn.levels)[::2], colors="white", linewidths=0.5)
-    return drawn
+def _draw_contours(ax: Axes, across: FloatArray, down: FloatArray, values: FloatArray, levels: Any) -> QuadContourSet:
+    """Draw filled contours, and every second level as a line."""
+    contours = ax.contourf(across, down, values, levels=levels, cmap=COLORS)
+    ax.contour(contours, levels=np.asarray(contours.levels)[::2], colors="white", linewidths=0.5)
+    return contours
 
 
-def _grid(plane: xr.DataArray, across: str, down: str, unit: Units) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _plane_arrays(
+    plane: xr.DataArray, across: str, down: str, unit: Units
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Positions and values (down, across) of a plane in the units of the figure."""
     dims = [dimension_along(plane, axis) for axis in (across, down)]
     if min(plane.sizes[dim] for dim in dims) < 2:
@@ -63,12 +64,12 @@ def plot_stress_plane(
     variable : str
         A stress, or a measure, see :func:`contactstudy.analysis.measure`.
     y, x, z : float, optional
-        Where the plane is, metres, at most one of them; between the positions of the result it is interpolated.
+        Position of the plane, metres, at most one of them; interpolated between the positions of the result.
         Default: ``y = 0``.
     ax : Axes, optional
-        Where to draw; default: a new figure.
+        Axes to draw in; default: a new figure.
     levels : int or sequence of float, optional
-        Contour levels, or about how many.
+        Contour levels, or their approximate number.
     colorbar : bool
         Whether to add one.
     si : bool
@@ -77,48 +78,73 @@ def plot_stress_plane(
     Returns
     -------
     Axes
-        With the depth downwards.
+        With the depth downwards. A cross marks the largest value in the body, if it lies in the plane.
 
     Raises
     ------
     InvalidInputError
         If the variable is missing or has fewer than two positions along an axis of the plane, the plane lies outside
-        the result, more than one is given, or there is more than one case.
+        the result, more than one position is given, or the Dataset contains more than one case.
 
     Examples
     --------
     >>> field = xr.DataArray([[[1.0, 4.0]], [[2.0, 3.0]]], dims=("x", "y", "z"),
     ...                      coords={"x": [0.0, 1.0], "y": [0.0], "z": [0.0, 1.0]})
-    >>> one = xr.Dataset({"von_mises": field, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
-    >>> plot_stress_plane(one).get_ylabel()
+    >>> case = xr.Dataset({"von_mises": field, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> plot_stress_plane(case).get_ylabel()
     'depth, $z/a$'
     """
     measure(dataset, variable)
-    one = single_case(dataset)
-    unit = units(one, si=si)
-    given = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
-    field, most = capped(one, measure(one, variable))
-    one = one.assign({variable: field})
-    plane = in_plane(one, variables=variable, x=given.get("x"), y=given.get("y"), z=given.get("z"))[variable]
-    ((at, value),) = given.items()
-    across, down = (axis for axis in "xyz" if axis != at)
-    first, second, values = _grid(plane, across, down, unit)
+    case = single_case(dataset)
+    unit = units(case, si=si)
+    plane_position = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
+    field, bound = cap_field(case, measure(case, variable))
+    plane = in_plane(
+        case.assign({variable: field}),
+        variables=variable,
+        x=plane_position.get("x"),
+        y=plane_position.get("y"),
+        z=plane_position.get("z"),
+    )[variable]
+    ((normal, position),) = plane_position.items()
+    across, down = (axis for axis in "xyz" if axis != normal)
+    first, second, values = _plane_arrays(plane, across, down, unit)
     ax = new_axes(ax, (6.4, 3.2))
-    drawn = _contours(ax, first, second, values, LEVELS if levels is None else levels)
+    contours = _draw_contours(ax, first, second, values, LEVELS if levels is None else levels)
     if down == "z":
         ax.set_ylim(second.max(), second.min())
     ax.set_xlabel(unit.axis(across))
     ax.set_ylabel(unit.axis(down))
-    ax.set_title(f"plane {unit.place(at, value)}", fontsize="medium")
+    ax.set_title(f"plane {unit.position(normal, position)}", fontsize="medium")
+    mark_largest(ax, case, variable, {normal: position}, unit)
     if colorbar:
-        beyond = (
-            " (more beside the singular end)"
-            if most < np.inf and np.asarray(drawn.levels).max() >= most / unit.stress
-            else ""
-        )
-        fold_labels(ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable) + beyond).ax)
+        capped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
+        label = unit.stress_label(variable) + (" (unbounded at the singular end)" if capped else "")
+        fold_labels(ax.figure.colorbar(contours, ax=ax, label=label).ax)
     fold_labels(ax)
     return ax
+
+
+def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, float], unit: Units) -> None:
+    """Mark the largest value in the body, ``peak_<variable>``, if it lies in the plane."""
+    name = f"peak_{variable}"
+    if any(f"{name}{suffix}" not in case for suffix in ("", "_x", "_y", "_z")) or not np.isfinite(float(case[name])):
+        return
+    ((normal, position),) = plane.items()
+    place = {axis: float(case[f"{name}_{axis}"]) for axis in "xyz"}
+    if abs(place[normal] - position) > NEAR_PLANE * float(case.get("hertz_half_width", 0.0)) + 1e-9:
+        return
+    across, down = (place[axis] / unit.length for axis in "xyz" if axis != normal)
+    ax.plot(across, down, "+", color="#e8513a", markersize=9, markeredgewidth=1.6)
+    ax.annotate(
+        f"{float(case[name]) / unit.stress:.3g}",
+        (across, down),
+        (6, -6),
+        textcoords="offset points",
+        color="white",
+        fontsize="small",
+        va="top",
+    )
 
 
 def plot_end_face(
@@ -144,15 +170,15 @@ def plot_end_face(
     variable : str
         A stress, or a measure, see :func:`contactstudy.analysis.measure`.
     ax : Axes, optional
-        Where to draw; default: a new figure.
+        Axes to draw in; default: a new figure.
     end : {"first", "last"}
-        Which end: ``x = 0``, or the largest x of the stresses.
+        End: ``x = 0``, or the largest x of the stresses.
     side : {1, -1}
-        Whether to show the face's half with y > 0 (where sliding drags the body to) or with y < 0.
+        Half of the face: y > 0 (the direction of sliding) or y < 0.
     distance : float, optional
-        How far to draw along x, in the unit of the figure; default: twice as far as along y.
+        Extent along x, in the unit of the figure; default: twice the extent along y.
     levels : int or sequence of float, optional
-        Contour levels, or about how many.
+        Contour levels, or their approximate number.
     si : bool
         Whether to draw mm and MPa instead of lengths over a and stresses over p0.
 
@@ -163,61 +189,58 @@ def plot_end_face(
     Raises
     ------
     InvalidInputError
-        If the variable is missing, or has fewer than two positions along an axis or on that side; if the stresses do
-        not reach the face, or there is more than one case.
+        If the variable is missing or has fewer than two positions along an axis or on the chosen side, if the stresses
+        do not reach the face, or the Dataset contains more than one case.
 
     Examples
     --------
     >>> points = {"x": [0.0, 1.0], "y": [0.0, 1.0], "z": [0.0, 1.0]}
     >>> field = xr.DataArray([[[1.0, 4.0], [1.0, 1.0]], [[2.0, 3.0], [1.0, 1.0]]], dims=tuple(points), coords=points)
-    >>> one = xr.Dataset({"von_mises": field, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
-    >>> plot_end_face(one).get_ylabel()
+    >>> case = xr.Dataset({"von_mises": field, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> plot_end_face(case).get_ylabel()
     'depth, $z/a$'
     """
     measure(dataset, variable)
-    one = single_case(dataset)
-    unit = units(one, si=si)
+    case = single_case(dataset)
+    unit = units(case, si=si)
     checks.known_name("end", end, ("first", "last"))
     if side not in (1, -1):
         raise InvalidInputError("side", side, "1 for y > 0 or -1 for y < 0")
-    field = measure(one, variable)
-    places = {axis: positions(field, axis).values for axis in "xy"}
-    reach = float(places["x"].max() - places["x"].min())
-    face = float(places["x"].max()) if end == "last" else 0.0
-    if abs(float(places["x"].min()) - face) > 1e-9 * reach and end == "first":
+    x_field = positions(measure(case, variable), "x").values
+    span = float(x_field.max() - x_field.min())
+    face = float(x_field.max()) if end == "last" else 0.0
+    if abs(float(x_field.min()) - face) > 1e-9 * span and end == "first":
         raise InvalidInputError(
             "x",
-            float(places["x"].min()),
+            float(x_field.min()),
             "0, the end face, for the first position of stresses",
-            "by default they are at the cells' centres: solve(case, x=...) with 0 among the positions",
+            "include the face: solve(case, x=...) with 0 among the positions",
         )
-    inside = in_plane(one, variables=variable, y=0.0)[variable]
-    on_face = in_plane(one, variables=variable, x=face)[variable]
+    inside = in_plane(case, variables=variable, y=0.0)[variable]
+    on_face = in_plane(case, variables=variable, x=face)[variable]
     y_dim = dimension_along(on_face, "y")
     outer = side * on_face[y_dim] > 0
-    # The fold itself belongs to both: its values are those of the plane y = 0.
-    fold = in_plane(one, variables=variable, y=0.0)[variable].sel({dimension_along(inside, "x"): face})
-    half = xr.concat([fold.reset_coords(drop=True).expand_dims({y_dim: [0.0]}), on_face[{y_dim: outer.values}]], y_dim)
-    half = half.rename(variable)
-    x, z, right = _grid(inside, "x", "z", unit)
-    y, _, left = _grid(half, "y", "z", unit)
+    # The fold belongs to both halves: its values are those of the plane y = 0.
+    fold = inside.sel({dimension_along(inside, "x"): face}).reset_coords(drop=True).expand_dims({y_dim: [0.0]})
+    half = xr.concat([fold, on_face[{y_dim: outer.values}]], y_dim).rename(variable)
+    x, z, right = _plane_arrays(inside, "x", "z", unit)
+    y, _, left = _plane_arrays(half, "y", "z", unit)
     x = np.abs(x - face / unit.length)
-    shown = x <= (2 * np.abs(y).max() if distance is None else checks.positive("distance", distance)) * (1 + 1e-9)
+    limit = 2 * np.abs(y).max() if distance is None else checks.positive("distance", distance)
+    near = x <= limit * (1 + 1e-9)
     if levels is None or np.ndim(levels) == 0:
         from matplotlib.ticker import MaxNLocator
 
-        both = np.concatenate([right[:, shown].ravel(), left.ravel()])
-        levels = MaxNLocator(LEVELS if levels is None else levels).tick_values(both.min(), both.max())
+        values = np.concatenate([right[:, near].ravel(), left.ravel()])
+        levels = MaxNLocator(LEVELS if levels is None else levels).tick_values(values.min(), values.max())
     ax = new_axes(ax, (7.2, 3.4))
-    drawn = _contours(ax, x[shown], z, right[:, shown], levels)
-    _contours(ax, -np.abs(y), z, left, levels)
+    contours = _draw_contours(ax, x[near], z, right[:, near], levels)
+    _draw_contours(ax, -np.abs(y), z, left, levels)
     ax.axvline(0.0, color="black", linewidth=1.0)
     ax.set_ylim(z.max(), z.min())
-    # Distances count from the fold to both sides.
-    ax.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
-    sign = "" if side > 0 else "-"
-    over = unit.over_length
+    ax.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")  # distances from the fold to both sides
+    sign, over = "" if side > 0 else "-", unit.over_length
     ax.set_xlabel(f"on the end face, ${sign}y{over}$   |   in the plane $y = 0$, $x{over}$ from the face")
     ax.set_ylabel(unit.axis("z"))
-    fold_labels(ax, ax.figure.colorbar(drawn, ax=ax, label=unit.stress_label(variable)).ax)
+    fold_labels(ax, ax.figure.colorbar(contours, ax=ax, label=unit.stress_label(variable)).ax)
     return ax

@@ -1,7 +1,8 @@
-"""What all figures share: colours that keep their order in grey, line styles, units and labels, saving."""
+"""Style of all figures: colours that keep their order in grey, dashes, units, folded labels, saving."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,8 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLORS = "viridis"
-"""Colour map whose lightness grows from end to end, so that it can be read in grey and by the colour-blind."""
+COLORS = "viridis"  # Colour map of increasing lightness, legible in grey and to the colour-blind
 
 DASHES: tuple[Any, ...] = (
     "-",
@@ -28,10 +28,10 @@ DASHES: tuple[Any, ...] = (
     (0, (1, 1)),
     (0, (8, 2, 1, 2, 1, 2)),
 )
-"""Lines differ by their dashes as well as by colour."""
+MARKERS = "osD^vPX*"
 
 AXIS_MEANINGS = {"x": "distance from the free end", "y": "position along rolling", "z": "depth"}
-"""Words for the axes, shorter than in the table of variables."""
+"""Labels of axes, shorter than in the table of variables."""
 
 SYMBOLS = {
     "e_over_a": "distance of the roller's end from the free end, $e/a$",
@@ -39,11 +39,17 @@ SYMBOLS = {
     "gamma": r"length over radius, $\gamma$",
     "max_pressure": "Hertz pressure, $p_0$",
 }
-"""Labels of swept parameters that the theory has a symbol for; the symbols of variables stand in their table."""
+"""Labels of swept parameters with a symbol in the theory; the table of variables contains the symbols of results."""
+
+LETTER_WIDTH = 0.073  # inches, of a label
+SHORTEST_LINE = 14  # letters
+LEGEND_WIDTH = 40  # letters of a name in a legend within the axes
+WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
+MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
 class Units(NamedTuple):
-    """Length and stress that a figure is drawn in, and how its labels name them."""
+    """Length and stress of a figure's axes in SI, and their suffixes in labels."""
 
     length: float
     stress: float
@@ -54,38 +60,26 @@ class Units(NamedTuple):
         """Label of positions along x, y or z."""
         return f"{AXIS_MEANINGS[axis]}, ${axis}{self.over_length}$"
 
-    def place(self, axis: str, position: float) -> str:
-        """Text for a position in metres."""
-        shown = f"{position / self.length:.3g}"
-        return f"${axis}{self.over_length}$ = {shown}" if self.over_length == "/a" else f"${axis}$ = {shown} mm"
+    def position(self, axis: str, position: float) -> str:
+        """Text of a position in metres."""
+        number = f"{position / self.length:.3g}"
+        return f"${axis}{self.over_length}$ = {number}" if self.over_length == "/a" else f"${axis}$ = {number} mm"
 
     def stress_label(self, variable: str) -> str:
         """Label of a stress or a pressure."""
-        known = specification(variable)
-        if known is None or not known.symbol:
-            meaning = known.long_name if known else variable.replace("_", " ")
+        entry = specification(variable)
+        if entry is None or not entry.symbol:
+            meaning = entry.long_name if entry else variable.replace("_", " ")
             return f"{meaning}{' over $p_0$' if self.over_stress == '/p_0' else ' (MPa)'}"
-        meaning = "" if variable in STRESSES else f"{known.long_name}, "
-        return f"{meaning}${known.symbol}{self.over_stress}$"
+        meaning = "" if variable in STRESSES else f"{entry.long_name}, "
+        return f"{meaning}${entry.symbol}{self.over_stress}$"
 
 
-MILLIMETRES = Units(1e-3, 1e6, r"\ \mathrm{(mm)}", r"\ \mathrm{(MPa)}")
-"""What figures with ``si=True`` are drawn in."""
+MILLIMETRES = Units(1e-3, 1e6, r"\ \mathrm{(mm)}", r"\ \mathrm{(MPa)}")  # Units of figures with ``si=True``
 
 
 def units(dataset: xr.Dataset, *, si: bool) -> Units:
-    """Return the Hertz half-width and pressure of one case as units; or mm and MPa.
-
-    Raises
-    ------
-    InvalidInputError
-        If the result lacks its Hertz half-width and pressure.
-
-    Examples
-    --------
-    >>> units(xr.Dataset(), si=True).stress
-    1000000.0
-    """
+    """Return the Hertz half-width and pressure of one case as units; or mm and MPa."""
     if si:
         return MILLIMETRES
     for name in ("hertz_half_width", "hertz_max_pressure"):
@@ -96,19 +90,13 @@ def units(dataset: xr.Dataset, *, si: bool) -> Units:
     return Units(float(dataset["hertz_half_width"]), float(dataset["hertz_max_pressure"]), "/a", "/p_0")
 
 
-def as_written(value: object) -> str:
-    r"""Return a name from a study as text that matplotlib shows as it is, dollar signs included.
-
-    Examples
-    --------
-    >>> print(as_written("$1 roller"))
-    \$1 roller
-    """
+def escape_dollars(value: object) -> str:
+    """Return a name from a study as literal text for matplotlib."""
     return str(value).replace("$", r"\$")
 
 
 def new_axes(ax: Axes | None, size: tuple[float, float] = (6.4, 4.0)) -> Axes:
-    """Return the given axes, or those of a new figure of `size` inches."""
+    """Return the given axes, or the axes of a new figure of `size` inches."""
     if ax is not None:
         return ax
     from matplotlib import pyplot
@@ -117,7 +105,7 @@ def new_axes(ax: Axes | None, size: tuple[float, float] = (6.4, 4.0)) -> Axes:
 
 
 def line_styles(count: int) -> list[dict[str, Any]]:
-    """Return styles of `count` lines, dark to light, each with its own dashes."""
+    """Return styles of `count` lines, dark to light, with different dashes."""
     import matplotlib
 
     colors = matplotlib.colormaps[COLORS](np.linspace(0.0, 0.8, count))
@@ -125,6 +113,36 @@ def line_styles(count: int) -> list[dict[str, Any]]:
         {"color": color, "linestyle": DASHES[number % len(DASHES)], "linewidth": 1.8}
         for number, color in enumerate(colors)
     ]
+
+
+def fold_text(text: str, width: int) -> str:
+    """Break a text into lines of at most `width` letters between words; formulas stay whole."""
+    lines: list[str] = []
+    for word in WORD.findall(text):
+        if lines and _visible_length(lines[-1]) + 1 + _visible_length(word) <= width:
+            lines[-1] += f" {word}"
+        elif "$" in word:
+            lines.append(word)
+        else:
+            lines += [word[start : start + width] for start in range(0, len(word), width)]
+    return "\n".join(lines)
+
+
+def _visible_length(text: str) -> int:
+    """Letters of a text without the markup of formulas."""
+    return len(MARKUP.sub("", text))
+
+
+def fold_labels(*axes: Axes) -> None:
+    """Fold labels and titles of axes to the length of their side."""
+    for ax in axes:
+        dots = ax.get_window_extent()
+        across, up = (
+            max(SHORTEST_LINE, int(size / ax.figure.dpi / LETTER_WIDTH)) for size in (dots.width, dots.height)
+        )
+        for text, width in ((ax.xaxis.label, across), (ax.yaxis.label, up), (ax.title, across)):
+            if text.get_text():
+                text.set_text(fold_text(text.get_text(), width))
 
 
 def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf")) -> list[Path]:
@@ -135,9 +153,9 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     figure : Figure
         The figure.
     path : str or Path
-        File name; its suffix, if it is one of `formats`, is left out.
+        File name; a suffix among `formats` is removed.
     formats : sequence of str
-        Formats that matplotlib knows.
+        Formats of matplotlib.
 
     Returns
     -------
@@ -147,7 +165,7 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     Raises
     ------
     InvalidInputError
-        If matplotlib cannot write a format, or a file cannot be written.
+        If matplotlib does not support a format, or a file cannot be written.
 
     Examples
     --------
@@ -159,15 +177,16 @@ def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf
     """
     import matplotlib
 
-    known = figure.canvas.get_supported_filetypes()
+    supported = figure.canvas.get_supported_filetypes()
     for name in formats:
-        if name not in known:
-            raise InvalidInputError("formats", name, f"among {', '.join(sorted(known))}")
+        if name not in supported:
+            raise InvalidInputError("formats", name, f"among {', '.join(sorted(supported))}")
     base = Path(path)
     if base.suffix.removeprefix(".") in formats:
         base = base.with_suffix("")
     files = [base.with_name(f"{base.name}.{name}") for name in formats]
-    with matplotlib.rc_context({"pdf.fonttype": 42}), checks.writing(base.parent):
+    with matplotlib.rc_context({"pdf.fonttype": 42}):
         for file in files:
-            figure.savefig(file, dpi=200, bbox_inches="tight")
+            with checks.writing(file) as part:
+                figure.savefig(part, dpi=200, bbox_inches="tight")
     return files

@@ -9,18 +9,15 @@ conventions with a sketch, and a table of all profiles with formulas and sources
 (Lundberg, ISO/TS 16281): the roller does not touch there.
 """
 
-from contactstudy.near_names import suggest
 from contactstudy.profiles.base import Profile, Shape, Sum, local_radius
-from contactstudy.profiles.corners import EffectiveLength
-from contactstudy.profiles.crowned import FullCrown, PartialCrown
-from contactstudy.profiles.ellipsoid import Ellipsoid, Sphere
-from contactstudy.profiles.halves import Halves
-from contactstudy.profiles.iso import IsoCylindrical, IsoTapered
-from contactstudy.profiles.logarithmic import FujiwaraKawase, JohnsGohar, Lundberg
+from contactstudy.profiles.combinations import EffectiveLength, Halves
+from contactstudy.profiles.crowned import Ellipsoid, FullCrown, PartialCrown, Sphere
+from contactstudy.profiles.logarithmic import FujiwaraKawase, IsoCylindrical, IsoTapered, JohnsGohar, Lundberg
 from contactstudy.profiles.measured import Measured
-from contactstudy.profiles.straight import Cylinder, Tapered
+from contactstudy.profiles.straight import Chamfer, Cylinder, Tapered
 
 __all__ = [
+    "Chamfer",
     "Cylinder",
     "EffectiveLength",
     "Ellipsoid",
@@ -40,5 +37,3 @@ __all__ = [
     "Tapered",
     "local_radius",
 ]
-
-suggest(__name__, __all__)

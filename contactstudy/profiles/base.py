@@ -1,26 +1,27 @@
-"""What every profile can do: a drop, a local radius, and addition."""
+"""Interface of profiles: drop, local radius, corners, samples, and addition."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import Field, dataclass, fields, is_dataclass
-from typing import Protocol, runtime_checkable
+from typing import NamedTuple, Protocol, runtime_checkable
 
 import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.engineering import quantity
-from contactstudy.arrays.html_table import html_table
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
-UNITS = {"half_angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
-"""Units of the numbers of profiles that are no lengths."""
+# Units of the parameters of profiles other than lengths
+UNITS = {"half_angle": "rad", "angle": "rad", "delta": "1", "k1": "1", "k2": "1"}
+# Step of the differences for a slope, over the length, and the least jump of a slope beyond rounding
+SLOPE_STEP, LEAST_JUMP = 1e-6, 1e-6
 
 
 @runtime_checkable
 class Profile(Protocol):
-    """What the solver needs of a profile."""
+    """Interface that the solver requires of a profile."""
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; ``|x| <= length / 2``."""
@@ -28,16 +29,33 @@ class Profile(Protocol):
 
 
 def in_words(profile: object) -> str:
-    """Return what a profile says of itself; of a class of one's own that says nothing its name, not its address."""
+    """Return the repr of a profile; the class name for a user's class without a repr."""
     silent = type(profile).__repr__ is object.__repr__
     return f"{type(profile).__name__}()" if silent else repr(profile)
 
 
-class Shape:
-    """Base of the profiles of this package: gives them ``+`` and a radius across.
+class SlopeJumps(NamedTuple):
+    """Corners of a generatrix."""
 
-    A class of one's own needs only ``drop(x, length)``; derived from this one it can be a summand, and may have a
-    radius that varies along the roller.
+    positions: FloatArray  # from mid-length, m, increasing
+    jumps: FloatArray  # increase of the slope of the drop; positive at a convex corner
+
+    @classmethod
+    def merged(cls, *corners: SlopeJumps) -> SlopeJumps:
+        """Corners of profiles that add up: jumps at one position are added, jumps of rounding are omitted."""
+        positions = np.concatenate([corner.positions for corner in corners])
+        jumps = np.concatenate([corner.jumps for corner in corners])
+        unique, indices = np.unique(positions, return_inverse=True)
+        sums = np.bincount(indices, weights=jumps, minlength=unique.size)
+        corner = np.abs(sums) > LEAST_JUMP
+        return cls(unique[corner], np.asarray(sums[corner], dtype=np.float64))
+
+
+class Shape:
+    """Base of the profiles of this package: defines ``+``, the radius across the roller, corners and samples.
+
+    A user's class needs only ``drop(x, length)``. Derived from `Shape` it can be a summand, and can override the
+    methods below.
     """
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
@@ -48,14 +66,22 @@ class Shape:
         """Radius of curvature across the roller (m) at `x`, for a roller with `radius` at mid-length: the same."""
         return np.broadcast_to(np.asarray(radius, dtype=np.float64), np.shape(x))
 
+    def slope_jumps(self, length: float) -> SlopeJumps:
+        """Corners of the generatrix; none for a smooth profile."""
+        return SlopeJumps(np.zeros(0), np.zeros(0))
+
+    def nodes(self, length: float) -> FloatArray:
+        """Distances from mid-length (m) between which the profile is smooth: corners, measured points."""
+        return self.slope_jumps(length).positions
+
+    def second_interpolation(self) -> Profile | None:
+        """Profile through the same measured points by another interpolation; None for a formula."""
+        return None
+
     def __repr__(self) -> str:
-        return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._said())})"
+        return f"{type(self).__name__}({', '.join(f'{name}={text}' for name, text in self._arguments())})"
 
-    def _repr_html_(self) -> str:
-        rows = [(name.replace("_", " "), text) for name, text in self._said()]
-        return html_table([(type(self).__name__, rows)])
-
-    def _said(self) -> Iterator[tuple[str, str]]:
+    def _arguments(self) -> Iterator[tuple[str, str]]:
         """Values that are not the default ones, in the units of engineers."""
         entries: tuple[Field[object], ...] = fields(self) if is_dataclass(self) else ()
         for entry in entries:
@@ -74,16 +100,9 @@ class Shape:
 
 
 def unit_of(profile: object, name: str) -> str:
-    """Return the unit of a number of a profile's class; it is empty for a class or function of one's own.
-
-    Examples
-    --------
-    >>> from contactstudy.profiles import FujiwaraKawase
-    >>> [unit_of(FujiwaraKawase, name) for name in ("amplitude", "k1", "other")], unit_of(lambda k1: None, "k1")
-    (['m', '1', ''], '')
-    """
-    own = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
-    return UNITS.get(name, "m") if own and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
+    """Return the unit of a parameter of a profile's class; empty for a user's class or function."""
+    packaged = isinstance(profile, type) and issubclass(profile, Shape) and is_dataclass(profile)
+    return UNITS.get(name, "m") if packaged and any(entry.name == name for entry in fields(profile)) else ""  # type: ignore[arg-type]
 
 
 def _terms(profile: Shape | Profile) -> tuple[Profile, ...]:
@@ -97,55 +116,45 @@ def local_radius(profile: Profile, x: FloatArray, length: float, radius: float |
     Parameters
     ----------
     profile : Profile
-        Any profile; one that says nothing of it leaves `radius` as it is.
+        Any profile; a user's class leaves `radius` unchanged.
     x : array
         Distances from mid-length, metres.
     length : float
         Length of the roller, metres.
     radius : float or array
-        Radius at mid-length (or, in a sum, what the other summands make of it), metres.
+        Radius at mid-length, in a sum after the preceding summands, metres.
 
     Returns
     -------
     array
         Of the shape of `x`, metres.
     """
-    if isinstance(profile, Shape):
-        return profile.local_radius(x, length, radius)
-    return Shape().local_radius(x, length, radius)
+    return as_shape(profile).local_radius(x, length, radius)
+
+
+def as_shape(profile: Profile) -> Shape:
+    """Return a profile with the methods of `Shape`: itself, or smooth and without measured points."""
+    return profile if isinstance(profile, Shape) else Shape()
+
+
+def end_slope(profile: Profile, x: float, length: float, side: int) -> float:
+    """Slope of the drop at `x` from the side of larger (`side` = 1) or smaller x (-1), from three drops."""
+    step = side * SLOPE_STEP * length
+    drops = checked_drop(profile, x + step * np.array([0.0, 1.0, 2.0]), length)
+    return float((-3 * drops[0] + 4 * drops[1] - drops[2]) / (2 * step))
 
 
 def checked_drop(profile: Profile, x: FloatArray, length: float) -> FloatArray:
-    """Drop (m) of any profile at distances `x` from mid-length, or an error if it is not one number for each.
-
-    Parameters
-    ----------
-    profile : Profile
-        Any profile, a class of one's own among them.
-    x : array
-        Distances from mid-length, metres.
-    length : float
-        Length of the roller, metres.
-
-    Returns
-    -------
-    array
-        Of the shape of `x`, metres; may be infinite.
-
-    Raises
-    ------
-    InvalidInputError
-        If what the profile returns has another shape, is not real, or is negative or NaN somewhere.
-    """
-    found = np.asarray(profile.drop(x, length))
+    """Drop (m) of any profile at distances `x` from mid-length; raises unless it is one number >= 0 for each."""
+    drops = np.asarray(profile.drop(x, length))
     expected = "a profile whose drop(x, length) is an array like x, metres, not negative"
-    if found.shape != x.shape or found.dtype.kind not in "iuf":
-        raise InvalidInputError("profile", profile, expected, f"it returned {found.dtype} of shape {found.shape}")
-    wrong = np.flatnonzero(~(found >= 0))
+    if drops.shape != x.shape or drops.dtype.kind not in "iuf":
+        raise InvalidInputError("profile", profile, expected, f"it returned {drops.dtype} of shape {drops.shape}")
+    wrong = np.flatnonzero(~(drops >= 0))
     if wrong.size:
-        where = f"it returned {found[wrong[0]]} at x = {x[wrong[0]]:g} m"
+        where = f"it returned {drops[wrong[0]]} at x = {x[wrong[0]]:g} m"
         raise InvalidInputError("profile", profile, expected, where)
-    return np.asarray(found, dtype=np.float64)
+    return np.asarray(drops, dtype=np.float64)
 
 
 @dataclass(frozen=True, repr=False)
@@ -160,13 +169,7 @@ class Sum(Shape):
     Raises
     ------
     InvalidInputError
-        If there is no summand, or one is not a profile.
-
-    Notes
-    -----
-    Every summand is counted from its own highest point, so a sum is nowhere negative. Where the highest points differ
-    (a crown and a measured waviness) the sum is positive everywhere, and the approach of a contact, which is counted
-    from drop 0, contains that constant.
+        If the tuple is empty, or a summand is not a profile.
 
     Examples
     --------
@@ -179,7 +182,6 @@ class Sum(Shape):
     terms: tuple[Profile, ...]
 
     def __post_init__(self) -> None:
-        """Check the summands."""
         if not isinstance(self.terms, tuple) or not self.terms:
             raise InvalidInputError("terms", self.terms, "a tuple of at least one profile")
         for term in self.terms:
@@ -188,14 +190,25 @@ class Sum(Shape):
     def __repr__(self) -> str:
         return " + ".join(map(in_words, self.terms))
 
-    def _said(self) -> Iterator[tuple[str, str]]:
-        """Summands."""
-        yield from (("and" if number else "sum of", in_words(term)) for number, term in enumerate(self.terms))
-
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Sum of the drops (m) at distances `x` (m) from mid-length."""
         drops = [checked_drop(term, np.asarray(x), length) for term in self.terms]
         return np.asarray(sum(drops[1:], start=drops[0]))
+
+    def slope_jumps(self, length: float) -> SlopeJumps:
+        """Corners of all summands."""
+        return SlopeJumps.merged(*(as_shape(term).slope_jumps(length) for term in self.terms))
+
+    def nodes(self, length: float) -> FloatArray:
+        """Nodes (m) of all summands."""
+        return np.unique(np.concatenate([as_shape(term).nodes(length) for term in self.terms]))
+
+    def second_interpolation(self) -> Sum | None:
+        """Sum with the second interpolation of every measured summand."""
+        variants = [as_shape(term).second_interpolation() for term in self.terms]
+        if not any(variants):
+            return None
+        return Sum(tuple(other or term for other, term in zip(variants, self.terms, strict=True)))
 
     def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
         """Radius across the roller (m) after every summand in turn."""

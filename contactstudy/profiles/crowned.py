@@ -1,4 +1,4 @@
-"""Crowns made of circular arcs."""
+"""Crowns of circular arcs; sphere and ellipsoid of Hertz' theory."""
 
 from __future__ import annotations
 
@@ -34,11 +34,6 @@ class FullCrown(Shape):
     InvalidInputError
         If the radius is not positive, or (on use) too small for the roller, or the centre is beyond its ends.
 
-    Notes
-    -----
-    The circle is exact. For ``x`` small against ``R`` it is the parabola of
-    :class:`~contactstudy.profiles.Ellipsoid`.
-
     Examples
     --------
     >>> import numpy as np
@@ -50,7 +45,6 @@ class FullCrown(Shape):
     centre: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
         object.__setattr__(self, "centre", checks.finite("centre", self.centre, "metres"))
 
@@ -72,7 +66,7 @@ class PartialCrown(Shape):
 
     The crown's arc leaves the straight middle tangentially. The dub-off is a second arc with a smaller radius that
     leaves the first one tangentially, at the distance `dub_length` from the end ("two tangential radii"). With
-    ``straight_length = length - 2 * dub_length`` there is no first arc: a straight roller with dub-off.
+    ``straight_length = length - 2 * dub_length`` the first arc vanishes: a straight roller with dub-off.
 
     Parameters
     ----------
@@ -93,10 +87,7 @@ class PartialCrown(Shape):
 
     Notes
     -----
-    A corner fillet is added as ``+ Cylinder(fillet_radius=...)``. With ``d`` the distance beyond the straight middle
-    and ``d1`` where the dub-off begins, ``drop = R1 - sqrt(R1**2 - d**2)`` up to ``d1``; from there the circle of
-    radius ``R2`` whose centre lies on the radius of the first one through ``d1``:
-    ``drop(d1) + R2 cos(a) - sqrt(R2**2 - (d - d1 + R2 sin(a))**2)`` with ``sin(a) = d1 / R1``.
+    A corner fillet is added as ``+ Cylinder(fillet_radius=...)``.
 
     Examples
     --------
@@ -112,7 +103,6 @@ class PartialCrown(Shape):
     dub_radius: float | None = None
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "straight_length", checks.not_negative("straight_length", self.straight_length, "m"))
         object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
         object.__setattr__(self, "dub_length", checks.not_negative("dub_length", self.dub_length, "metres"))
@@ -159,3 +149,81 @@ class PartialCrown(Shape):
         if begin > self.crown_radius:
             raise InvalidInputError("crown_radius", self.crown_radius, f"at least {begin:g} m, the length of the crown")
         return begin, end
+
+
+@dataclass(frozen=True, repr=False)
+class Ellipsoid(Shape):
+    """Parabola ``drop = x**2 / (2 R_x)``: the roller as an ellipsoid in Hertz' theory.
+
+    The roller's circle is a parabola too, so the gap is exactly Hertz' elliptical contact.
+    :class:`~contactstudy.profiles.FullCrown` is the circle.
+
+    Parameters
+    ----------
+    crown_radius : float
+        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive. Equal to the roller's radius
+        it makes a sphere. The parabola stands for the body only where ``x`` is small against it.
+
+    Raises
+    ------
+    InvalidInputError
+        If the radius is not positive.
+
+    References
+    ----------
+    K. L. Johnson, Contact Mechanics, Cambridge University Press (1985), chapter 4.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Ellipsoid(crown_radius=0.5).drop(np.array([0.0, 1e-3]), length=4e-3).tolist()
+    [0.0, 1e-06]
+    """
+
+    crown_radius: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "crown_radius", checks.positive("crown_radius", self.crown_radius, "metres"))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return np.asarray(np.asarray(x) ** 2 / (2 * self.crown_radius))
+
+
+@dataclass(frozen=True, repr=False)
+class Sphere(Shape):
+    """Sphere in Hertz' theory: an :class:`Ellipsoid` whose crown radius is the roller's radius.
+
+    Parameters
+    ----------
+    radius : float
+        Radius, metres; must equal the roller's.
+
+    Raises
+    ------
+    InvalidInputError
+        If the radius is not positive, or the roller has another one.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> Sphere(radius=5e-3).drop(np.array([0.0, 1e-4]), length=1e-3).tolist()
+    [0.0, 1e-06]
+    """
+
+    radius: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", checks.positive("radius", self.radius, "metres"))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        return Ellipsoid(self.radius).drop(x, length)
+
+    def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+        """Radius of the roller (m), which must equal the sphere's."""
+        if not np.allclose(radius, self.radius, rtol=1e-9, atol=0.0):
+            raise InvalidInputError(
+                "radius", self.radius, f"the roller's radius, {np.max(radius):g} m", "an Ellipsoid may have another one"
+            )
+        return super().local_radius(x, length, radius)

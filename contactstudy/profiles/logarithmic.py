@@ -1,4 +1,4 @@
-"""Logarithmic profiles: Lundberg, Johns and Gohar, Fujiwara and Kawase."""
+"""Logarithmic profiles: Lundberg, Johns and Gohar, Fujiwara and Kawase, and the references of ISO/TS 16281."""
 
 from __future__ import annotations
 
@@ -14,8 +14,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Shape
 
-EDGE_SHARE = 0.5 / math.sqrt(math.e)
-"""Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``."""
+EDGE_SHARE = 0.5 / math.sqrt(math.e)  # Johns and Gohar's 0.3033, ``1 / (2 sqrt(e))``
 
 
 def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> FloatArray:
@@ -25,22 +24,7 @@ def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> Flo
 
 
 def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) -> float:
-    """Amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` (m) of a logarithmic profile from its design pressure.
-
-    Parameters
-    ----------
-    max_pressure : float
-        Peak pressure ``p0`` of the Hertz line contact at the design load, Pa.
-    radius : float
-        Roller radius, metres (the relative radius of curvature if the raceway is curved).
-    modulus : float
-        Contact modulus ``E*``, Pa.
-
-    Examples
-    --------
-    >>> round(1e6 * lundberg_amplitude(1.5e9, radius=5e-3, modulus=230.77e9), 4)
-    0.2112
-    """
+    """Amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` (m) from the Hertz pressure p0 at the design load."""
     pressure = checks.positive("max_pressure", max_pressure, "Pa")
     modulus = checks.positive("modulus", modulus, "Pa")
     return checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2
@@ -52,7 +36,7 @@ class Logarithmic(Shape):
     amplitude: float
 
     @classmethod
-    def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **others: float) -> Self:
+    def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **parameters: float) -> Self:
         """Profile for a design load (N) on a roller.
 
         Parameters
@@ -61,7 +45,7 @@ class Logarithmic(Shape):
             Design load, N.
         length : float
             Length of the roller that carries it, metres.
-        radius, modulus, **others
+        radius, modulus, **parameters
             As for ``for_pressure``.
 
         Examples
@@ -72,9 +56,9 @@ class Logarithmic(Shape):
         sizes = {"length": (length, "metres"), "radius": (radius, "metres"), "modulus": (modulus, "Pa")}
         length, radius, modulus = (checks.positive(name, *value) for name, value in sizes.items())
         pressure = hertz.line_max_pressure(checks.positive("load", load, "N") / length, radius, modulus)
-        made: Any = cls
-        found: Self = made.for_pressure(pressure, radius=radius, modulus=modulus, **others)
-        return found
+        kind: Any = cls
+        profile: Self = kind.for_pressure(pressure, radius=radius, modulus=modulus, **parameters)
+        return profile
 
 
 @dataclass(frozen=True, repr=False)
@@ -116,7 +100,6 @@ class Lundberg(Logarithmic):
     delta: float = 1.0
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
         object.__setattr__(self, "delta", checks.not_negative("delta", self.delta))
 
@@ -180,7 +163,6 @@ class JohnsGohar(Logarithmic):
     half_width: float
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
         object.__setattr__(self, "half_width", checks.not_negative("half_width", self.half_width, "metres"))
 
@@ -258,7 +240,6 @@ class FujiwaraKawase(Logarithmic):
     k2: float = 1.0
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         object.__setattr__(self, "amplitude", checks.positive("amplitude", self.amplitude, "metres"))
         object.__setattr__(self, "edge_drop", checks.not_negative("edge_drop", self.edge_drop, "metres"))
         object.__setattr__(self, "k1", checks.positive("k1", self.k1))
@@ -278,8 +259,97 @@ class FujiwaraKawase(Logarithmic):
         half = length / 2
         scale = self.k1 * self.amplitude
         t = np.clip((np.abs(x) - half) / (self.k2 * half) + 1, 0.0, 1.0)
-        left = np.exp(-self.edge_drop / scale)
-        # two ways to write 1 - (1 - left) t**2: exact where it is near 1, and where it is near 0
+        residue = np.exp(-self.edge_drop / scale)
+        # two forms of 1 - (1 - residue) t**2: exact near 1, and near 0
         with np.errstate(divide="ignore"):
-            logarithm = np.where(t < 0.5, np.log1p((left - 1) * t**2), np.log((1 - t) * (1 + t) + left * t**2))
+            logarithm = np.where(t < 0.5, np.log1p((residue - 1) * t**2), np.log((1 - t) * (1 + t) + residue * t**2))
         return np.asarray(np.clip(-scale * logarithm, 0.0, self.edge_drop))
+
+
+@dataclass(frozen=True, repr=False)
+class IsoCylindrical(Shape):
+    """Reference profile of a cylindrical roller.
+
+    For ``length <= 2.5 D``: ``drop = 0.00035 D ln(1 / (1 - (2 x / length)**2))``. For a longer roller: straight for
+    ``|x| <= (length - 2.5 D) / 2``, then ``drop = 0.0005 D ln(1 / (1 - ((2 |x| - length + 2.5 D) / (2.5 D))**2))``.
+
+    Parameters
+    ----------
+    diameter : float
+        Diameter ``D`` of the roller, metres. The length taken is the effective one, without corners.
+
+    Raises
+    ------
+    InvalidInputError
+        If the diameter is not positive.
+
+    Notes
+    -----
+    The short profile is Lundberg's for a Hertz pressure of 3000 MPa between a steel roller and a flat steel raceway.
+    The two branches differ in their amplitude: at ``length = 2.5 D`` the drop jumps by the factor 0.0005 / 0.00035.
+    The drop is infinite at the very ends.
+
+    References
+    ----------
+    ISO/TS 16281:2008, Rolling bearings - Methods for calculating the modified reference rating life for universally
+    loaded bearings.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> drop = IsoCylindrical(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)
+    >>> (1e6 * drop).round(3).tolist()
+    [0.0, 3.576]
+    """
+
+    diameter: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "diameter", checks.positive("diameter", self.diameter, "metres"))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
+        crowned = 2.5 * self.diameter  # Length over diameter up to which a cylindrical roller is crowned all along
+        if length <= crowned:
+            return logarithmic_drop(0.00035 * self.diameter, 2 * np.asarray(x) / length)
+        inside = np.maximum(2 * np.abs(x) - (length - crowned), 0.0)
+        return logarithmic_drop(0.0005 * self.diameter, inside / crowned)
+
+
+@dataclass(frozen=True, repr=False)
+class IsoTapered(Shape):
+    """Reference profile of a tapered roller: ``drop = 0.00045 D ln(1 / (1 - (2 x / length)**2))``.
+
+    It is the departure from the cone. Add :class:`~contactstudy.profiles.Tapered` for a cone on a surface that is
+    parallel to the axis.
+
+    Parameters
+    ----------
+    diameter : float
+        Mean diameter ``D`` of the roller, metres. The length taken is the effective one, without corners.
+
+    Raises
+    ------
+    InvalidInputError
+        If the diameter is not positive.
+
+    References
+    ----------
+    ISO/TS 16281:2008, as for :class:`IsoCylindrical`.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> drop = IsoTapered(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)
+    >>> (1e6 * drop).round(3).tolist()
+    [0.0, 4.597]
+    """
+
+    diameter: float
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "diameter", checks.positive("diameter", self.diameter, "metres"))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
+        return logarithmic_drop(0.00045 * self.diameter, 2 * np.asarray(x) / length)

@@ -1,4 +1,4 @@
-"""Straight generatrices: the cylinder and the cone, with rounded ends."""
+"""Straight generatrices: the cylinder and the cone with rounded ends, and straight chamfers."""
 
 from __future__ import annotations
 
@@ -9,10 +9,9 @@ import numpy as np
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.profiles.base import Shape
+from contactstudy.profiles.base import Shape, SlopeJumps
 
-STEEPEST = np.pi / 4
-"""Largest half cone angle, radians."""
+STEEPEST = np.pi / 4  # Largest half cone angle, radians
 
 
 @dataclass(frozen=True, repr=False)
@@ -31,11 +30,6 @@ class Cylinder(Shape):
     InvalidInputError
         If the radius is negative, or (on use) larger than half the roller's length.
 
-    Notes
-    -----
-    The fillet is a quarter circle: it leaves the cylinder without a corner and is perpendicular to it at the very
-    end, where the drop is ``r0``.
-
     Examples
     --------
     >>> import numpy as np
@@ -46,7 +40,6 @@ class Cylinder(Shape):
     fillet_radius: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the radius."""
         object.__setattr__(self, "fillet_radius", checks.not_negative("fillet_radius", self.fillet_radius, "metres"))
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
@@ -63,8 +56,8 @@ class Cylinder(Shape):
 class Tapered(Shape):
     """Tapered roller with rounded ends: a cone that lies on the body with its generatrix.
 
-    The generatrix is straight, so nothing but the fillets drops. What varies is the radius of curvature across it,
-    that of a cone in the plane normal to its generatrix::
+    The generatrix is straight, so only the fillets drop. The radius of curvature across it varies like a cone's in the
+    plane normal to its generatrix::
 
         R(x) = radius / cos(beta) + x tan(beta)
 
@@ -91,15 +84,9 @@ class Tapered(Shape):
     ``1 / cos(beta)`` up to 1.0025: the Hertz half-width and pressure that results are given over are those of a
     cylinder with the roller's `radius`, without this factor.
 
-    A roller whose *axis* is parallel to the surface, so that one end is higher than the other, is not tapered but
-    tilted. Profiles of tapered rollers in use, such as :class:`~contactstudy.profiles.IsoTapered`, are departures
-    from the cone: add them, ``Tapered(beta) + IsoTapered(diameter)``.
-
     References
     ----------
-    The radius follows from Meusnier's theorem, M. P. do Carmo, Differential Geometry of Curves and Surfaces (1976),
-    section 3-2: the circle of latitude, of radius ``radius + s sin(beta)`` where the generatrix has the length ``s``,
-    is cut at the angle ``beta`` to the normal section.
+    Meusnier's theorem: M. P. do Carmo, Differential Geometry of Curves and Surfaces (1976), section 3-2.
 
     Examples
     --------
@@ -115,7 +102,6 @@ class Tapered(Shape):
     fillet_radius: float = 0.0
 
     def __post_init__(self) -> None:
-        """Check the parameters."""
         angle = checks.finite("half_angle", self.half_angle, "radians")
         if abs(angle) > STEEPEST:
             raise InvalidInputError(
@@ -140,3 +126,107 @@ class Tapered(Shape):
                 "the cone's tip would lie within the roller",
             )
         return np.asarray(middle + slope * np.asarray(x))
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Chamfer(Shape):
+    """Straight chamfer at each end, with a sharp or a rounded corner.
+
+    Two of `depth`, `width` and `angle` are given: ``depth = width tan(angle)``.
+
+    Parameters
+    ----------
+    depth : float, optional
+        Drop at the ends, metres; positive.
+    width : float, optional
+        Axial width at each end, metres; positive, at most half the roller's length.
+    angle : float, optional
+        Angle between chamfer and generatrix, radians; between 0 and pi/2.
+    blend_radius : float
+        Radius ``rho`` of the arc between generatrix and chamfer, metres; 0 is a sharp corner. The arc is tangential to
+        both, and extends over ``rho tan(angle / 2)`` to either side of the corner.
+
+    Raises
+    ------
+    InvalidInputError
+        If not exactly two of the three sizes are given, a value is out of range, or (on use) chamfer and arc do not fit
+        the roller.
+
+    Notes
+    -----
+    Under a sharp corner that is pressed the pressure has no largest value: ``p = E* s / (2 pi) ln(d0 / d)`` at the
+    distance d, with the slope ``s = tan(angle)``. :func:`contactstudy.contact.corner_peak` returns the peak of a small
+    blend radius.
+
+    Examples
+    --------
+    >>> chamfer = Chamfer(width=0.5e-3, angle=np.radians(45))
+    >>> (1e3 * chamfer.drop(np.array([0.0, 4.5e-3, 5e-3]), length=10e-3)).round(6).tolist()
+    [0.0, 0.0, 0.5]
+    >>> chamfer.slope_jumps(10e-3).jumps.round(6).tolist()
+    [1.0, 1.0]
+    """
+
+    depth: float | None = None
+    width: float | None = None
+    angle: float | None = None
+    blend_radius: float = 0.0
+
+    def __post_init__(self) -> None:
+        sizes = {name: getattr(self, name) for name in ("depth", "width", "angle")}
+        if sum(size is not None for size in sizes.values()) != 2:
+            raise InvalidInputError("depth, width, angle", tuple(sizes.values()), "exactly two of the three")
+        for name, unit in (("depth", "metres"), ("width", "metres"), ("angle", "radians")):
+            if sizes[name] is not None:
+                checks.store(self, **{name: checks.positive(name, sizes[name], unit)})
+        if self.angle is not None and self.angle >= np.pi / 2:
+            raise InvalidInputError("angle", self.angle, "below pi/2 (radians)", "45 degrees are numpy.radians(45)")
+        checks.store(self, blend_radius=checks.not_negative("blend_radius", self.blend_radius, "metres"))
+
+    @property
+    def slope(self) -> float:
+        """Slope of the chamfer."""
+        if self.angle is not None:
+            return float(np.tan(self.angle))
+        return float(self.depth) / float(self.width)  # type: ignore[arg-type]
+
+    @property
+    def axial_width(self) -> float:
+        """Axial width at each end, metres."""
+        return self.width if self.width is not None else float(self.depth) / self.slope  # type: ignore[arg-type]
+
+    @property
+    def blend(self) -> float:
+        """Axial reach of the arc to the inner side of the corner, metres."""
+        return self.blend_radius * float(np.tan(0.5 * np.arctan(self.slope)))
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        half, width, blend = 0.5 * length, self.axial_width, self.blend
+        if width > half:
+            raise InvalidInputError("width", width, f"at most half the roller's length, {half:g} m")
+        outer = self.blend_radius * np.sin(np.arctan(self.slope)) - blend
+        if outer > width or width + blend > half:
+            most = min(width / outer, (half - width) / blend) * self.blend_radius
+            raise InvalidInputError("blend_radius", self.blend_radius, f"at most {most:.3g} m on this chamfer")
+        distance = np.abs(x) - (half - width)
+        straight = self.slope * np.maximum(distance, 0.0)
+        if blend == 0:
+            return np.asarray(straight)
+        # The arc from -blend to outer; below the chord of its tangents.
+        chord = np.clip(distance + blend, 0.0, blend + outer)
+        arc = chord**2 / (self.blend_radius + np.sqrt(self.blend_radius**2 - chord**2))
+        return np.asarray(np.where(distance < outer, arc, straight))
+
+    def slope_jumps(self, length: float) -> SlopeJumps:
+        """Both corners; none with a blend radius."""
+        if self.blend_radius > 0:
+            return super().slope_jumps(length)
+        corner = 0.5 * length - self.axial_width
+        return SlopeJumps(np.array([-corner, corner]), np.full(2, self.slope))
+
+    def nodes(self, length: float) -> FloatArray:
+        """Distances from mid-length (m) of both corners, and of the ends of their arcs."""
+        corner = 0.5 * length - self.axial_width
+        outer = self.blend_radius * np.sin(np.arctan(self.slope)) - self.blend
+        return np.unique(np.outer([-1.0, 1.0], [corner - self.blend, corner, corner + outer]))

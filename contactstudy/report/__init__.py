@@ -1,11 +1,12 @@
-"""One HTML file of a result or of a study, for a reader without Python.
+"""Reports for readers: tables of a result, and one HTML page of a result or of a study.
 
-It holds everything that it shows: no script, no font and no picture is fetched from anywhere.
+A page contains all of its styles and pictures, without scripts.
 """
 
-from contactstudy.near_names import suggest
-from contactstudy.report.document import html, write
+from contactstudy.report.assessment import assess
+from contactstudy.report.case_table import case_table
+from contactstudy.report.page import html, provenance, write
+from contactstudy.report.sources import citations
+from contactstudy.report.summary_table import summary
 
-__all__ = ["html", "write"]
-
-suggest(__name__, __all__)
+__all__ = ["assess", "case_table", "citations", "html", "provenance", "summary", "write"]

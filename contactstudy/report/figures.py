@@ -1,60 +1,53 @@
-"""Figures of a report, drawn without a screen and kept inside the page as SVG."""
+"""Figures of a case in a report: side view of roller and body, pressure, tractions, stresses, as SVG in the page."""
 
 from __future__ import annotations
 
 import base64
 import io
+import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import positions, section_peak
-from contactstudy.analysis.measures import measure
+from contactstudy.analysis import largest_sample, measure, positions
 from contactstudy.arrays.engineering import quantity
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.plots import (
     plot_axial_pressure,
+    plot_film_line,
+    plot_film_map,
     plot_pressure_map,
     plot_profile,
     plot_stress_plane,
     plot_traction_map,
 )
-from contactstudy.plots.singular import capped, mark_at_top, near_singular, singular_ends
-from contactstudy.profiles.base import checked_drop
+from contactstudy.plots.singular import cap_field, mark_at_top, near_singular, singular_ends
+from contactstudy.profiles.base import checked_drop, local_radius
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-WIDE, TALL = 6.4, 3.3
-"""Size of a figure, inches."""
+WIDTH, HEIGHT = 6.4, 3.3  # Size of a figure, inches
+END_PANEL, LONG = 6.0, 15.0
+"""Length of the panel at the most loaded end, and of a contact with such a panel, over the Hertz half-width."""
 
-NEAR_END = 6.0
-"""Distance from the end that its own panel shows, over the Hertz half-width."""
+DOTS = 110  # Dots per inch of images within a figure
+PIXELS = 96  # Pixels of a page per inch
+SMALLEST, LARGEST, SCREEN = 0.5, 1.4, 380
+"""Smallest and largest scale of a figure with legible labels, and width of a narrow screen in pixels."""
 
-LONG = 15.0
-"""Length over the Hertz half-width from which on an end has a panel of its own."""
-
-DOTS = 110
-"""Dots per inch of the parts of a figure that are pictures."""
-
-
-PIXELS = 96
-"""Pixels of a page per inch."""
-
-LEAST, MOST = 0.5, 1.4
-"""How much smaller and larger than it is a figure may be shown: its words stay readable."""
-
-NARROW = 380
-"""Width that a narrow screen has for a figure, pixels."""
+BLUE = "#1f4e79"
+BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"
+"""Colours of curves, and of body, roller and lines of the side view."""
 
 
 class Picture(NamedTuple):
-    """A figure in a page: its address, which holds it, its caption, and its own width in pixels where that binds."""
+    """Figure in a page: a data URL, its caption, and its width in pixels, 0 if the page decides."""
 
     address: str
     caption: str
@@ -62,27 +55,27 @@ class Picture(NamedTuple):
 
     @property
     def least(self) -> int:
-        """Width below which the figure is scrolled."""
-        return round(LEAST * self.width)
+        """Width below which the figure scrolls."""
+        return round(SMALLEST * self.width)
 
     @property
     def most(self) -> int:
-        """Width beyond which the figure does not grow."""
-        return round(MOST * self.width)
+        """Largest width."""
+        return round(LARGEST * self.width)
 
     @property
     def scrolls(self) -> bool:
-        """Whether a narrow screen has to scroll it."""
-        return self.least > NARROW
+        """Whether the figure scrolls on a narrow screen."""
+        return self.least > SCREEN
 
 
 def as_address(figure: Figure) -> str:
-    """Return a figure as an address that holds it, the same bytes each time."""
+    """Return a figure as a data URL, with the same bytes in each run."""
     import matplotlib
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     target = io.BytesIO()
-    # `savefig` would draw twice: once to place everything, which drawing does as well.
+    # `savefig` would draw the figure twice.
     figure.set_dpi(DOTS)
     canvas: Any = FigureCanvasSVG(figure)
     with matplotlib.rc_context({"svg.hashsalt": "contactstudy"}):
@@ -90,144 +83,291 @@ def as_address(figure: Figure) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
 
 
-def _new(columns: int = 1) -> tuple[Figure, list[Axes]]:
-    """Return a new figure that no window knows of, with axes side by side."""
+def _new_figure(columns: int = 1, height: float = HEIGHT) -> tuple[Figure, list[Axes]]:
+    """Return a figure without a window, with axes side by side."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDE, TALL), layout="constrained")
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
     return figure, list(figure.subplots(1, columns, squeeze=False)[0])
 
 
-def case_pictures(one: xr.Dataset, case: Case | None) -> list[Picture]:
-    """Every figure that a case's result and its inputs allow.
-
-    Parameters
-    ----------
-    one : Dataset
-        A single case.
-    case : Case or None
-        What was solved, if that is known.
-    """
-    drawn: list[Callable[[], Picture]] = []
-    if "pressure" in one:
-        drawn += [lambda: _axial(one), lambda: _map(one)]
-    if {"pressure", "stick", "traction_x", "slip_x"} <= set(one.data_vars):
-        drawn += [lambda: _tractions(one), lambda: _slip(one)]
+def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
+    """Return every figure that a result of one case and its inputs allow."""
+    draw: list[Callable[[], Picture]] = []
+    if "pressure" in result and bool((result["pressure"] > 0).any()):
+        draw += [lambda: _axial_pressure(result), lambda: _pressure_map(result)]
+        if {"stick", "traction_x", "slip_x"} <= set(result.data_vars):
+            draw += [lambda: _traction_map(result), lambda: _slip_map(result)]
+    if "film_thickness" in result:
+        draw += [lambda: _film_lines(result), lambda: _film_map(result)]
     if case is not None and checked_drop(case.roller.profile, _along(case, 0.5), case.roller.length).any():
-        drawn.append(lambda: _profile(case))
-    if "von_mises" in one and bool(one["von_mises"].notnull().any()):
-        drawn += [lambda: _plane(one, "y"), lambda: _plane(one, "x"), lambda: _sections(one)]
-    found = []
-    for draw in drawn:
+        draw.append(lambda: _profile(case))
+    if "von_mises" in result and bool(result["von_mises"].notnull().any()):
+        draw += [lambda: _axial_plane(result), lambda: _cross_section(result), lambda: _section_maxima(result)]
+    pictures = []
+    for function in draw:
         try:
-            found.append(draw())
-        except ContactStudyError:  # too few positions for this plane
+            pictures.append(function())
+        except ContactStudyError:  # fewer positions than the plane needs
             continue
-    return found
+    return pictures
 
 
-def _axial(one: xr.Dataset) -> Picture:
-    """Pressure along the axis, and near the end that is pressed more."""
-    x = positions(one["pressure"], "x").values
-    half_width = float(one["hertz_half_width"]) if "hertz_half_width" in one else np.inf
+def _axial_pressure(result: xr.Dataset) -> Picture:
+    """Pressure along the axis, and near the end of larger pressure."""
+    x = positions(result["pressure"], "x").values
+    half_width = float(result.get("hertz_half_width", np.inf))
+    panel = END_PANEL * half_width
     zoomed = np.ptp(x) > LONG * half_width
-    figure, axes = _new(2 if zoomed else 1)
+    figure, axes = _new_figure(2 if zoomed else 1)
     for ax in axes:
-        plot_axial_pressure(one, ax, si=True, color="#1f4e79", linewidth=1.6)
-        if "hertz_max_pressure" in one:
-            ax.axhline(1e-6 * float(one["hertz_max_pressure"]), color="0.6", linewidth=0.9, linestyle="--")
+        plot_axial_pressure(result, ax, si=True, color=BLUE, linewidth=1.6)
+        if "hertz_max_pressure" in result:
+            ax.axhline(1e-6 * float(result["hertz_max_pressure"]), color="0.6", linewidth=0.9, linestyle="--")
         ax.set_ylim(bottom=0.0)
-    said = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz' line contact."
+    caption = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz line contact."
     if zoomed:
-        along = one["pressure"].max([dim for dim in one["pressure"].dims if dim != one["pressure"].dims[0]]).values
-        loaded = np.flatnonzero(along > 0)
-        first, last = x[loaded[0]], x[loaded[-1]]
-        near = NEAR_END * half_width
-        ends = [along[x <= first + near].max(), along[x >= last - near].max()]
-        at_first = ends[0] >= ends[1]
-        span = (first - 0.1 * near, first + near) if at_first else (last - near, last + 0.1 * near)
-        axes[1].set_xlim(1e3 * span[0], 1e3 * span[1])
+        pressure = result["pressure"]
+        along = pressure.max([dim for dim in pressure.dims if dim != pressure.dims[0]]).values
+        loaded = x[along > 0]
+        at_end_1 = along[x <= loaded[0] + panel].max() >= along[x >= loaded[-1] - panel].max()
+        limits = (
+            (loaded[0] - 0.1 * panel, loaded[0] + panel) if at_end_1 else (loaded[-1] - panel, loaded[-1] + 0.1 * panel)
+        )
+        axes[1].set_xlim(1e3 * limits[0], 1e3 * limits[1])
         axes[1].set_ylabel("")
-        axes[1].set_title(f"near end {'I' if at_first else 'II'}", fontsize="medium")
-    if "peak_pressure" in one and np.isinf(float(one["peak_pressure"])):
-        said += " The open triangle marks an end where the pressure is singular: it has no largest value."
-    return Picture(as_address(figure), said)
+        axes[1].set_title(f"near end {'I' if at_end_1 else 'II'}", fontsize="medium")
+    if np.isinf(float(result.get("peak_pressure", 0.0))):
+        caption += " Open triangle: the pressure is singular at this end."
+    return Picture(as_address(figure), caption)
 
 
-def _map(one: xr.Dataset) -> Picture:
+def _pressure_map(result: xr.Dataset) -> Picture:
     """Pressure on the top."""
-    figure, (ax,) = _new()
-    plot_pressure_map(one, ax, si=True)
+    figure, (ax,) = _new_figure()
+    plot_pressure_map(result, ax, si=True)
     return Picture(as_address(figure), "Pressure on the top of the body. The two axes have different scales.")
 
 
-def _tractions(one: xr.Dataset) -> Picture:
-    """Tractions on the top, with the border of the area that sticks."""
-    figure, (ax,) = _new()
-    plot_traction_map(one, ax, si=True)
-    if not bool(one["stick"].where(one["pressure"] > 0, False).any()):
+def _film_lines(result: xr.Dataset) -> Picture:
+    """Film and pressure along the axis, and along y at the least film."""
+    figure, axes = _new_figure(2)
+    plot_film_line(result, axes[0], si=True)
+    plot_film_line(result, axes[1], x=float(result["least_film_x"]), si=True)
+    return Picture(as_address(figure), "Film and pressure along the axis at y = 0, and across the least film.")
+
+
+def _film_map(result: xr.Dataset) -> Picture:
+    """Film with contours."""
+    figure, (ax,) = _new_figure()
+    plot_film_map(result, ax, si=True)
+    return Picture(as_address(figure), "Film thickness. Cross: least film. The two axes have different scales.")
+
+
+def _traction_map(result: xr.Dataset) -> Picture:
+    """Traction on the top, with the border of the sticking area."""
+    figure, (ax,) = _new_figure()
+    plot_traction_map(result, ax, si=True)
+    pressed = result["pressure"] > 0
+    if not bool(result["stick"].where(pressed, False).any()):
         border = "The surfaces slip everywhere."
-    elif bool(one["stick"].where(one["pressure"] > 0, True).all()):
+    elif bool(result["stick"].where(pressed, True).all()):
         border = "The surfaces stick everywhere."
     else:
         border = "The surfaces stick within the red line, and slip between it and the grey one."
-    said = f"Size of the traction on the body. {border} The two axes have different scales."
-    return Picture(as_address(figure), said)
+    return Picture(
+        as_address(figure), f"Size of the traction on the body. {border} The two axes have different scales."
+    )
 
 
-def _slip(one: xr.Dataset) -> Picture:
-    """Slip on the top, with the border of the area that sticks."""
-    figure, (ax,) = _new()
-    plot_traction_map(one, ax, variable="slip", si=True)
-    shifted = str(one["slip_y"].attrs.get("units", "1")) == "m"
-    said = (
+def _slip_map(result: xr.Dataset) -> Picture:
+    """Slip on the top, with the border of the sticking area."""
+    figure, (ax,) = _new_figure()
+    plot_traction_map(result, ax, variable="slip", si=True)
+    shifted = str(result["slip_y"].attrs.get("units", "1")) == "m"
+    reference = (
         "in the last step"
         if shifted
         else "per distance rolled; the contact moves along +y, so its leading edge is at the top"
     )
-    return Picture(as_address(figure), f"Size of the slip of the roller against the body, {said}.")
+    return Picture(as_address(figure), f"Size of the slip of the roller against the body, {reference}.")
 
 
 def _profile(case: Case) -> Picture:
     """Profile of the roller."""
     roller = case.roller
-    figure, (ax,) = _new()
+    figure, (ax,) = _new_figure()
     drop = checked_drop(roller.profile, _along(case, 0.47), roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
-    plot_profile(roller.profile, roller.length, ax, deepest=3 * crown if crown > 0 else None, color="#1f4e79")
-    return Picture(as_address(figure), "Profile of the roller: material that is missing, downwards.")
+    plot_profile(roller.profile, roller.length, ax, deepest=3 * crown if crown > 0 else None, color=BLUE)
+    return Picture(as_address(figure), "Profile of the roller: drop from the cylinder, downwards.")
 
 
 def _along(case: Case, reach: float) -> FloatArray:
-    """Positions along the roller, up to a part of its length from the middle."""
+    """Positions along the roller, up to a part of its length from mid-length."""
     return np.linspace(-reach, reach, 201) * case.roller.length
 
 
-def _plane(one: xr.Dataset, axis: str) -> Picture:
-    """Von Mises stress in the plane of the axis, or across it where it is largest."""
-    figure, (ax,) = _new()
-    stress, said = measure(one, "von_mises"), ""
-    if (most := capped(one, stress)[1]) < np.inf:
-        said = f" Beside a singular end it is larger than the {quantity(most, 'Pa')} that are drawn."
-    if axis == "y":
-        plot_stress_plane(one, "von_mises", 0.0, ax, si=True)
-        return Picture(as_address(figure), f"Von Mises stress in the plane y = 0, along the roller.{said}")
-    at = int(np.nanargmax(stress.max([dim for dim in stress.dims if dim != stress.dims[0]]).values))
-    place = float(positions(stress, "x").values[at])
-    plot_stress_plane(one, "von_mises", ax=ax, x=place, si=True)
-    return Picture(as_address(figure), f"Von Mises stress across the roller, in the section where it is largest.{said}")
+def _cap_remark(result: xr.Dataset, stress: xr.DataArray) -> str:
+    """Remark on the limit of the colours beside a singular end."""
+    limit = cap_field(result, stress)[1]
+    return f" Beside a singular end the stress exceeds the largest colour, {quantity(limit, 'Pa')}." * (limit < np.inf)
 
 
-def _sections(one: xr.Dataset) -> Picture:
+def _axial_plane(result: xr.Dataset) -> Picture:
+    """Von Mises stress in the plane of the axis."""
+    figure, (ax,) = _new_figure()
+    plot_stress_plane(result, "von_mises", 0.0, ax, si=True)
+    remark = _cap_remark(result, result["von_mises"])
+    return Picture(as_address(figure), f"Von Mises stress in the plane y = 0, along the roller.{remark}")
+
+
+def _cross_section(result: xr.Dataset) -> Picture:
+    """Von Mises stress across the roller, in the section of its largest value."""
+    figure, (ax,) = _new_figure()
+    stress = measure(result, "von_mises")
+    column = int(np.nanargmax(stress.max([dim for dim in stress.dims if dim != stress.dims[0]]).values))
+    x = float(positions(stress, "x").values[column])
+    plot_stress_plane(result, "von_mises", ax=ax, x=x, si=True)
+    caption = f"Von Mises stress across the roller, in the section of its largest value, x = {quantity(x, 'm')}."
+    return Picture(as_address(figure), caption + _cap_remark(result, stress))
+
+
+def _section_maxima(result: xr.Dataset) -> Picture:
     """Largest von Mises stress of each cross-section."""
-    found = section_peak(one, "von_mises")["peak_von_mises"]
-    figure, (ax,) = _new()
-    x: Any = positions(found, "x").values
-    ends = singular_ends(one)
-    drawn = np.where(near_singular(one, ends, x), np.nan, 1e-6 * found.values)
-    ax.plot(1e3 * x, drawn, color="#1f4e79", linewidth=1.6)
-    mark_at_top(ax, [1e3 * end for end in ends], "#1f4e79")
+    stress = largest_sample(result, "von_mises", along="x")["peak_von_mises"]
+    figure, (ax,) = _new_figure()
+    x: Any = positions(stress, "x").values
+    ends = singular_ends(result)
+    ax.plot(1e3 * x, np.where(near_singular(result, ends, x), np.nan, 1e-6 * stress.values), color=BLUE, linewidth=1.6)
+    mark_at_top(ax, [1e3 * end for end in ends], BLUE)
+    caption = "Largest von Mises stress of each section across the roller."
+    peak, peak_x = (float(result.get(f"peak_von_mises{suffix}", np.nan)) for suffix in ("", "_x"))
+    if np.isfinite(peak) and np.isfinite(peak_x):
+        ax.plot(1e3 * peak_x, 1e-6 * peak, "o", color=BLUE, markersize=5)
+        depth = quantity(float(result.get("peak_von_mises_z", np.nan)), "m")
+        caption += f" Dot: largest in the body, {quantity(peak, 'Pa')} at x = {quantity(peak_x, 'm')}, z = {depth}."
     ax.set_xlabel("distance from the free end, x (mm)")
     ax.set_ylabel("largest von Mises stress (MPa)")
     ax.set_ylim(bottom=0.0)
-    return Picture(as_address(figure), "Largest von Mises stress of each section across the roller.")
+    return Picture(as_address(figure), caption)
+
+
+class SideView(NamedTuple):
+    """Geometry of the side view, metres: body and roller, with the drop of the profile magnified."""
+
+    x: FloatArray
+    generatrix: FloatArray  # heights of the roller's lower line above the body
+    roller: tuple[float, float]  # ends
+    body: tuple[float, float]  # ends; infinite without
+    limits: tuple[float, float]
+    height: float  # of the roller in the drawing
+    magnification: float  # factor on the drop
+    clipped: bool  # whether the magnified drop is deeper than the drawing
+
+
+def side_geometry(case: Case) -> SideView:
+    """Return the geometry of the side view of a case."""
+    roller, ends = case.roller, (case.roller_start, case.roller_start + case.roller.length)
+    low, high = case.body.extent
+    beyond = 0.12 * roller.length  # of a body without an end
+    limits = (
+        min(low if math.isfinite(low) else ends[0] - beyond, ends[0]),
+        max(high if math.isfinite(high) else ends[1] + beyond, ends[1]),
+    )
+    height = min(roller.radius, 0.42 * (limits[1] - limits[0]))
+    along = np.linspace(-0.5, 0.5, 241) * roller.length
+    drop = checked_drop(roller.profile, along, roller.length)
+    inner = (np.abs(along) <= 0.45 * roller.length) & np.isfinite(drop)
+    magnification, deepest = _magnification(float(drop[inner].max(initial=0.0)), height), 0.45 * height
+    generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, deepest), deepest)
+    x = along + ends[0] + 0.5 * roller.length
+    clipped = bool((drop * magnification > deepest).any())
+    return SideView(x, generatrix, ends, (low, high), limits, height, magnification, clipped)
+
+
+def _magnification(crown: float, height: float) -> float:
+    """Factor on a crown, 1, 2 or 5 times a power of ten, up to 0.16 of the height; 1 if it is visible without."""
+    if crown <= 0 or crown >= 0.02 * height:
+        return 1.0
+    limit = 0.16 * height / crown
+    power = 10.0 ** math.floor(math.log10(limit))
+    return float(next(factor for factor in (5 * power, 2 * power, power) if factor <= limit * (1 + 1e-9)))
+
+
+def side_view(case: Case) -> Picture:
+    """Draw roller and body from the side, to scale but for the magnified drop of the profile."""
+    view = side_geometry(case)
+    width = view.limits[1] - view.limits[0]
+    depth = 0.13 * width
+    figure, (ax,) = _new_figure(height=WIDTH * (view.height + 2.2 * depth) / width + 0.6)
+    _draw_body(ax, view, depth)
+    _draw_roller(ax, view, case.roller.radius)
+    _dimension(ax, view.roller, view.height + 0.25 * depth, f"L = {quantity(case.roller.length, 'm')}")
+    if all(map(math.isfinite, view.body)):
+        _dimension(ax, view.body, -1.9 * depth, f"body {quantity(view.body[1] - view.body[0], 'm')}")
+    for name, edge, face, sign in zip(("I", "II"), view.body, view.roller, (1, -1), strict=True):
+        if math.isfinite(edge):
+            distance = sign * (face - edge)
+            # The difference of two positions may be a rounding error.
+            text = f"end {name}: e = {quantity(0.0 if abs(distance) < 1e-12 else distance, 'm')}"
+            ax.plot([edge, face], [-1.15 * depth] * 2, "|-", color=LINE, linewidth=0.8)
+            x, alignment = (min(edge, face), "left") if sign > 0 else (max(edge, face), "right")
+            ax.text(x, -1.3 * depth, text, ha=alignment, va="top")
+    ax.set_aspect("equal")
+    ax.set_axis_off()
+    return Picture(as_address(figure), _side_caption(case, view))
+
+
+def _draw_body(ax: Axes, view: SideView, depth: float) -> None:
+    """Body with its free ends as lines, and dashed edges where it continues."""
+    ends = [max(view.body[0], view.limits[0]), min(view.body[1], view.limits[1])]
+    ax.fill_between(ends, -depth, 0.0, color=BODY, linewidth=0)
+    ax.plot(ends, [0.0, 0.0], color=LINE, linewidth=1.5)
+    ax.plot(ends, [-depth, -depth], color=LINE, linewidth=0.8, linestyle="--")
+    for x, edge in zip(ends, view.body, strict=True):
+        style = {"linewidth": 1.5} if math.isfinite(edge) else {"linewidth": 0.8, "linestyle": "--"}
+        ax.plot([x, x], [-depth, 0.0], color=LINE, **style)
+
+
+def _draw_roller(ax: Axes, view: SideView, radius: float) -> None:
+    """Roller from its generatrix up to its axis, or up to a cut."""
+    x, z = view.x[[0, *range(view.x.size), -1]], np.pad(view.generatrix, 1, constant_values=view.height)
+    ax.fill(x, z, color=ROLLER, linewidth=0)
+    ax.plot(x, z, color=LINE, linewidth=1.2)
+    cut = view.height < radius
+    ax.plot(view.x[[0, -1]], [view.height] * 2, color=LINE, linewidth=0.8, linestyle="--" if cut else "-.")
+    middle = float(view.x.mean())
+    arrow = {"arrowstyle": "->" if cut else "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
+    ax.annotate("", (middle, 0.0), (middle, view.height), arrowprops=arrow)
+    ax.text(middle, 0.5 * view.height, f"  R = {quantity(radius, 'm')}", va="center", color=LINE)
+
+
+def _dimension(ax: Axes, ends: tuple[float, float], z: float, text: str) -> None:
+    """Dimension line along x with its text."""
+    arrow = {"arrowstyle": "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
+    ax.annotate("", (ends[0], z), (ends[1], z), arrowprops=arrow)
+    box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
+    ax.text(0.5 * (ends[0] + ends[1]), z, text, ha="center", va="center", bbox=box)
+
+
+def _side_caption(case: Case, view: SideView) -> str:
+    """Caption: scale, magnification, cut, cone and tilt."""
+    roller = case.roller
+    crown = "so is the profile"
+    if view.magnification > 1:
+        crown = f"the drop of the profile is magnified {view.magnification:g} times"
+        crown += ", and clipped at the ends" if view.clipped else ""
+    caption = f"Side view, to scale in both directions: lower half of the roller on the body; {crown}."
+    if view.height < roller.radius:
+        caption += " The roller is cut below its axis."
+    along = view.x - 0.5 * sum(view.roller)
+    radii = local_radius(roller.profile, along, roller.length, roller.radius)
+    if np.ptp(radii) > 1e-12:
+        caption += (
+            f" The radius across the roller changes from {quantity(float(radii[0]), 'm')} to "
+            f"{quantity(float(radii[-1]), 'm')} along it; the drawing has the radius at mid-length throughout."
+        )
+    if case.tilt or case.load_position is not None:
+        caption += " The tilt is not drawn."
+    return caption

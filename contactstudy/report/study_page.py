@@ -1,4 +1,4 @@
-"""What the page of a study shows: its cases in a table, figures over the swept parameters, failures with reasons."""
+"""Page of a study: table of its cases, figures over the swept parameters, failures with their reasons."""
 
 from __future__ import annotations
 
@@ -7,105 +7,135 @@ import re
 from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis.certainty import CARE, NO, UNKNOWN, YES, certainty
-from contactstudy.analysis.provenance import RUN_ATTRIBUTE
-from contactstudy.arrays.engineering import with_error
+from contactstudy.analysis import single_case
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
+from contactstudy.arrays.engineering import quantity, with_error
+from contactstudy.plots.selection import select_values
+from contactstudy.plots.study_lines import figures_with_selections
+from contactstudy.report.assessment import CARE, NO, UNKNOWN, YES, Assessment, assess
 from contactstudy.report.figures import PIXELS, Picture, as_address
-from contactstudy.report.study_pictures import figures_of_folder
+from contactstudy.report.summary_table import intensity_text
+from contactstudy.study import collect
 from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, in_engineers_words, label
+from contactstudy.study.plan import Plan, PlannedCase, label, value_text
 
-SHOWN = {
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+NUMBERS = {
     "peak_pressure": "largest pressure",
     "end_pressure_first": "at end I",
     "end_pressure_last": "at end II",
+    "central_film": "central film",
+    "least_film": "least film",
+    "least_film_ratio": "least film over roughness",
     "peak_von_mises": "largest von Mises",
+    "peak_von_mises_x": "at x",
+    "peak_von_mises_z": "at z",
 }
-"""Numbers of a case in the table, with their headings."""
+"""Columns of the table and their headings."""
 
-SINGULAR_SHOWN = {
+SINGULAR_NUMBERS = {
     "end_intensity_first": "K at end I",
     "end_intensity_last": "K at end II",
     "end_load_first": "load on the last a, end I",
     "end_load_last": "load on the last a, end II",
 }
-"""Numbers that stand for the pressure at a singular end, with their headings: only of such ends."""
+"""Columns that replace the pressure at a singular end."""
 
 CAPTIONS = {
     "edge_effect": "Pressure along the axis, and von Mises stress in the plane y = 0, for several distances "
     "from the end.",
     "study": "Largest values of the cases over the swept parameters; where all are singular, the loads on the last "
-    "half-width a at the ends. Bars: stated errors; open marks: no error is "
-    "known. An open triangle at the top: singular, there is no largest value.",
+    "half-width a at the ends. Bars: estimated errors; open marks: error not estimated. Open triangle at the top: "
+    "singular, without a largest value.",
 }
-"""What figures show, by name."""
+"""Captions of figures by name."""
 
-
-SIZE = re.compile(r" to ([0-9.]+)%$")
-"""Size of an error at the end of a reason."""
-
+FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
+PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
 WORST_FIRST = (NO, CARE, UNKNOWN, YES)
-"""Answers."""
+
+VERSIONS = ("contactstudy", "commit", "python", "numpy", "scipy")
 
 
 class Row(NamedTuple):
-    """One case in the table."""
+    """A case in the table: swept values, numbers with errors, status, assessment."""
 
     anchor: str
     values: list[str]
     numbers: list[str]
     status: str
     note: str
-    real: str
+    answer: str
     reason: str
 
 
-def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
-    """Everything that the template of a study needs.
+class StudyFigure(NamedTuple):
+    """Figure, and its parameters with a single value: each with another value as an example."""
 
-    Parameters
-    ----------
-    path : Path
-        The study's folder.
-    selection : mapping, optional
-        Values of swept parameters to which the figures keep; the table has all cases.
-    """
+    figure: Figure
+    fixed: dict[str, str]
+
+
+def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Return the context of a study's page; a selection of swept values holds for its figures alone."""
     folder = Folder(path)
     study = folder.read_study()
     plan = study.plan()
-    entries = folder.entries(plan)
-    numbers = [name for name in SHOWN if any(_has_more(entry, name) for entry in entries)]
-    numbers += [name for name in SINGULAR_SHOWN if any(_is_singular(entry, name) for entry in entries)]
+    states = folder.states(plan)
+    entries = [states.entry(index) for index in range(len(plan))]
+    names = [name for name in NUMBERS if any(_has_number(entry.numbers, name) for entry in entries)]
+    names += [name for name in SINGULAR_NUMBERS if any(_is_singular(entry.numbers, name) for entry in entries)]
     swept = list(dict.fromkeys([*study.sweep, *(name for group in study.zip for name in group), *_explicit(study)]))
     rows = [
-        _row(case, entry, _swept_values(plan, case, swept), numbers, number)
-        for number, (case, entry) in enumerate(zip(plan.cases, entries, strict=True), 1)
+        _row(f"case-{number}", entry, _swept_values(plan, case, swept), names)
+        for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
     ]
-    runs = [entry.run for entry in entries if entry.run]
     return {
         "title": f"Study {study.name}",
         "description": study.description,
         "shape": _shape(plan),
         "counts": Counter(entry.status for entry in entries),
-        "base": [(_meaning(name), in_engineers_words(name, value)) for name, value in study.base.items()],
-        "swept": [(_meaning(name), _values(name, rows, at)) for at, name in enumerate(swept)],
-        "headings": [_called(name) for name in swept],
-        "number_headings": [(SHOWN | SINGULAR_SHOWN)[name] for name in numbers],
-        "intensities": any(name.startswith("end_intensity") for name in numbers),
+        "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
+        "swept": [(_meaning(name), _list_values(rows, column)) for column, name in enumerate(swept)],
+        "headings": [_heading(name) for name in swept],
+        "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
+        "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
-        "reasons": _reasons(rows),
+        "reasons": _unsolved(rows),
         "answers": _answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
-        "provenance": _provenance(runs),
+        "provenance": _provenance([_run(entry) for entry in entries if entry.run]),
     }
+
+
+def figures_of_folder(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, StudyFigure]:
+    """Draw the figures of the study in a folder, by name; only files of cases with drawn surfaces are opened."""
+    results = Folder(path).results()
+    part = select_values(collect(path), selection or {})
+
+    def load(case: xr.Dataset) -> xr.Dataset:
+        return single_case(results.case(str(case["case_id"].item()), FIELDS))
+
+    return {
+        name: StudyFigure(figure, {dim: _last_value(part, dim) for dim in fixed})
+        for name, (figure, fixed) in figures_with_selections(part, load).items()
+    }
+
+
+def _last_value(dataset: xr.Dataset, dim: str) -> str:
+    """Last value of a parameter as text."""
+    value = dataset.indexes[dim][-1]
+    return value if isinstance(value, str) else f"{float(value):.10g}"
 
 
 def _explicit(study: Study) -> list[str]:
@@ -114,119 +144,106 @@ def _explicit(study: Study) -> list[str]:
 
 
 def _meaning(name: str) -> str:
-    """Meaning of a parameter, for a heading."""
+    """Meaning of a parameter."""
     return PARAMETERS[name].meaning if name in PARAMETERS else name.replace("_", " ")
 
 
-def _called(name: str) -> str:
-    """Return what a parameter is called on axes; groups of parameters have the study's names.
-
-    Examples
-    --------
-    >>> _called("e_over_a"), _called("tilt"), _called("case")
-    ('end distance over a', 'tilt', 'case')
-    """
+def _heading(name: str) -> str:
+    """Heading of a parameter; a group of parameters has the study's name."""
     return PARAMETERS[name].attrs["long_name"] if name in PARAMETERS else name.replace("_", " ")
 
 
 def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
-    """Values of the swept parameters of a case, as the study names them."""
-    given = with_defaults(case.parameters)
-    found = []
+    """Values of the swept parameters of a case, with the study's names."""
+    parameters = with_defaults(case.parameters)
+    texts = []
     for name in swept:
         dim, labels = plan.cube.labels.get(name, ("", ()))
-        value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else given.get(name)
-        if isinstance(given.get(name), dict) and value == label(name, given[name]):
-            value = given[name]  # it has no name of its own: say its values
-        found.append("" if value is None else in_engineers_words(name, value))
-    return found
+        value = labels[case.position[plan.cube.dims.index(dim)]] if dim in plan.cube.dims else parameters.get(name)
+        if isinstance(parameters.get(name), dict) and value == label(name, parameters[name]):
+            value = parameters[name]  # a table without a name: its values
+        texts.append("" if value is None else value_text(name, value))
+    return texts
 
 
-def _row(case: PlannedCase, entry: Entry, values: list[str], numbers: list[str], number: int) -> Row:
-    """One case with its numbers and errors."""
-    scalars = entry.scalars
-    found = []
-    for name in numbers:
-        if name not in scalars or (name in SINGULAR_SHOWN and not _is_singular(entry, name)):
-            found.append("")
-        elif name.startswith("end_intensity"):
-            found.append(_intensity(scalars, name))
-        elif _not_pressed(scalars, name):
-            found.append("not pressed")
-        elif np.isinf(scalars[name]) or (name == "peak_von_mises" and np.isinf(scalars.get("peak_pressure", 0.0))):
-            found.append("singular")
-        else:
-            units = "N" if name.startswith("end_load") else "Pa"
-            found.append(_with_mark(scalars[name], scalars.get(f"{name}_error"), units))
-    real, reason = _certainty(entry) if scalars else ("", "")
-    note = reason if real == NO else entry.reason
-    return Row(f"case-{number}", values, found, entry.status, note, real, reason)
+def _row(anchor: str, entry: Entry, values: list[str], names: list[str]) -> Row:
+    """Row of a case."""
+    assessment = _assess(entry) if entry.numbers else None
+    answer, reason = (assessment.overall, assessment.verdict) if assessment else ("", "")
+    numbers = [_number(entry.numbers, name) for name in names]
+    return Row(anchor, values, numbers, entry.status, reason if answer == NO else entry.reason, answer, reason)
 
 
-def _has_more(entry: Entry, name: str) -> bool:
-    """Whether a case has a number; that an end is singular its K says already, and one not pressed has no pressure."""
-    if name not in entry.scalars or _not_pressed(entry.scalars, name):
+def _number(scalars: Mapping[str, float], name: str) -> str:
+    """Text of a number with its error."""
+    if name not in scalars or (name in SINGULAR_NUMBERS and not _is_singular(scalars, name)):
+        return ""
+    value, error = scalars[name], scalars.get(f"{name}_error", np.nan)
+    if name.startswith("end_intensity"):
+        text = intensity_text(value, error, scalars[name.replace("intensity", "exponent")])
+    elif _is_open_end(scalars, name):
+        return "not pressed"
+    elif np.isinf(value) or (name.startswith("peak_von_mises") and np.isinf(scalars.get("peak_pressure", 0.0))):
+        return "singular"
+    elif name.endswith(("_x", "_z")):
+        return quantity(value, "m")
+    else:
+        text = with_error(value, error if np.isfinite(error) else None, "N" if name.startswith("end_load") else "Pa")
+    return text if np.isfinite(error) else f"{text} (error not estimated)"
+
+
+def _has_number(scalars: Mapping[str, float], name: str) -> bool:
+    """Whether a case fills a column; a singular end has its intensity instead of a pressure."""
+    if name not in scalars or _is_open_end(scalars, name):
         return False
-    said = f"end_intensity_{name.rpartition('_')[2]}" in entry.scalars and name.startswith("end_pressure")
-    return not (said and np.isinf(entry.scalars[name]))
+    replaced = name.startswith("end_pressure") and f"end_intensity_{name.rpartition('_')[2]}" in scalars
+    return not (replaced and np.isinf(scalars[name]))
 
 
-def _not_pressed(scalars: Mapping[str, float], name: str) -> bool:
-    """Whether a number is the pressure of an end that is not pressed."""
+def _is_open_end(scalars: Mapping[str, float], name: str) -> bool:
+    """Whether a number is the pressure at an end without contact."""
     return name.startswith("end_pressure") and scalars[name] == 0
 
 
-def _is_singular(entry: Entry, name: str) -> bool:
-    """Whether the end that a number belongs to is singular, and the number is known."""
-    end = name.rpartition("_")[2]
-    return f"end_intensity_{end}" in entry.scalars and np.isfinite(entry.scalars.get(name, np.nan))
+def _is_singular(scalars: Mapping[str, float], name: str) -> bool:
+    """Whether a number belongs to a singular end and is finite."""
+    return f"end_intensity_{name.rpartition('_')[2]}" in scalars and np.isfinite(scalars.get(name, np.nan))
 
 
-def _intensity(scalars: Mapping[str, float], name: str) -> str:
-    """K of the law of a singular end; its unit says the exponent."""
-    exponent = scalars[name.replace("intensity", "exponent")]
-    factor = 1e9 * 1e-3**exponent
-    error = scalars.get(f"{name}_error", np.nan)
-    return _with_mark(scalars[name] / factor, error / factor, f"GPa mm^{exponent:.3g}")
+def _run(entry: Entry) -> dict[str, Any]:
+    """Record of the run of a case, without malformed entries."""
+    return attribute(xr.Dataset(attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}), RUN_ATTRIBUTE)
 
 
-def _with_mark(value: float, error: float | None, units: str) -> str:
-    """Write a number with its error, or with the mark that it has none."""
-    known = error is not None and np.isfinite(error)
-    text = with_error(value, error if known else None, units)
-    return text if known else f"{text} (error not known)"
-
-
-def _certainty(entry: Entry) -> tuple[str, str]:
-    """Whether the numbers of a case are real, and why not if so, from the scalars that the study keeps."""
-    known = {name: value for name, value in entry.scalars.items() if not np.isnan(value)}
-    found = certainty(xr.Dataset(known, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}))
-    return found.overall, found.summary
+def _assess(entry: Entry) -> Assessment:
+    """Assessment from the scalars and the run of a case."""
+    scalars = {name: value for name, value in entry.numbers.items() if not np.isnan(value)}
+    return assess(xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}))
 
 
 def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     """Answers and reasons with their cases, the worst first."""
-    grouped: dict[tuple[str, str], list[Row]] = {}
+    groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
-        if row.real:
-            # The size of an error differs from case to case; the sentence before it is the reason.
-            grouped.setdefault((row.real, SIZE.sub("", row.reason)), []).append(row)
-    keys = sorted(grouped, key=lambda key: WORST_FIRST.index(key[0]))
-    return [(answer, _sized(reason, grouped[answer, reason]), grouped[answer, reason]) for answer, reason in keys]
+        if row.answer:
+            # The percentage differs from case to case.
+            groups.setdefault((row.answer, PERCENTAGE.sub("", row.reason)), []).append(row)
+    keys = sorted(groups, key=lambda key: WORST_FIRST.index(key[0]))
+    return [(answer, _with_range(reason, groups[answer, reason]), groups[answer, reason]) for answer, reason in keys]
 
 
-def _sized(reason: str, cases: list[Row]) -> str:
-    """Reason of several cases, with the range of the errors that their own reasons end with."""
-    sizes = [float(found[1]) for row in cases if (found := SIZE.search(row.reason))]
+def _with_range(reason: str, rows: list[Row]) -> str:
+    """Reason of several cases, with the range of their percentages."""
+    sizes = [float(match[1]) for row in rows if (match := PERCENTAGE.search(row.reason))]
     if not sizes:
         return reason
     low, high = min(sizes), max(sizes)
-    return f"{reason} to {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
+    return f"{reason} {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
 
 
 def _verdict(rows: list[Row]) -> tuple[str, str]:
-    """Worst answer of a study's cases, and how many have which; what is not solved needs care."""
-    count = Counter(row.real for row in rows if row.real)
+    """Worst answer of all cases, and the number of cases of each answer; an unsolved case needs care."""
+    count = Counter(row.answer for row in rows if row.answer)
     worst = next((answer for answer in WORST_FIRST if answer in count), UNKNOWN)
     if worst in (YES, UNKNOWN) and any(row.status != "ok" for row in rows):
         worst = CARE
@@ -234,63 +251,59 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
     return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
 
 
-def _values(name: str, rows: list[Row], at: int) -> str:
-    """Different values of a swept parameter, in order."""
-    found = list(dict.fromkeys(row.values[at] for row in rows if row.values[at]))
-    return ", ".join(found) if len(found) <= 12 else f"{len(found)} values, {found[0]} to {found[-1]}"
+def _list_values(rows: list[Row], column: int) -> str:
+    """Distinct values of a swept parameter, in order."""
+    values = list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))
+    return ", ".join(values) if len(values) <= 12 else f"{len(values)} values, {values[0]} to {values[-1]}"
 
 
 def _shape(plan: Plan) -> str:
-    """Dimensions of the study in words."""
-    pairs = zip(plan.cube.dims, plan.cube.shape, strict=True)
-    said = ", ".join(f"{_called(dim)}: {size}" for dim, size in pairs)
-    return f"{len(plan.cases)} cases ({said})"
+    """Count and dimensions of the study."""
+    sizes = zip(plan.cube.dims, plan.cube.shape, strict=True)
+    return f"{len(plan)} cases ({', '.join(f'{_heading(dim)}: {size}' for dim, size in sizes)})"
 
 
-def _reasons(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Status, reason and cases of everything that is not solved, equal reasons together."""
-    grouped: dict[tuple[str, str], list[Row]] = {}
+def _unsolved(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Status, reason and cases of all unsolved cases, grouped by reason."""
+    groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
         if row.status != "ok":
-            grouped.setdefault((row.status, row.note), []).append(row)
-    return [(status, reason, cases) for (status, reason), cases in grouped.items()]
+            groups.setdefault((row.status, row.note), []).append(row)
+    return [(status, reason, cases) for (status, reason), cases in groups.items()]
 
 
 def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
-    """Figures that suit the study; none if nothing of it can be drawn."""
+    """Figures of the study with captions."""
     from matplotlib import pyplot
 
-    found = []
-    for name, (figure, others) in figures_of_folder(path, selection).items():
-        caption = CAPTIONS.get(name, name.replace("_", " "))
-        found.append(
-            Picture(as_address(figure), f"{caption}{_to_choose(others)}", round(PIXELS * figure.get_figwidth()))
-        )
+    pictures = []
+    for name, (figure, fixed) in figures_of_folder(path, selection).items():
+        caption = f"{CAPTIONS.get(name, name.replace('_', ' '))}{_selection_hint(fixed)}"
+        pictures.append(Picture(as_address(figure), caption, round(PIXELS * figure.get_figwidth())))
         pyplot.close(figure)
-    return found
+    return pictures
 
 
-def _to_choose(others: dict[str, str]) -> str:
-    """Say of which parameters one value is drawn, and how to draw another."""
-    if not others:
+def _selection_hint(fixed: dict[str, str]) -> str:
+    """Parameters with one value in a figure, and the command that draws another value."""
+    if not fixed:
         return ""
-    name, value = next(iter(others.items()))
-    command = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
+    name, value = next(iter(fixed.items()))
+    option = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
     return (
-        f" Of {' and '.join(_called(each) for each in others)} one value is drawn, which the title says. Another is "
-        f"drawn by: contactstudy report FOLDER --select {command}"
+        f" Of {' and '.join(map(_heading, fixed))} the figure has the value in its title. Another value: "
+        f"contactstudy report FOLDER --select {option}"
     )
 
 
 def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
-    """Versions and dates of the files."""
+    """Dates, versions and solution time of the cases."""
     if not runs:
         return []
-    times = sorted(str(run["time"])[:10] for run in runs if "time" in run)
-    rows = [("solved", times[0] if times[0] == times[-1] else f"{times[0]} to {times[-1]}")] if times else []
-    for name in ("contactstudy", "commit", "python", "numpy", "scipy"):
-        known = sorted({str(run[name]) for run in runs if name in run})
-        if known:
-            rows.append((name, ", ".join(known)))
-    seconds = sum(float(run.get("seconds", 0.0)) for run in runs)
-    return [*rows, ("time of solving", f"{seconds:.0f} s of one core")]
+    dates = sorted(str(run["time"])[:10] for run in runs if "time" in run)
+    rows = [("solved", dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}")] if dates else []
+    for name in VERSIONS:
+        versions = sorted({str(run[name]) for run in runs if name in run})
+        if versions:
+            rows.append((name, ", ".join(versions)))
+    return [*rows, ("time of solving", f"{sum(run.get('seconds', 0.0) for run in runs):.0f} s of one core")]

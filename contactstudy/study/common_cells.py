@@ -1,8 +1,8 @@
-"""One axis for the cells of all cases: positions over the half-width, on which the surfaces of a study lie together.
+"""Common cells of a study: positions over the half-width on which the surfaces and stresses of all cases lie.
 
-Cases of a study have cells of their own. The common edges are edges of the cases, thinned to half the width of the
-narrowest cell that any case has there. Pressure and traction are averaged over a common cell, so loads are kept; flags
-are those of the case's own cell there; other quantities are interpolated linearly between the case's own centres.
+The common edges along x are edges of the cases, thinned to half the width of the narrowest cell of any case there, with
+further edges where stress points are denser. Pressure and traction are averaged over a common cell, so loads remain;
+flags have the value of the case's cell at the centre; other quantities are interpolated linearly.
 """
 
 from __future__ import annotations
@@ -17,154 +17,159 @@ import numpy.typing as npt
 from contactstudy.arrays.grid import SPACING_TOLERANCE
 from contactstudy.checks import FloatArray
 
-LEAST_WIDTH = 0.5
-"""Width of a common cell over the narrowest of the cases' own there, at least. Accuracy."""
-
-AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})
-"""Variables that are averaged over a common cell."""
-
-FLAGS = frozenset({"stick"})
-"""Variables that are true or false."""
-
-AVERAGE = "averaged over cells that all cases share: loads are kept, peaks may be a little lower"
-LINEAR = "interpolated linearly from the case's own cells"
-HOLDING = "that of the case's own cell which holds the common cell's centre; false beyond the case's cells"
+LEAST_WIDTH = 0.5  # Least width of a common cell over the narrowest cell of any case there. Accuracy
+AVERAGED = frozenset({"pressure", "traction_x", "traction_y"})  # Variables that are averaged over a common cell
+FLAGS = frozenset({"stick"})  # Variables that are true or false
 
 
-def comment_of(name: str) -> str:
-    """Say how a variable comes onto the common cells.
-
-    Examples
-    --------
-    >>> comment_of("gap")
-    "interpolated linearly from the case's own cells"
-    """
+def resampling_comment(name: str) -> str:
+    """Comment on the values of a variable on common cells."""
     if name in AVERAGED:
-        return AVERAGE
-    return HOLDING if name in FLAGS else LINEAR
+        return "averaged over cells common to all cases: loads remain, peaks may be a little lower"
+    if name in FLAGS:
+        return "value of the case's cell at the centre of the common cell; false beyond the case's cells"
+    return "interpolated linearly from the case's cells"
 
 
 def common_columns(edges: Sequence[FloatArray]) -> FloatArray:
-    """Edges along x that resolve the cells of all cases.
-
-    Parameters
-    ----------
-    edges : sequence of array
-        Edges of each case, over its half-width.
-
-    Examples
-    --------
-    >>> common_columns([np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])]).tolist()
-    [0.0, 0.9, 2.0, 4.0, 5.0]
-    """
+    """Edges along x, over the half-width, that resolve the cells of all cases."""
     union = np.unique(np.concatenate(edges))
     middles = 0.5 * (union[1:] + union[:-1])
     narrowest = np.full(middles.size, np.inf)
-    for own in edges:
-        at = np.searchsorted(own, middles) - 1
-        inside = (at >= 0) & (at < own.size - 1)
-        narrowest[inside] = np.minimum(narrowest[inside], np.diff(own)[at[inside]])
-    kept = [union[0]]
+    for case_edges in edges:
+        cells = np.searchsorted(case_edges, middles) - 1
+        inside = (cells >= 0) & (cells < case_edges.size - 1)
+        narrowest[inside] = np.minimum(narrowest[inside], np.diff(case_edges)[cells[inside]])
+    thinned = [union[0]]
     for edge, width in zip(union[1:], narrowest, strict=True):
-        if edge - kept[-1] >= LEAST_WIDTH * width:
-            kept.append(edge)
-    # The last edge counts more than the one before it, which may be close to it.
-    if kept[-1] != union[-1]:
-        kept[-1 if len(kept) > 1 else 1 :] = [union[-1]]
-    return np.array(kept)
+        if edge - thinned[-1] >= LEAST_WIDTH * width:
+            thinned.append(edge)
+    # The last edge replaces a nearby one before it.
+    if thinned[-1] != union[-1]:
+        thinned[-1 if len(thinned) > 1 else 1 :] = [union[-1]]
+    return np.array(thinned)
 
 
 def common_rows(edges: Sequence[FloatArray]) -> FloatArray:
-    """Uniform edges along y over the widest window, with the narrowest cells of all cases.
-
-    Examples
-    --------
-    >>> common_rows([np.array([-2.0, 0.0, 2.0]), np.array([-1.5, -0.5, 0.5, 1.5])]).tolist()
-    [-2.0, -1.0, 0.0, 1.0, 2.0]
-    """
-    reach = max(float(np.abs(own).max()) for own in edges)
-    width = min(float(np.diff(own).min()) for own in edges)
+    """Uniform edges along y over the widest window, with the narrowest cells of all cases."""
+    reach = max(float(np.abs(case_edges).max()) for case_edges in edges)
+    width = min(float(np.diff(case_edges).min()) for case_edges in edges)
     return np.linspace(-reach, reach, 1 + int(np.ceil(2 * reach / width * (1 - SPACING_TOLERANCE))))
 
 
-@dataclass(frozen=True, eq=False)
-class OntoCommon:
-    """From a case's own cells to the common ones, along one axis.
+def split_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
+    """Edges with a further one between each two points within one cell."""
+    middles = 0.5 * (points[1:] + points[:-1])
+    cells = np.searchsorted(edges, points, side="right")
+    cells[points >= edges[-1]] = edges.size - 1
+    return _with_faces(np.union1d(edges, middles[cells[1:] == cells[:-1]]), points)
 
-    Attributes
-    ----------
-    own, common : array
-        Edges, over the half-width.
-    outside : float
-        Value of an average beyond the case's own cells: 0 where nothing is pressed, NaN where there is no body.
-    """
 
-    own: FloatArray
-    common: FloatArray
-    outside: float
+def _with_faces(edges: FloatArray, points: FloatArray) -> FloatArray:
+    """Edges with a thin cell, 4e-6 of the first or last one, at each face that contains a point."""
+    faces = []
+    for end, inward in ((0, 1), (-1, -2)):
+        width = edges[inward] - edges[end]
+        if (np.abs(points - edges[end]) < SPACING_TOLERANCE * abs(width)).any():
+            faces.append(edges[end] + 4e-6 * width)
+    return np.union1d(edges, faces)
+
+
+def centred_cells(edges: FloatArray, points: FloatArray) -> FloatArray:
+    """Edges such that every point is the centre of a cell."""
+    edges = _with_faces(edges, points)
+    for index, point in enumerate(points):
+        cell = int(np.clip(np.searchsorted(edges, point) - 1, 0, edges.size - 2))
+        low, high = edges[cell], edges[cell + 1]
+        width = high - low
+        if not edges[0] < point < edges[-1] or abs(point - 0.5 * (low + high)) < 1e-9 * width:
+            continue
+        spacings = np.abs(np.delete(points[max(index - 1, 0) : index + 2], min(index, 1)) - point)
+        half = min(0.25 * width, 0.5 * spacings.min(initial=np.inf), point - edges[0], edges[-1] - point)
+        distance = min(point - low, high - point)
+        if distance > SPACING_TOLERANCE * width:
+            half = min(half, distance)
+        outside = np.abs(edges - point) > half * (1 + SPACING_TOLERANCE)
+        edges = np.union1d(edges[outside], [point - half, point + half])
+    return edges
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Resampling:
+    """Map from the cells or points of a case to the common axis."""
+
+    source: FloatArray  # edges of the case's cells, or its points, over the half-width
+    axis: FloatArray
+    borders: FloatArray  # borders around each position of the axis
+    outside: float = np.nan  # average beyond the case's cells: 0 outside the contact, NaN where the body ends
+    of_points: bool = False
 
     @property
     def beyond(self) -> npt.NDArray[np.bool_]:
-        """Common cells whose centre lies beyond the case's own."""
-        centres = _centres(self.common)
-        return np.asarray((centres < self.own[0]) | (centres > self.own[-1]))
+        """Positions of the axis beyond the case's cells or points."""
+        low, high = self.source.min(), self.source.max()
+        slack = SPACING_TOLERANCE * (high - low) if self.of_points else 0.0
+        return np.asarray((self.axis < low - slack) | (self.axis > high + slack))
 
     def averages(self, values: FloatArray) -> FloatArray:
-        """Average values (cell, ...) over the common cells, straight within each own cell: integrals are kept.
+        """Average values (cell, ...) within the common borders, by limited slopes: integrals remain."""
+        from scipy import sparse  # slow to import, and not needed to open a study
 
-        The slopes are limited by either neighbour, so no value is beyond those of the cells around.
-        """
-        from scipy import sparse  # long to import, and a summary or a page of a study does without
+        low = np.maximum(self.borders[:-1, None], self.source[None, :-1])
+        high = np.minimum(self.borders[1:, None], self.source[None, 1:])
+        shared = np.maximum(high - low, 0.0) / np.diff(self.borders)[:, None]
+        middles = centres(self.source)
+        arms = np.where(shared > 0, 0.5 * (low + high) - middles, 0.0)
+        slopes = _limited_slopes(middles, values)
+        result = sparse.csr_array(shared) @ values + sparse.csr_array(shared * arms) @ slopes
+        result[~shared.any(axis=1)] = self.outside
+        return np.asarray(result)
 
-        low = np.maximum(self.common[:-1, None], self.own[None, :-1])
-        high = np.minimum(self.common[1:, None], self.own[None, 1:])
-        shared = np.maximum(high - low, 0.0) / np.diff(self.common)[:, None]
-        centres = _centres(self.own)
-        arms = np.where(shared > 0, 0.5 * (low + high) - centres, 0.0)
-        found = sparse.csr_array(shared) @ values + sparse.csr_array(shared * arms) @ _limited_slopes(centres, values)
-        found[~shared.any(axis=1)] = self.outside
-        return np.asarray(found)
+    def containing(self, values: FloatArray) -> FloatArray:
+        """Values along the first axis of the case's cells that contain the positions; 0 beyond the cells."""
+        cells = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, self.source.size - 2)
+        result = values[cells]
+        result[self.beyond] = 0.0
+        return np.asarray(result)
 
-    def holding(self, values: FloatArray) -> FloatArray:
-        """Values along the first axis of the own cells that hold the common centres; 0 beyond the own cells."""
-        at = np.clip(np.searchsorted(self.own, _centres(self.common)) - 1, 0, self.own.size - 2)
-        found = values[at]
-        found[self.beyond] = 0.0
-        return np.asarray(found)
-
-    def between(self, values: FloatArray) -> FloatArray:
-        """Interpolate values along the first axis linearly at the common centres; NaN beyond the own cells."""
-        centres, own = _centres(self.common), _centres(self.own)
-        if own.size == 1:
-            found = np.repeat(values, centres.size, axis=0)
+    def interpolated(self, values: FloatArray) -> FloatArray:
+        """Interpolate values along the first axis linearly; NaN beyond the case's cells or points."""
+        positions = centres(self.source)
+        if self.of_points:
+            order = np.argsort(self.source)
+            positions, values = self.source[order], values[order]
+        if positions.size == 1:
+            result = np.repeat(values, self.axis.size, axis=0)
         else:
-            at = np.clip(np.searchsorted(own, centres) - 1, 0, own.size - 2)
-            part = np.clip((centres - own[at]) / (own[at + 1] - own[at]), 0.0, 1.0)
+            cells = np.clip(np.searchsorted(positions, self.axis) - 1, 0, positions.size - 2)
+            part = np.clip((self.axis - positions[cells]) / (positions[cells + 1] - positions[cells]), 0.0, 1.0)
             part = part.reshape(-1, *(1,) * (values.ndim - 1))
             with np.errstate(invalid="ignore"):
-                found = (1 - part) * values[at] + part * values[at + 1]
-            # Beside an infinite gap there is nothing to interpolate.
-            holding = np.clip(np.searchsorted(self.own, centres) - 1, 0, own.size - 1)
-            found = np.where(np.isfinite(found), found, values[holding])
-        found[self.beyond] = np.nan
-        return found
+                result = (1 - part) * values[cells] + part * values[cells + 1]
+            # Interpolation beside an infinite gap is impossible.
+            nearest = np.clip(np.searchsorted(positions, self.axis), 0, positions.size - 1)
+            if not self.of_points:
+                nearest = np.clip(np.searchsorted(self.source, self.axis) - 1, 0, positions.size - 1)
+            result = np.where(np.isfinite(result), result, values[nearest])
+        result[self.beyond] = np.nan
+        return result
 
 
-def resampled(name: str, values: npt.NDArray[Any], along: Iterable[OntoCommon | None]) -> npt.NDArray[Any]:
-    """Values of a variable on the common cells; axes without a way onto them stay as they are."""
+def resampled(name: str, values: npt.NDArray[Any], maps: Iterable[Resampling | None]) -> npt.NDArray[Any]:
+    """Values of a variable on the common cells; an axis without a map remains."""
     result = np.asarray(values, dtype=np.float64)
-    # Along x last: beyond the body nothing is known, beside the window there is no pressure.
-    for axis, way in reversed(list(enumerate(along))):
-        if way is None:
+    # Along x last: beyond the body values are NaN, beside the window the pressure is 0.
+    for axis, resampling in reversed(list(enumerate(maps))):
+        if resampling is None:
             continue
         moved = np.moveaxis(result, axis, 0)
         if name in AVERAGED:
-            flat = way.averages(moved.reshape(moved.shape[0], -1))
+            flat = resampling.averages(moved.reshape(moved.shape[0], -1))
             moved = flat.reshape(-1, *moved.shape[1:])
         elif name in FLAGS:
-            moved = way.holding(moved)
+            moved = resampling.containing(moved)
         else:
-            moved = way.between(moved)
+            moved = resampling.interpolated(moved)
         result = np.moveaxis(moved, 0, axis)
     return result
 
@@ -180,6 +185,6 @@ def _limited_slopes(centres: FloatArray, values: FloatArray) -> FloatArray:
     return slopes
 
 
-def _centres(edges: FloatArray) -> FloatArray:
-    """Middles of the cells between `edges`."""
+def centres(edges: FloatArray) -> FloatArray:
+    """Centres of the cells between `edges`."""
     return np.asarray(0.5 * (edges[1:] + edges[:-1]))

@@ -2,40 +2,35 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
-from contactstudy.arrays.html_table import html_table
+from contactstudy.arrays.engineering import html_table
+from contactstudy.checks import factor_to
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.cube import Axis
 from contactstudy.study.errors import StudyFileError
-from contactstudy.study.parameter import points
-from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked
-from contactstudy.study.plan import LEVELS, Combination, Plan, combinations, in_engineers_words, label, make_plan
-from contactstudy.study.profile_kinds import with_files_in
-
-if TYPE_CHECKING:
-    import xarray as xr
+from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
+from contactstudy.study.plan import LEVELS, Axis, Plan, label, make_plan, value_text
+from contactstudy.study.profile_tables import check_without_files, resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
 
-# Each case is a file and about two kilobytes of memory.
-MOST_CASES = 1_000_000
-
-LISTED = 12
-"""Values of a swept parameter that are all shown."""
+MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
+LISTED = 12  # Values of a swept parameter that are all shown
 
 
 def _listed(name: str, values: object) -> list[Any]:
@@ -60,13 +55,13 @@ def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
 
 
 def _shortened(texts: list[str]) -> str:
-    """Values of a swept parameter; of many the first and the last."""
+    """Values of a swept parameter; of more than twelve the first and the last."""
     return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 @dataclass(frozen=True)
 class Study:
-    """A parametric study: which cases to solve, and what to keep of each.
+    """A parametric study: cases to solve, and the arrays to retain.
 
     Parameters
     ----------
@@ -82,19 +77,18 @@ class Study:
     cases : list of mappings
         Explicit cases, each on top of `base`, beside the product.
     exclude : list of mappings
-        Combinations to leave out: a case is out if every named parameter has the value, or one of the values, given.
-        A profile is named by its label.
+        Combinations to leave out: every named parameter has the value, or one of the values. A profile is named by its
+        label.
     level : {"summary", "surface", "fields"}
-        What is kept of each case: scalars; also pressure, gap, ...; also stresses.
+        Retained results: numbers; also pressure, gap, ...; also stresses.
     description : str
         For the reader.
 
     Raises
     ------
     InvalidInputError
-        If a key is unknown (with the nearest known one), a value is of a wrong type, or what every case needs, such as
-        a load, is given nowhere. Combinations that are impossible are no error: :meth:`plan` lists them as skipped,
-        with the reason.
+        If a key is unknown, a value is of a wrong type, or a required parameter is missing in all cases. :meth:`plan`
+        lists impossible combinations as skipped, with the reason.
 
     Examples
     --------
@@ -104,7 +98,7 @@ class Study:
     ...     sweep={"e_over_a": [0, 1, 2], "friction": [0.0, 0.1]},
     ...     exclude=[{"e_over_a": [1, 2], "friction": 0.1}],
     ... )
-    >>> [case.name for case in study.plan().cases]
+    >>> [case.name for case in study.plan()]
     ['e_over_a=0 friction=0', 'e_over_a=0 friction=0.1', 'e_over_a=1 friction=0', 'e_over_a=2 friction=0']
     """
 
@@ -131,14 +125,14 @@ class Study:
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""
         for name, values in self.sweep.items():
-            yield f"{name} (swept)", _shortened([in_engineers_words(name, value) for value in values])
+            yield f"{name} (swept)", _shortened([value_text(name, value) for value in values])
         for group in self.zip:
             for name, values in group.items():
-                yield f"{name} (together)", _shortened([in_engineers_words(name, value) for value in values])
+                yield f"{name} (together)", _shortened([value_text(name, value) for value in values])
         if self.cases:
             yield "cases", f"{len(self.cases)} explicit ones"
         for name, value in self.base.items():
-            yield name, in_engineers_words(name, value)
+            yield name, value_text(name, value)
         if self.exclude:
             yield "exclude", f"{len(self.exclude)} rules"
 
@@ -168,49 +162,45 @@ class Study:
         for name in names:
             if names.count(name) > 1:
                 raise InvalidInputError("zip", name, "a parameter that is not swept or zipped already")
-        given = {*self.base, *names, *(name for case in self.cases for name in case)}
-        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not given & {*group}]:
+        present = {*self.base, *names, *(name for case in self.cases for name in case)}
+        if missing := ["one of " * (len(group) > 1) + ", ".join(group) for group in REQUIRED if not present & {*group}]:
             allowed = f"such that cases have {'; '.join(missing)}"
-            raise InvalidInputError("parameters", sorted(given), allowed, "give it in base, sweep, zip or cases")
+            raise InvalidInputError("parameters", sorted(present), allowed, "give it in base, sweep, zip or cases")
 
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
         checks.known_name(where, str(name), PARAMETERS)
         column = [PARAMETERS[name].checked(value) for value in _listed(f"{where}.{name}", values)]
         if where == "sweep":
-            seen = set()
-            for value in column:
-                entry = label(name, value)
-                if entry in seen:
-                    raise InvalidInputError(f"{where}.{name}", entry, "a list of different values", "it appears twice")
-                seen.add(entry)
+            entries = [label(name, value) for value in column]
+            if twice := [entry for entry in entries if entries.count(entry) > 1]:
+                raise InvalidInputError(f"{where}.{name}", twice[0], "a list of different values", "it appears twice")
         return column
 
     @staticmethod
     def _rule(rule: Mapping[str, Any]) -> dict[str, list[Any]]:
         if not rule:
             raise InvalidInputError("exclude", rule, "a table with at least one parameter")
-        wanted: dict[str, list[Any]] = {}
+        excluded: dict[str, list[Any]] = {}
         for name, values in rule.items():
             checks.known_name("exclude", str(name), PARAMETERS)
             several = values if isinstance(values, (list, tuple)) else [values]
-            wanted[name] = [
+            excluded[name] = [
                 value
                 if isinstance(value, str) and not isinstance(PARAMETERS[name].default, str)
                 else label(name, PARAMETERS[name].checked(value))
                 for value in several
             ]
-        return wanted
+        return excluded
 
     @classmethod
     def from_toml(cls, path: str | Path) -> Study:
-        """Read a study file.
+        """Read a study file; paths of measured profiles are relative to its folder.
 
         Parameters
         ----------
         path : str or Path
-            TOML file with the keys :data:`KEYS`; `name` defaults to the file's name. Files with measured profiles are
-            found from its folder.
+            TOML file with the keys :data:`KEYS`; `name` defaults to the file's name.
 
         Raises
         ------
@@ -222,12 +212,12 @@ class Study:
         path = Path(path)
         try:
             content = tomllib.loads(path.read_text(encoding="utf-8-sig"))
-        except (OSError, ValueError) as error:  # a ValueError is no TOML, no UTF-8, or a number of thousands of digits
+        except (OSError, ValueError) as error:  # ValueError: invalid TOML or UTF-8, or a number of thousands of digits
             reason = error.strerror if isinstance(error, OSError) and error.strerror else error
             raise StudyFileError(f"study file {path}: {reason}") from error
         except RecursionError:
             raise StudyFileError(f"study file {path}: tables or lists are nested too deeply to be read") from None
-        return cls.from_mapping({"name": path.stem} | with_files_in(content, path.parent))
+        return cls.from_mapping({"name": path.stem} | resolve_files(content, path.parent))
 
     @classmethod
     def from_mapping(cls, content: Mapping[str, Any]) -> Study:
@@ -236,6 +226,12 @@ class Study:
         for key in content:
             checks.known_name("key of the study file", str(key), KEYS)
         return cls(**content)
+
+    @classmethod
+    def from_stored(cls, content: Mapping[str, Any]) -> Study:
+        """Study from the ``study.json`` of a folder, which contains the points of measured profiles and no file."""
+        check_without_files(content)
+        return cls.from_mapping(content)
 
     @classmethod
     def from_dataset(
@@ -252,49 +248,40 @@ class Study:
         Parameters
         ----------
         table : Dataset
-            Variables and coordinates named after parameters. Those along one dimension change together, dimensions are
-            combined each with each: coordinates of a grid are a product, columns along one dimension a list of cases.
-            Those along two or more dimensions give each combination its own value. Numbers without a dimension are
-            shared. NaN and an empty text leave a parameter out. An attribute `units` that is known is
-            converted, any other is refused. Instead, what :func:`contactstudy.open_study` or
-            :func:`contactstudy.study.collect` returns, or a selection of it: its cases again.
-        name : str, optional
-            See the class. An opened study keeps its own, and so its level and description.
+            Variables and coordinates named after parameters. Variables along one dimension change together, dimensions
+            are combined each with each; variables along several dimensions have a value for each combination, numbers
+            without a dimension are shared. NaN and an empty text leave a parameter out. Known `units` are converted,
+            others refused. An opened study, or a selection of it, gives its cases again.
+        name, level, description : str, optional
+            See the class. The default of an opened study is its own.
         base : mapping, optional
-            Further parameters that all cases share; of an opened study, those that shall be others.
-        level, description : str, optional
-            See the class.
+            Further parameters that all cases share; of an opened study, parameters to change.
 
         Raises
         ------
         InvalidInputError
-            If a variable is no parameter, a unit does not fit, or a value is refused by the class.
+            If a variable is not a parameter, a unit does not fit, or the class refuses a value.
 
         Examples
         --------
         >>> import xarray as xr
-        >>> table = xr.Dataset(
-        ...     {"max_pressure": ("case", [1000.0, 1500.0], {"units": "MPa"}), "tilt": ("case", [0.0, 1e-4])},
-        ...     coords={"friction": [0.0, 0.1]},
-        ... )
+        >>> table = xr.Dataset({"max_pressure": ("case", [1000.0, 1500.0], {"units": "MPa"})}, {"friction": [0.0, 0.1]})
         >>> base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 10e-3, "e_over_a": 2}
         >>> study = Study.from_dataset(table, "table", base=base)
-        >>> [case.name for case in study.plan().cases][:2]
-        ['friction=0 max_pressure=1e+09 tilt=0', 'friction=0 max_pressure=1.5e+09 tilt=0.0001']
+        >>> [case.name for case in study.plan()][:2]
+        ['max_pressure=1e+09 friction=0', 'max_pressure=1e+09 friction=0.1']
         """
-        from contactstudy.study.table import content_of_table, is_opened, part_of_study
-
-        said = {"name": name, "level": level, "description": description}
-        given = {key: value for key, value in said.items() if value is not None}
+        arguments = {"name": name, "level": level, "description": description}
+        arguments = {key: value for key, value in arguments.items() if value is not None}
         if is_opened(table):
             study = cls.from_mapping(attribute(table, STUDY_ATTRIBUTE))
             content = part_of_study(study, table, base or {})
         else:
             content = content_of_table(table, base or {})
-        return cls(**({"name": "table"} | content | given))
+        return cls(**({"name": "table"} | content | arguments))
 
     def to_json(self) -> str:
-        """Everything the study says, as JSON that :meth:`from_mapping` reads back after ``json.loads``."""
+        """Content of the study as JSON; :meth:`from_mapping` takes the result of ``json.loads``."""
         return json.dumps({key: getattr(self, key) for key in KEYS}, indent=1)
 
     @property
@@ -321,24 +308,121 @@ class Study:
                 f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
-        kept, unknown = self._expanded()
-        return make_plan(self.name, self.level, kept, self.axes(), bool(self.cases), unknown)
+        return make_plan(
+            name=self.name,
+            level=self.level,
+            base=self.base,
+            axes=self.axes(),
+            cases=tuple(self.cases),
+            exclude=tuple(dict(rule) for rule in self.exclude),
+        )
 
     def axes(self) -> tuple[Axis, ...]:
-        """Swept parameters, then those that change together."""
+        """Swept parameters, then zipped ones."""
         axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
         for group in self.zip:
             rows = zip(*group.values(), strict=True)
             axes.append(Axis(tuple(dict(zip(group, row, strict=True)) for row in rows)))
         return tuple(axes)
 
-    def combinations(self) -> list[Combination]:
-        """Values of every case that is not excluded, in the order of the plan."""
-        return self._expanded()[0]
 
-    def _expanded(self) -> tuple[list[Combination], tuple[str, ...]]:
-        """Return the cases that are not excluded, and what exclusions name but no case has."""
-        rules = tuple({**rule} for rule in self.exclude)
-        named = {name for rule in self.exclude for name in rule}
-        defaults = {name: PARAMETERS[name].default for name in named if PARAMETERS[name].default is not None}
-        return combinations(self.base, self.axes(), tuple(self.cases), rules, defaults)
+def is_opened(table: xr.Dataset) -> bool:
+    """Whether a Dataset is an opened study, or a selection of one."""
+    allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
+    checks.instance("table", table, xr.Dataset, allowed)
+    return STUDY_ATTRIBUTE in table.attrs and "case_id" in table
+
+
+def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a study whose cases are the entries of a table."""
+    columns = {
+        str(name): _column(str(name), array) for name, array in table.variables.items() if _is_parameter(table, name)
+    }
+    shared = {name: _plain(array.values[()]) for name, array in columns.items() if not array.dims}
+    for name in {*base} & {*columns}:
+        raise InvalidInputError("base", name, "a parameter that the table does not have")
+    content: dict[str, Any] = {"base": {**base, **{name: value for name, value in shared.items() if value is not None}}}
+    if any(array.ndim > 1 or _incomplete(array) for array in columns.values()):
+        return content | {"cases": list(_rows(table, columns))}
+    groups: dict[str, dict[str, list[Any]]] = {}
+    for name, array in columns.items():
+        if array.dims:
+            groups.setdefault(str(array.dims[0]), {})[name] = [_plain(value) for value in array.values]
+    alone = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
+    return content | {"sweep": alone, "zip": [group for group in groups.values() if len(group) > 1]}
+
+
+def _is_parameter(table: xr.Dataset, name: object) -> bool:
+    """Whether a variable of a table is a parameter; a dimension may be numbered, all else is an error."""
+    if name in PARAMETERS:
+        return True
+    used = any(name in array.dims for other, array in table.variables.items() if other in PARAMETERS)
+    if name not in table.indexes or not used:
+        checks.known_name("variable of the table", str(name), PARAMETERS)
+    return False
+
+
+def _column(name: str, array: xr.Variable) -> xr.Variable:
+    """Values of a parameter, in SI."""
+    stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
+    if PARAMETERS[name].check is points and array.dims:
+        raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
+    equal = stated_unit is None or stated_unit == unit
+    factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
+    return array if factor == 1.0 else array * factor
+
+
+def _plain(value: Any) -> Any:
+    """Return a value of an array as Python's own; None where it is missing."""
+    plain = value.item() if isinstance(value, np.generic) else value
+    missing = plain is None or plain == "" or (isinstance(plain, float) and np.isnan(plain))
+    return None if missing else plain
+
+
+def _incomplete(array: xr.Variable) -> bool:
+    """Whether some cases do not have a parameter."""
+    return bool(array.dims) and any(_plain(value) is None for value in array.values.flat)
+
+
+def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:
+    """Yield the varying parameters of every case, in the order of the table's dimensions."""
+    varying = {name: array for name, array in columns.items() if array.dims}
+    dims = [dim for dim in table.sizes if any(dim in array.dims for array in varying.values())]
+    for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
+        entry = dict(zip(dims, steps, strict=True))
+        row = {
+            name: _plain(array[{dim: entry[dim] for dim in array.dims}].values[()]) for name, array in varying.items()
+        }
+        yield {name: value for name, value in row.items() if value is not None}
+
+
+def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keys of a study of the cases in a selection of its Dataset; a product where the selection is one."""
+    plan = study.plan()
+    identities = np.char.encode(table["case_id"].values.ravel().astype(np.str_))
+    selected = np.flatnonzero(np.isin(plan.ids, identities)).tolist()
+    if not selected:
+        raise InvalidInputError("table", f"{table['case_id'].size} cases", f"with cases of the study {study.name!r}")
+    content: dict[str, Any] = {
+        "name": study.name,
+        "level": study.level,
+        "description": study.description,
+        "base": {**study.base, **base},
+    }
+    cases = [plan.varying(index) for index in selected]
+    for name in base:
+        if any(name in case for case in cases):
+            raise InvalidInputError("base", name, "a parameter that is not swept")
+    if study.cases or not plan.axes:
+        return content | {"cases": cases if study.cases else []}
+    steps = [np.unique(column) for column in np.unravel_index(plan.chosen[selected], plan.shape)]
+    product = np.ravel_multi_index(np.ix_(*steps), plan.shape).ravel()
+    if np.isin(product, plan.chosen).sum() != len(selected):
+        return content | {"cases": cases}
+    remaining = iter(steps)
+    sweep = {name: [values[step] for step in next(remaining)] for name, values in study.sweep.items()}
+    groups = []
+    for group in study.zip:
+        step_numbers = next(remaining)
+        groups.append({name: [values[step] for step in step_numbers] for name, values in group.items()})
+    return content | {"sweep": sweep, "zip": groups, "exclude": list(study.exclude)}

@@ -10,11 +10,7 @@ class StudyFileError(ContactStudyError):
 
 
 class StoreError(ContactStudyError):
-    """A result cannot be written or read: a full disk, a missing permission, a damaged or foreign file.
-
-    While a study runs this stops the run, because the next case would meet the same disk; the cases that are
-    finished stay as they are.
-    """
+    """A result cannot be written or read: a full disk, a missing permission, a damaged file; ends a run."""
 
 
 class LockedError(ContactStudyError):

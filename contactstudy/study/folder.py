@@ -1,164 +1,386 @@
-"""The folder of a study: its files, what each case's state is, and the manifest as a cache of that.
+"""The folder of a study: its files, its locks, and the state of every case.
 
 ::
 
-    FOLDER/study.json            the study
-    FOLDER/cases/<id>.nc         one finished case
-    FOLDER/cases/<id>.failed     one failed case, as JSON
-    FOLDER/set-aside/            damaged or foreign files
-    FOLDER/manifest.jsonl        cache of the above; may be deleted at any time
-    FOLDER/run.log, run.lock     log of all runs; who runs now
+    FOLDER/study.json                 the study
+    FOLDER/batches/*.nc               finished cases, see :mod:`contactstudy.study.batches`
+    FOLDER/set-aside/                 damaged or foreign files
+    FOLDER/run.log, run.lock          log of all runs; lock of the one that runs
+    FOLDER/run-3-of-40.log, .lock     the same of a share
 """
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
-import stat
+import socket
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from filelock import FileLock, Timeout
 
 from contactstudy import checks
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
+from contactstudy.case.serialization import to_dict
 from contactstudy.errors import InvalidInputError
+from contactstudy.study.batches import (
+    CASE_ATTRIBUTE,
+    STATUSES,
+    Batch,
+    IntArray,
+    batch_paths,
+    cases_of,
+    common_attributes,
+    damage,
+    join,
+    read_batch,
+    read_case,
+    write_batch,
+)
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.manifest import Manifest
+from contactstudy.study.errors import LockedError, StoreError, StudyFileError
+from contactstudy.study.files import PART, UNFINISHED, is_regular, write_text
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS, Plan
-from contactstudy.study.store import read_header, remove_dead_parts, write_text
+from contactstudy.study.settings import RUN
+from contactstudy.study.setup import build_setup
+from contactstudy.study.user_profiles import are_registered
+from contactstudy.study.worker import by_structure
 
-SCHEMA = 2
-"""Number of the meaning of study.json: 1 had uniform cells where nothing was said, and did not state its number."""
-
+SCHEMA = 2  # Number of the meaning of study.json: 1 had uniform cells by default, and did not state its number
 CELLS = ("cells_x", "cells_y")
+STATES = (*STATUSES, "stale", "missing", "excluded")  # States of a case of a study
 
-ID_DIGITS = 16
-"""Digits of the identity in a file's name; the file holds all 64."""
+
+@dataclass(frozen=True)
+class Share:
+    """Part `number`, from 1, of `count` independent parts of a study."""
+
+    number: int = 1
+    count: int = 1
+
+    @property
+    def name(self) -> str:
+        """Start of the names of its log and lock."""
+        return "run" if self.count == 1 else f"run-{self.number}-of-{self.count}"
+
+    @property
+    def prefix(self) -> str:
+        """Start of the names of its batches."""
+        return "" if self.count == 1 else f"{self.number}-of-{self.count}-"
 
 
 @dataclass(frozen=True)
 class Entry:
-    """State of one case.
-
-    Parameters
-    ----------
-    status : {"ok", "failed", "skipped", "stale", "missing"}
-        Stale: solved by another version of the package, or kept at a lower level than asked for now.
-    reason : str
-        Why it is not ok.
-    path : str
-        The file, relative to the folder; empty if there is none.
-    scalars : dict
-        Summary values.
-    run : dict
-        Versions, time, seconds and level.
-    usable : bool
-        Whether the file has what was asked for (a stale case of another version has).
-    """
+    """State of one case with its numbers; `run` contains versions, level, time, seconds and warnings."""
 
     status: str
     reason: str = ""
-    path: str = ""
-    scalars: dict[str, float] = field(default_factory=dict)
+    numbers: dict[str, float] = field(default_factory=dict)
     run: dict[str, Any] = field(default_factory=dict)
-    usable: bool = False
+
+
+class Location(NamedTuple):
+    """Batch and row of a case."""
+
+    batch: int
+    row: int
+
+
+class Results:
+    """Results in a folder, as of now: columns of all intact batches, in memory."""
+
+    def __init__(self, paths: list[Path]) -> None:
+        self.paths: list[Path] = []
+        self.batches: list[Batch] = []
+        self.damaged: dict[Path, str] = {}
+        for path in paths:
+            try:
+                self.batches.append(read_batch(path, texts=("message",)))
+                self.paths.append(path)
+            except StoreError as error:
+                if path.exists() or path.is_symlink():  # another run may have joined it meanwhile
+                    self.damaged[path] = str(error)
+        self._texts: dict[int, Batch] = {}
+
+    @cached_property
+    def locations(self) -> dict[bytes, Location]:
+        """Location of each case by its identity: the result of the latest run."""
+        locations: dict[bytes, Location] = {}
+        for number, batch in enumerate(self.batches):
+            for row, identity in enumerate(batch.ids.tolist()):
+                former = locations.get(identity)
+                if former is None or self.batches[former.batch].runs[former.row] < batch.runs[row]:
+                    locations[identity] = Location(number, row)
+        return locations
+
+    @property
+    def latest_run(self) -> int:
+        """Largest number of a run; 0 without results."""
+        return max((int(batch.runs.max()) for batch in self.batches if len(batch)), default=0)
+
+    def with_texts(self, number: int) -> Batch:
+        """Batch with its texts: parameters, warnings and times."""
+        if number not in self._texts:
+            self._texts[number] = read_batch(self.paths[number], texts=("parameters", "message", "warnings", "time"))
+        return self._texts[number]
+
+    def case(self, identity: str, names: Iterable[str] | None = None) -> xr.Dataset:
+        """Return one solved case on its cells, with all arrays or the named ones."""
+        location = self.locations.get(identity.encode())
+        if location is None or self.batches[location.batch].status[location.row] != 0:
+            raise InvalidInputError("case_id", identity, "that of a solved case of the study")
+        case = read_case(self.paths[location.batch], location.row, names)
+        parameters = json.loads(case.attrs[CASE_ATTRIBUTE])
+        if are_registered(parameters):
+            with contextlib.suppress(InvalidInputError):  # parameters of another version
+                setup = build_setup(parameters)
+                settings = {name: setup.options[name] for name in ("tolerance", "accuracy") if name in setup.options}
+                case.attrs[INPUTS_ATTRIBUTE] = json.dumps({"case": to_dict(setup.case), "settings": settings})
+        return case
+
+    @cached_property
+    def _reasons(self) -> list[str]:
+        """Reason why each batch is stale; empty if it is not."""
+        versions = [batch.circumstances.get("contactstudy") for batch in self.batches]
+        return ["" if version == package_version() else f"solved by version {version}" for version in versions]
+
+    def state(self, identity: bytes, level: str) -> tuple[str, str, bool]:
+        """Status and reason of a case, and whether its result can be used."""
+        location = self.locations.get(identity)
+        if location is None:
+            return "missing", "", False
+        batch = self.batches[location.batch]
+        status, version = STATUSES[batch.status[location.row]], self._reasons[location.batch]
+        if status != "ok":
+            message = batch.texts["message"][location.row]
+            return ("missing", "", False) if status == "skipped" and version else (status, message, False)
+        retained = batch.circumstances.get("level")
+        if retained not in LEVELS or LEVELS.index(retained) < LEVELS.index(level):
+            return "stale", f"retains {retained}, not {level}", False
+        return ("stale", version, True) if version else ("ok", "", True)
+
+
+class States:
+    """State of every case of a plan."""
+
+    def __init__(self, plan: Plan, results: Results) -> None:
+        self.plan, self.results = plan, results
+        self.status: npt.NDArray[np.int8] = np.full(len(plan), STATES.index("missing"), dtype=np.int8)
+        self.usable: npt.NDArray[np.bool_] = np.zeros(len(plan), dtype=bool)
+        self.reasons: dict[int, str] = {}
+        lost = "; ".join(results.damaged.values())
+        if not (results.batches or lost or plan.review.reasons):
+            return
+        for index, identity in enumerate(plan.ids.tolist()):
+            if reason := plan.reason(index):
+                status, usable = "skipped", False
+            else:
+                status, reason, usable = (
+                    results.state(identity, plan.level) if results.batches else ("missing", "", False)
+                )
+                if status == "missing" and lost:
+                    reason = lost
+            self.status[index], self.usable[index] = STATES.index(status), usable
+            if reason:
+                self.reasons[index] = reason
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of cases of each status that occurs."""
+        numbers = np.bincount(self.status, minlength=len(STATES))
+        return {state: int(number) for state, number in zip(STATES, numbers, strict=True) if number}
+
+    def indices(self, *statuses: str) -> list[int]:
+        """Cases of some states, by their number in the plan."""
+        return np.flatnonzero(np.isin(self.status, [STATES.index(status) for status in statuses])).tolist()
+
+    @cached_property
+    def locations(self) -> tuple[IntArray, IntArray]:
+        """Batch and row of each case; -1 for a case without numbers."""
+        batch, row = (np.full(len(self.plan), -1, dtype=np.int64) for _ in range(2))
+        solved = np.isin(self.status, [STATES.index("ok"), STATES.index("stale")])
+        for index in np.flatnonzero(solved).tolist():
+            batch[index], row[index] = self.results.locations[self.plan.ids[index]]
+        return batch, row
+
+    @property
+    def number_names(self) -> list[str]:
+        """Names of all numbers."""
+        return sorted({name for batch in self.results.batches for name in batch.numbers})
+
+    def numbers(self, name: str) -> npt.NDArray[np.float64]:
+        """One number of every case, in the order of the plan; NaN where it is absent."""
+        values = np.full(len(self.plan), np.nan)
+        batch, row = self.locations
+        for number, source in enumerate(self.results.batches):
+            if name in source.numbers:
+                cases = batch == number
+                values[cases] = source.numbers[name][row[cases]]
+        return values
+
+    def attributes(self, name: str) -> dict[str, Any]:
+        """Attributes that a number or array has in all batches."""
+        entries = [batch.attributes[name] for batch in self.results.batches if name in batch.attributes]
+        result = dict(entries[0]) if entries else {}
+        for entry in entries[1:]:
+            result = common_attributes(name, result, entry)
+        return result
+
+    def entry(self, index: int) -> Entry:
+        """State of one case with its numbers."""
+        status, reason = STATES[self.status[index]], self.reasons.get(index, "")
+        number, row = (int(values[index]) for values in self.locations)
+        if number < 0:
+            return Entry(status, reason)
+        batch = self.results.with_texts(number)
+        numbers = {name: float(column[row]) for name, column in batch.numbers.items() if not np.isnan(column[row])}
+        return Entry(status, reason, numbers, batch.run(row))
 
 
 class Folder:
-    """A study's folder.
-
-    Parameters
-    ----------
-    path : str or Path
-        The folder; need not exist yet.
-    """
+    """A study's folder, which need not exist yet."""
 
     def __init__(self, path: str | Path) -> None:
         checks.instance("folder", path, (str, Path), "the path of a study's folder")
-        self.path = Path(path).resolve()
-        self.cases = self.path / "cases"
-        self._manifest = Manifest(self.path / "manifest.jsonl")
+        try:
+            self.path = Path(path).resolve()
+        except OSError as error:
+            raise StoreError(f"the working directory of {path} does not exist: {error.strerror}") from error
+        self.batches = self.path / "batches"
 
     def create(self) -> None:
         """Make the folder, or raise :class:`StoreError`."""
+        if self.batches.is_symlink():
+            raise StoreError(f"{self.batches} is a link, and a study writes into folders: delete it")
         try:
-            self.cases.mkdir(parents=True, exist_ok=True)
+            self.batches.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise StoreError(f"cannot make {self.cases}: {error.strerror or error}") from error
-
-    def case_path(self, identity: str) -> Path:
-        """File of a finished case."""
-        return self.cases / f"{identity[:ID_DIGITS]}.nc"
-
-    def failure_path(self, identity: str) -> Path:
-        """File of a failed case."""
-        return self.cases / f"{identity[:ID_DIGITS]}.failed"
+            raise StoreError(f"cannot make {self.batches}: {error.strerror or error}") from error
 
     def write_study(self, study: Study) -> None:
-        """Keep the study's definition; a folder belongs to one study, which may grow."""
-        existing = self.path / "study.json"
-        if existing.exists():
+        """Write the definition of the study; a folder belongs to one study, which may grow."""
+        path = self.path / "study.json"
+        if path.exists():
             name = self.read_study().name
             if name != study.name:
-                raise StoreError(f"{self.path} holds the study {name!r}, not {study.name!r}: choose another folder")
-        write_text(existing, json.dumps({"schema": SCHEMA, **json.loads(study.to_json())}, indent=1))
+                raise StoreError(f"{self.path} contains the study {name!r}, not {study.name!r}: choose another folder")
+        write_text(path, json.dumps({"schema": SCHEMA, **json.loads(study.to_json())}, indent=1))
 
     def read_study(self) -> Study:
-        """Return the study's definition.
-
-        Raises
-        ------
-        StudyFileError
-            If the folder holds none.
-        """
+        """Return the definition of the study, or raise :class:`StudyFileError`."""
         path = self.path / "study.json"
         try:
+            if path.exists() and not is_regular(path):
+                raise StudyFileError(f"{path} is not a regular file")
             content = json.loads(path.read_text(encoding="utf-8"))
         except OSError as error:
-            reason = "it holds no study.json; give what `contactstudy run` wrote into, such as results/NAME"
+            reason = "without study.json; give the folder that `contactstudy run` wrote, such as results/NAME"
             if not self.path.exists():
-                reason = "there is no such folder"
+                reason = "it does not exist"
             elif self.path.is_file():
-                reason = "it is a file; give the folder that `contactstudy run` wrote into, such as results/NAME"
+                reason = "it is a file; give the folder that `contactstudy run` wrote, such as results/NAME"
             elif path.exists():
                 reason = f"study.json: {error.strerror}"
             raise StudyFileError(f"{self.path} is not the folder of a study: {reason}") from error
         except ValueError as error:
             raise StudyFileError(f"{self.path} is not the folder of a study: study.json: {error}") from error
         except RecursionError:
-            raise StudyFileError(f"{path}: nested too deeply to be a study") from None
+            raise StudyFileError(f"{path}: nested too deeply for a study") from None
         try:
             if isinstance(content, dict) and content.pop("schema", 1) == 1:
-                # Such a folder was solved before columns were refined: its cases have uniform cells.
                 content["base"] = {name: PARAMETERS[name].default for name in CELLS} | dict(content.get("base", {}))
-            return Study.from_mapping(content)
+            return Study.from_stored(content)
         except InvalidInputError as error:
             raise StudyFileError(f"{path} is not the definition of a study: {error}") from error
 
-    def write_failure(self, identity: str, parameters: dict[str, Any], kind: str, message: str) -> None:
-        """Record why a case failed."""
-        content = {
-            "id": identity,
-            "parameters": parameters,
-            "type": kind,
-            "message": message,
-            "version": package_version(),
-        }
-        write_text(self.failure_path(identity), json.dumps(content, indent=1))
+    @contextlib.contextmanager
+    def locked(self, share: Share) -> Iterator[None]:
+        """Hold the lock of the folder, or of a share of its study, or raise :class:`LockedError`.
 
-    def clean(self) -> int:
-        """Remove what dead processes left unfinished; return how many files."""
-        return sum(remove_dead_parts(folder) for folder in (self.path, self.cases))
+        The operating system releases the lock of a process that ends. A run of the whole study and one of a share
+        exclude each other; different shares do not.
+        """
+        with contextlib.ExitStack() as locks:
+            if share.count == 1:
+                # `holders` of another process holds the lock for a moment.
+                locks.enter_context(self._hold("run", 0.5))
+                for path in self.path.glob("run-*.lock"):
+                    with self._hold(path.stem, 0.0):
+                        pass
+            else:
+                with self._hold("run", RUN.share_seconds):
+                    locks.enter_context(self._hold(share.name, 0.0))
+            yield
+
+    @contextlib.contextmanager
+    def _hold(self, name: str, seconds: float) -> Iterator[None]:
+        """Hold one lock, waiting for it for some seconds."""
+        path = self.path / f"{name}.lock"
+        if path.is_symlink() or (path.exists() and not is_regular(path)):
+            raise LockedError(f"{path} is not a regular file: delete it if no run uses {self.path}")
+        lock = FileLock(path, timeout=seconds)
+        try:
+            lock.acquire()
+        except Timeout:
+            raise LockedError(f"{self.path} is in use by {self.holder(name)}") from None
+        except (OSError, NotImplementedError) as error:
+            raise StoreError(f"cannot write {path}: {getattr(error, 'strerror', None) or error}") from error
+        try:
+            now = datetime.now(UTC).isoformat(timespec="seconds")
+            with contextlib.suppress(OSError):
+                path.write_text(f"process {os.getpid()} on {socket.gethostname()} since {now}", encoding="utf-8")
+            yield
+        finally:
+            lock.release()
+
+    def holder(self, name: str) -> str:
+        """Process, host and time of the latest holder of a lock."""
+        with contextlib.suppress(OSError, ValueError):
+            if text := (self.path / f"{name}.lock").read_text(encoding="utf-8")[:200]:
+                return text
+        return "another process"
+
+    @property
+    def holders(self) -> list[str]:
+        """Processes that run the study, or shares of it, now."""
+        busy = []
+        for path in sorted(self.path.glob("run*.lock")):
+            try:
+                with FileLock(path, timeout=0.0):
+                    pass
+            except Timeout:
+                busy.append(f"{path.stem}: {self.holder(path.stem)}")
+            except (OSError, NotImplementedError):
+                continue
+        return busy
+
+    def clean(self, share: Share) -> None:
+        """Remove unfinished files of runs that ended."""
+        for folder in (self.batches, self.path) if share.count == 1 else (self.batches,):
+            for part in folder.glob(f"{share.prefix}*{PART}"):
+                if UNFINISHED.fullmatch(part.name):
+                    with contextlib.suppress(OSError):
+                        part.unlink()
 
     def set_aside(self, path: Path) -> Path:
-        """Move a damaged or foreign file out of the way; return where it is now."""
+        """Move a damaged or foreign file to ``set-aside``; return its new path."""
         folder = self.path / "set-aside"
         try:
+            if folder.is_symlink():
+                raise StoreError(f"{folder} is a link: delete it")
             folder.mkdir(exist_ok=True)
             target, number = folder / path.name, 1
-            while target.exists():
+            while target.exists() or target.is_symlink():
                 number += 1
                 target = folder / f"{path.stem}-{number}{path.suffix}"
             os.replace(path, target)
@@ -166,101 +388,80 @@ class Folder:
             raise StoreError(f"cannot move {path}: {error.strerror or error}") from error
         return target
 
-    def save_manifest(self) -> None:
-        """Write the cache."""
-        self._manifest.save()
+    def results(self) -> Results:
+        """Results as of now."""
+        return Results(batch_paths(self.batches))
 
-    def remember(self, path: Path, identity: str, run: dict[str, Any], scalars: dict[str, float]) -> dict[str, Any]:
-        """Enter a file, just written or checked, in the cache; return its entry."""
-        state = path.stat()
-        return self._manifest.put(path.name, state.st_size, state.st_mtime_ns, identity, run, scalars)
+    def states(self, plan: Plan) -> States:
+        """State of every case of a plan; reads only."""
+        return States(plan, self.results())
 
-    def _checked(self, path: Path) -> dict[str, Any]:
-        """Cache entry of a file, read and verified anew if the file has changed since.
+    def verified_results(self, share: Share) -> tuple[Results, list[str]]:
+        """Results after every byte was verified, and messages on files that were damaged and are set aside."""
+        messages = []
+        for path in batch_paths(self.batches):
+            if path.name.startswith(share.prefix) and (reason := damage(path)):
+                messages.append(
+                    f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
+                )
+        results = self.results()
+        if share.count == 1:
+            for path, reason in results.damaged.items():
+                messages.append(
+                    f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
+                )
+        return results, messages
 
-        Raises
-        ------
-        FileNotFoundError
-            If there is none.
-        StoreError
-            If the file is damaged or foreign.
-        """
-        try:
-            state = path.stat()
-        except FileNotFoundError:
-            raise
-        except OSError as error:
-            raise StoreError(f"cannot read {path}: {error.strerror or error}") from error
-        if not stat.S_ISREG(state.st_mode):
-            raise StoreError(f"{path} is not a regular file")
-        known = self._manifest.get(path.name)
-        if known and (known["size"], known["changed"]) == (state.st_size, state.st_mtime_ns):
-            return known
-        self._manifest.forget(path.name)
-        header = read_header(path, verify=True)
-        return self.remember(path, header.id, header.run, header.scalars)
+    def compact(self, share: Share, *, at_end: bool = False) -> None:
+        """Join small batches into larger ones, without results that later runs replaced; at the end all small ones."""
+        tiers: dict[int, list[Path]] = {}
+        for path in batch_paths(self.batches):
+            with contextlib.suppress(OSError):
+                size, full = path.lstat().st_size, cases_of(path) > RUN.batch_cases // 2
+                if (
+                    path.name.startswith(share.prefix)
+                    and not full
+                    and size < (RUN.small_bytes if at_end else RUN.batch_bytes)
+                ):
+                    tiers.setdefault(0 if at_end else int(np.log(max(size, 1)) / np.log(RUN.fan_in)), []).append(path)
+        for paths in tiers.values():
+            if len(paths) >= (2 if at_end else RUN.fan_in):
+                self._join(paths, share)
 
-    def _of_case(self, path: Path, identity: str) -> dict[str, Any]:
-        """Cache entry of a case's file, which must hold this case."""
-        known = self._checked(path)
-        if known["id"] != identity:
-            raise StoreError(f"{path} holds another case, {known['id'][:ID_DIGITS]}")
-        return known
+    def _join(self, paths: list[Path], share: Share) -> None:
+        """Join batches as far as their circumstances, structure and sizes allow."""
+        groups: dict[str, list[tuple[Path, Batch]]] = {}
+        for path in paths:
+            with contextlib.suppress(StoreError):
+                batch = read_batch(path, arrays=None)
+                groups.setdefault(json.dumps(batch.circumstances, sort_keys=True), []).append((path, batch))
+        for members in groups.values():
+            sources = {id(batch): path for path, batch in members}
+            for batches in by_structure(batch for _, batch in members):
+                for part in _portions(batches):
+                    if len(part) > 1:
+                        joined = latest(join(part))
+                        write_batch(self.batches, f"{share.prefix}{os.urandom(6).hex()}", joined)
+                        for batch in part:
+                            sources[id(batch)].unlink(missing_ok=True)
 
-    def state(self, identity: str, level: str) -> tuple[Entry, str]:
-        """State of a case that can be solved, and what is wrong with its file (empty if nothing)."""
-        path, problem = self.case_path(identity), ""
-        try:
-            known = self._of_case(path, identity)
-        except FileNotFoundError:
-            known = None
-        except StoreError as error:
-            known, problem = None, str(error)
-        if known is not None:
-            name, run = f"cases/{path.name}", known["run"]
-            kept = run.get("level")
-            if kept not in LEVELS or LEVELS.index(kept) < LEVELS.index(level):
-                reason = f"keeps {kept}, not {level}"
-                return Entry("stale", reason, name, known["scalars"], run), ""
-            if run.get("contactstudy") != package_version():
-                reason = f"solved by version {run.get('contactstudy')}"
-                return Entry("stale", reason, name, known["scalars"], run, usable=True), ""
-            return Entry("ok", "", name, known["scalars"], run, usable=True), ""
-        try:
-            failure = json.loads(self.failure_path(identity).read_text(encoding="utf-8"))
-            return Entry("failed", f"{failure['type']}: {failure['message']}"), problem
-        except FileNotFoundError:
-            return Entry("missing", problem), problem
-        except (OSError, ValueError, KeyError, TypeError) as error:
-            return Entry("missing", f"unreadable failure record: {error}"), problem
 
-    def entries(self, plan: Plan) -> list[Entry]:
-        """State of every case of a plan, in its order; reads only."""
-        found: dict[str, Entry] = {}
-        result = []
-        for case in plan.cases:
-            if case.reason:
-                result.append(Entry("skipped", case.reason))
-                continue
-            if case.id not in found:
-                found[case.id] = self.state(case.id, plan.level)[0]
-            result.append(found[case.id])
-        return result
+def _portions(batches: list[Batch]) -> Iterator[list[Batch]]:
+    """Consecutive batches that together are not too large."""
+    portion: list[Batch] = []
+    for batch in sorted(batches, key=len):
+        full = sum(map(len, [*portion, batch])) > RUN.batch_cases
+        if portion and (full or sum(member.nbytes for member in [*portion, batch]) > RUN.batch_bytes):
+            yield portion
+            portion = []
+        portion.append(batch)
+    if portion:
+        yield portion
 
-    def foreign_files(self) -> list[tuple[Path, str]]:
-        """Files among the cases that are no case of this package, each with what is wrong."""
-        wrong = []
-        for path in sorted(self.cases.glob("*")):
-            # What a user keeps beside the cases, such as a report of one, is left alone.
-            if path.suffix != ".nc" or ".part-" in path.name:
-                continue
-            try:
-                identity = self._checked(path)["id"]
-                if self.case_path(identity) != path:
-                    wrong.append((path, f"{path} holds the case {identity[:ID_DIGITS]} under a wrong name"))
-            except FileNotFoundError:
-                if path.is_symlink():
-                    wrong.append((path, f"{path} is a link to a file that is not there"))
-            except StoreError as error:
-                wrong.append((path, str(error)))
-        return wrong
+
+def latest(batch: Batch) -> Batch:
+    """Return a batch with the latest row of each case."""
+    order = np.lexsort((-batch.runs, batch.ids))
+    _, first = np.unique(batch.ids[order], return_index=True)
+    rows = np.sort(order[first])
+    return batch if len(rows) == len(batch) else batch.take(rows)

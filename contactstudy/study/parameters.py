@@ -1,32 +1,134 @@
 """The parameters of a study's case, in one table: name, check, unit, meaning, and the function that takes it.
 
 A new parameter is one entry of :data:`PARAMETERS` if `Case`, `choose_grid` or `solver_settings` has a keyword of the
-same name: its default is read from that signature, and the value is handed on. Any other parameter is used by name in
-:func:`contactstudy.study.setup.setup_of`.
+same name: its default is read from that signature, and the value is passed on. `contactstudy.study.setup.setup_of` uses
+every other parameter by name. The identity of a case is a hash of its normalised parameters.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+import hashlib
+import inspect
+import json
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
+
+import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.vocabulary import COORDINATES
+from contactstudy.bodies.lubricant import OILS
 from contactstudy.bodies.models import MODELS
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import choose_grid
+from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
-from contactstudy.case.settings import ACCURACY, solver_settings
-from contactstudy.study.motion_kinds import KINDS
-from contactstudy.study.numbers import number
-from contactstudy.study.parameter import Parameter, flag, one_of, points, profile
+from contactstudy.errors import InvalidInputError
+from contactstudy.study.numbers import number, rounded
+from contactstudy.study.profile_tables import profile_table
 
-UNIFORM = ("cells_x", "cells_y", "window", "margin", "error_estimate")
+MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
+SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
+MOTIONS = ("sliding", "shift", "rolling")  # Motions by name, the default first
+Check = Callable[[str, object], Any]
+
+
+def flag(name: str, value: object) -> bool:
+    """Return True or False."""
+    checks.instance(name, value, (bool, np.bool_), "true or false")
+    return bool(value)
+
+
+def one_of(words: Iterable[str]) -> Check:
+    """Return the check of a word of a list."""
+    names = tuple(words)
+
+    def word(name: str, value: object) -> str:
+        checks.instance(name, value, str, "text")
+        return checks.known_name(name, str(value), names)
+
+    return word
+
+
+def profile(name: str, value: object) -> dict[str, Any]:
+    """Return a profile's table with all its numbers rounded."""
+    return {key: _rounded_within(entry) for key, entry in profile_table(value).items()}
+
+
+def positive(name: str, value: object) -> float:
+    """Return a positive number."""
+    return checks.positive(name, number(name, value))
+
+
+def _rounded_within(entry: Any) -> Any:
+    """Return an entry of a profile's table with all its numbers rounded."""
+    if isinstance(entry, float):
+        return rounded(entry)
+    if isinstance(entry, list):
+        return [_rounded_within(part) for part in entry]
+    if isinstance(entry, dict):
+        return {key: _rounded_within(part) for key, part in entry.items()}
+    return entry
+
+
+def points(name: str, value: object) -> list[float]:
+    """Return points given as a list, or as a table {start, stop, count} of evenly spaced ones."""
+    if isinstance(value, Mapping):
+        for key in value:
+            checks.known_name(f"{name} key", str(key), ("start", "stop", "count"))
+        missing = {"start", "stop", "count"} - set(value)
+        if missing:
+            raise InvalidInputError(name, dict(value), "a list, or a table with start, stop and count")
+        start, stop = (checks.finite(f"{name}.{key}", value[key]) for key in ("start", "stop"))
+        count = checks.count(f"{name}.count", value["count"])
+        if count > MOST_POINTS:
+            raise InvalidInputError(f"{name}.count", count, f"at most {MOST_POINTS}")
+        listed = np.linspace(start, stop, count)
+    else:
+        listed = checks.coordinates(name, value, "half-widths a")
+    return [number(name, point) for point in listed.tolist()]
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Specification of one parameter."""
+
+    name: str
+    check: Check  # takes name and value; returns the value in the normalised form of identities, or raises
+    units: str  # empty for a word
+    meaning: str  # comment of the coordinate, and the documentation
+    taker: Callable[..., Any] | None = None  # takes an argument of this name, with the default
+    fallback: Any = None  # default without a taker; None: required or optional
+    absent: str = ""  # meaning of a missing parameter without a default, for the documentation
+    note: str = ""  # addition to the meaning, for the documentation
+    label: str = ""  # long name of the coordinate, short enough for an axis; default: the name
+
+    @property
+    def attrs(self) -> dict[str, str]:
+        """Attributes of the coordinate in a Dataset."""
+        texts = {"units": self.units, "long_name": self.label or self.name.replace("_", " "), "comment": self.meaning}
+        return {name: text for name, text in texts.items() if text}
+
+    def checked(self, value: object) -> Any:
+        """Return a value in the normalised form of identities; a scalar with another unit is converted."""
+        return self.check(self.name, checks.scalar(self.name, value, self.units))
+
+    @cached_property
+    def default(self) -> Any:
+        """Value of a case without the parameter; None if it is required or optional."""
+        value = self.fallback
+        if self.taker is not None:
+            value = inspect.signature(self.taker).parameters[self.name].default
+        return None if value is None else self.check(self.name, value)
+
+
+UNIFORM = ("cells_x", "cells_y", "window", "margin")
 """Parameters of uniform cells; a case that gives one of them has such cells."""
 
 BODIES = ("finite-length", "quarter-space", "half-space")
 
-# How a roller's ends are treated, by the name of the body that it is; None for a rigid one.
+# Ends of the roller by the name of its body; None for a rigid one.
 ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
 
 _WITH_CASE = (
@@ -42,7 +144,7 @@ _WITH_CASE = (
         "model",
         one_of(MODELS),
         "",
-        "how free ends are treated",
+        "model of the free ends",
         fallback=MODELS[0],
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",
@@ -83,11 +185,10 @@ _WITH_CASE = (
         "approach",
         number,
         "m",
-        "how far the roller is pressed down at its mid-length, from first touch without tilt",
+        "approach at mid-length, from first contact without tilt",
         Case,
         absent="or `load`",
-        note="the load results, and with it a: give `end_distance`, and leave out uniform cells and stress points, "
-        "which are over a",
+        note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
     Parameter("friction", number, "1", "coefficient of friction", Case, label=COORDINATES["friction"].long_name),
     Parameter(
@@ -117,22 +218,36 @@ _WITH_CASE = (
         absent="the body's",
         label="roller's Poisson's ratio",
     ),
+    Parameter(
+        "reference_depth",
+        number,
+        "m",
+        "depth of the material line below the load to which approach and tilt refer",
+        absent="one length between free ends, else far away",
+    ),
+    Parameter(
+        "roller_reference_depth",
+        number,
+        "m",
+        "distance from the contact to the reference line of an elastic roller",
+        absent="the roller's length with free ends, else far away",
+    ),
     Parameter("tilt", number, "rad", "misalignment of the roller; positive if larger x is pressed deeper", Case),
     Parameter(
         "load_offset",
         number,
         "m",
-        "where the load acts, from mid-length",
-        absent="the tilt is held",
+        "position of the load, from mid-length",
+        absent="the tilt is prescribed",
         note="the roller tilts until it balances",
     ),
     Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
     Parameter(
         "motion",
-        one_of(KINDS),
+        one_of(MOTIONS),
         "",
-        "how the roller moves against the body",
-        fallback=KINDS[0],
+        "motion of the roller against the body",
+        fallback=MOTIONS[0],
         note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
     ),
     Parameter(
@@ -143,7 +258,7 @@ _WITH_CASE = (
         absent="0",
         note="rolling only; or `force_y`",
     ),
-    Parameter("lateral_creepage", number, "1", "likewise along x", absent="0", note="rolling only; or `force_x`"),
+    Parameter("lateral_creepage", number, "1", "the same along x", absent="0", note="rolling only; or `force_x`"),
     Parameter(
         "spin",
         number,
@@ -157,7 +272,7 @@ _WITH_CASE = (
     Parameter(
         "force_x", number, "N", "force on the body along x", absent="follows", note="shift or rolling; less than slides"
     ),
-    Parameter("force_y", number, "N", "force on the body along y", absent="follows", note="likewise"),
+    Parameter("force_y", number, "N", "force on the body along y", absent="follows", note="shift or rolling"),
     Parameter(
         "moment_z", number, "N m", "moment on the body about the roller's middle", absent="follows", note="rolling only"
     ),
@@ -165,10 +280,19 @@ _WITH_CASE = (
         "rolling_model",
         one_of(ROLLING_MODELS),
         "",
-        "how the tractions of rolling are found",
+        "model of the tractions of rolling",
         fallback=ROLLING_MODELS[0],
         note="`exact`; for comparison `fastsim`, strips without an influence of neighbours and free ends",
     ),
+    Parameter("lubricant", one_of(OILS), "", "oil of a film between the surfaces", absent="or `viscosity`; dry"),
+    Parameter("temperature", number, "degC", "temperature of the oil in the inlet", absent="with `lubricant`"),
+    Parameter("viscosity", positive, "Pa s", "viscosity at ambient pressure", absent="or `lubricant`; dry"),
+    Parameter("pressure_viscosity", positive, "Pa-1", "pressure-viscosity coefficient", absent="with `viscosity`"),
+    Parameter(
+        "entrainment_speed", positive, "m s-1", "mean speed of both surfaces along +y", absent="required for a film"
+    ),
+    Parameter("slide_roll_ratio", number, "1", "difference of the speeds over their mean", absent="0"),
+    Parameter("roughness_rms", positive, "m", "composite rms roughness", absent="smooth"),
 )
 _WITH_SOLVER = (
     Parameter(
@@ -177,7 +301,7 @@ _WITH_SOLVER = (
         "1",
         "error over the peak to which peak, end pressures and end loads are settled",
         absent=f"{ACCURACY:g}",
-        note="columns are refined until it is reached; without one, if anything is said about cells, these are uniform",
+        note="columns are refined to it; a case with parameters of uniform cells has none",
     ),
     Parameter("cells_x", number, "1", "cells per half-width a along x", choose_grid, note="uniform cells"),
     Parameter("cells_y", number, "1", "cells per half-width a along y", choose_grid, note="uniform cells"),
@@ -187,7 +311,7 @@ _WITH_SOLVER = (
         "1",
         "half-width of the window in y over a",
         choose_grid,
-        note="uniform cells; the default is widened where the contact needs more; any other value is kept",
+        note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
     ),
     Parameter(
         "margin",
@@ -198,25 +322,17 @@ _WITH_SOLVER = (
         note="uniform cells",
     ),
     Parameter("tolerance", number, "1", "tolerance of the contact iteration", solver_settings),
-    Parameter(
-        "error_estimate",
-        flag,
-        "1",
-        "whether a contact on half the cells gives the discretisation error",
-        solver_settings,
-        note="uniform cells",
-    ),
     Parameter("stresses", flag, "1", "whether stresses are calculated", solver_settings),
     Parameter(
         "field_x_over_a",
         points,
         "1",
         "stress points: x from the free end over a",
-        absent="cell centres",
+        absent="from face to face",
         note="a list, or `{start, stop, count}`",
     ),
     Parameter("field_y_over_a", points, "1", "stress points: y over a", absent="cell centres"),
-    Parameter("field_z_over_a", points, "1", "stress points: depth over a", absent="19 depths"),
+    Parameter("field_z_over_a", points, "1", "stress points: depth over a", absent="about 23 depths to 5 a"),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in (*_WITH_CASE, *_WITH_SOLVER)}
 """Every parameter that a case of a study can have."""
@@ -229,41 +345,16 @@ REQUIRED = (
     ("e_over_a", "end_distance"),
     ("max_pressure", "load", "approach"),
 )
-"""Parameters of which every case gives exactly one."""
+"""Groups of parameters; every case has exactly one of each group."""
 
 
 def taken_by(taker: Callable[..., Any], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return those of `values` that `taker` has keyword arguments for.
-
-    Examples
-    --------
-    >>> taken_by(choose_grid, {"cells_x": 4.0, "friction": 0.1})
-    {'cells_x': 4.0}
-    """
+    """Return the parameters that are keyword arguments of `taker`."""
     return {name: value for name, value in values.items() if PARAMETERS[name].taker is taker}
 
 
 def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, Any]:
-    """Return `values` with known names and checked types, in the table's order; a None is left out.
-
-    Parameters
-    ----------
-    values : mapping
-        Parameters of a case.
-    where : str
-        What the names are, for error messages.
-
-    Raises
-    ------
-    InvalidInputError
-        If a name is unknown (with the nearest known one), or a value is of a wrong type.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> checked({"friction": np.int64(1), "body": "half-space"})
-    {'body': 'half-space', 'friction': 1.0}
-    """
+    """Return `values` with known names and checked types, in the table's order; a None is left out."""
     for name in values:
         checks.known_name(where, str(name), PARAMETERS)
     return {
@@ -272,34 +363,20 @@ def checked(values: Mapping[str, Any], where: str = "parameter") -> dict[str, An
 
 
 def completed(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return checked `values` with the accuracy of a case that says nothing about its cells.
-
-    It counts for the identity: a case without it has uniform cells, as every case had before columns were refined.
-
-    Examples
-    --------
-    >>> completed({"friction": 0.1}), completed({"cells_x": 4.0})
-    ({'friction': 0.1, 'accuracy': 0.01}, {'cells_x': 4.0})
-    """
-    said = any(name in values for name in ("accuracy", *UNIFORM))
-    return dict(values) if said else {**values, "accuracy": ACCURACY}
+    """Return checked `values` with the default accuracy, a part of the identity, unless the cells are uniform."""
+    has_cells = any(name in values for name in ("accuracy", *UNIFORM))
+    return dict(values) if has_cells else {**values, "accuracy": ACCURACY}
 
 
 def counted(name: str, value: Any) -> Any:
-    """Return what of a checked value counts for a case's identity; None if that is its default.
-
-    Examples
-    --------
-    >>> counted("friction", 0.0), counted("profile", {"kind": "tapered", "half_angle": 0.1, "name": "ours"})
-    (None, {'kind': 'tapered', 'half_angle': 0.1})
-    """
+    """Part of a checked value that belongs to the identity; None for a default."""
     if name == "profile":
         value = {key: entry for key, entry in value.items() if key != "name"}
     return None if value == PARAMETERS[name].default else value
 
 
 def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return checked `values` without those that equal the default and without a profile's name."""
+    """Return checked `values` without defaults and without a profile's name."""
     pairs = ((name, counted(name, value)) for name, value in values.items())
     return {name: value for name, value in pairs if value is not None}
 
@@ -307,6 +384,32 @@ def without_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
 def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     """Return `values` completed by the defaults."""
     return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
+
+
+def canonical_json(values: object) -> str:
+    """JSON with sorted keys and no spaces, so that equal values give equal text."""
+    return json.dumps(values, sort_keys=True, separators=(",", ":"), allow_nan=False)
+
+
+def case_id(parameters: Mapping[str, Any]) -> str:
+    """Identity of a case: SHA-256 of its canonical JSON without defaults, as 64 hexadecimal digits.
+
+    A parameter added later with a default keeps the identity of old cases.
+    """
+    values = checked(parameters)
+    return hash_of(fragment(name, values[name]) for name in sorted(values)).decode()
+
+
+def fragment(name: str, value: Any) -> str:
+    """Return a checked parameter's part of the canonical JSON; empty if the value is the default."""
+    value = counted(name, value)
+    return "" if value is None else f'"{name}":{canonical_json(value)}'
+
+
+def hash_of(fragments: Iterable[str]) -> bytes:
+    """Identity of a case from the fragments of its parameters, sorted by name."""
+    content = ",".join(filter(None, fragments))
+    return hashlib.sha256(f'{{"case":{{{content}}},"schema":{SCHEMA}}}'.encode()).hexdigest().encode()
 
 
 def _written(value: Any) -> str:

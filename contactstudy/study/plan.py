@@ -1,132 +1,390 @@
-"""From a study to the list of its cases, in a stable order."""
+"""Plan of a study: its cases in a stable order, their identities, groups and positions among its dimensions.
+
+Properties are computed at first use: a million cases have identities and groups as arrays; the parameters of a case
+follow from its number.
+"""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import repeat
 from typing import Any, NamedTuple
 
+import numpy as np
+import numpy.typing as npt
+
 from contactstudy.arrays.engineering import quantity
-from contactstudy.case.doubts import doubts
+from contactstudy.case.magnitudes import doubts, friction_doubt
 from contactstudy.errors import ContactStudyError
-from contactstudy.study.cube import Axis, Cube, cube_of_axes, cube_of_cases
-from contactstudy.study.identity import fragment, identity_of
-from contactstudy.study.parameters import PARAMETERS, completed, counted
-from contactstudy.study.profile_words import profile_in_words, profile_label
-from contactstudy.study.setup import Described, check_cells, setup_of
+from contactstudy.study.parameters import PARAMETERS, completed, fragment, hash_of, without_defaults
+from contactstudy.study.profile_tables import describe_profile, profile_label
+from contactstudy.study.settings import RUN
+from contactstudy.study.setup import Setup, build_setup
 
-Level = str
-LEVELS: tuple[Level, ...] = ("summary", "surface", "fields")
-"""What a file keeps: scalars; also everything on (x, y); also the stresses."""
+LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; those on (x, y); also the stresses
+LARGEST_FILL = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
+BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
+"""Size of the numbers of a case, and of its arrays before compression."""
 
-ENDS_EFFORT = 15.0
-"""Effort of a case with free ends over one without, roughly; for forecasts of time only."""
+LOCAL = frozenset(
+    {"friction", "tilt", "load_offset", "profile", "accuracy", "tolerance", "stresses", "entrainment_speed"}
+)
+"""Parameters that do not change the operator of the surface. Speed."""
 
-BYTES_PER_CELL, BYTES_PER_POINT = 4 * 8, 7 * 4
+IntArray = npt.NDArray[np.int64]
+Labeller = Callable[[str, Any], Any]
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
+
+    entries: tuple[dict[str, Any], ...]
+
+
+@dataclass(frozen=True)
+class Cube:
+    """Dimensions of a study's Dataset; `labels` has the dimension and the values of each coordinate."""
+
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    labels: dict[str, tuple[str, list[Any]]]
+
+
+def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
+    """Cube of a product: one dimension per axis; a zipped one is named after its first parameter of distinct values."""
+    if not axes:
+        return Cube(("case",), (1,), {"case": ("case", [0])})
+    dims, shape, labels = [], [], {}
+    for axis in axes:
+        columns = {name: [label(name, entry[name]) for entry in axis.entries] for name in axis.entries[0]}
+        distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
+        dim = distinct[0] if distinct else "_and_".join(columns)
+        if not distinct:
+            labels[dim] = (dim, list(range(len(axis.entries))))
+        for name, column in columns.items():
+            labels[name] = (dim, column)
+        dims.append(dim)
+        shape.append(len(axis.entries))
+    return Cube(tuple(dims), tuple(shape), labels)
+
+
+def cube_of_cases(cases: Sequence[Mapping[str, Any]], label: Labeller) -> tuple[Cube, list[tuple[int, ...]]]:
+    """Cube of explicit cases over the parameters that differ, or along `case` if sparse; and each case's position."""
+    names = list(dict.fromkeys(name for case in cases for name in case))
+    rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
+    columns = {name: list(dict.fromkeys(row[name] for row in rows)) for name in names}
+    varying = {name: column for name, column in columns.items() if len(column) > 1}
+    cells = math.prod(map(len, varying.values()))
+    complete = all(None not in column for column in varying.values())
+    indices = {name: {value: index for index, value in enumerate(column)} for name, column in varying.items()}
+    positions = [tuple(indices[name][row[name]] for name in varying) for row in rows]
+    if varying and complete and cells <= LARGEST_FILL * len(cases) and len(set(positions)) == len(positions):
+        labels = {name: (name, column) for name, column in varying.items()}
+        return Cube(tuple(varying), tuple(len(column) for column in varying.values()), labels), positions
+    labels = {"case": ("case", list(range(len(cases))))}
+    for name in varying:
+        labels[name] = ("case", [row[name] for row in rows])
+    return Cube(("case",), (len(cases),), labels), [(index,) for index in range(len(cases))]
 
 
 @dataclass(frozen=True)
 class PlannedCase:
-    """One case of a study before it is solved.
+    """One case of a study before it is solved."""
 
-    Parameters
-    ----------
-    id : str
-        Identity, see :func:`~contactstudy.study.identity.case_id`.
-    parameters : dict
-        Checked parameters without defaults.
-    name : str
-        Swept parameters in words, for messages.
-    position : tuple of int
-        Place in the study's Dataset.
-    reason : str
-        Why the case is skipped; empty if it can be solved.
-    operator : str
-        Equal for cases that share the solver's preparation.
-    cells, points : int
-        Sizes of grid and stress field.
-    described : dict
-        End distance over the half-width, friction, gamma and profile; empty for a skipped case.
-    doubts : tuple of str
-        Questions on values of a size that is mostly a mistake in the unit.
-    """
-
+    index: int  # number in the plan
     id: str
-    parameters: dict[str, Any]
-    name: str
-    position: tuple[int, ...]
-    reason: str = ""
-    operator: str = ""
-    cells: int = 0
-    points: int = 0
-    described: Described = field(default_factory=dict)
-    doubts: tuple[str, ...] = ()
-
-    def size(self, level: Level) -> int:
-        """Bytes of the case's file before compression."""
-        fields = BYTES_PER_POINT * self.points if level == "fields" else 0
-        return 20_000 + (BYTES_PER_CELL * self.cells if level != "summary" else 0) + fields
-
-    @property
-    def cost(self) -> float:
-        """Expected effort in arbitrary units; free ends take most of it."""
-        freed = self.parameters.get("body") != "half-space" and "model" not in self.parameters
-        ends = ENDS_EFFORT if freed else 1.0
-        return ends * (self.cells + 0.1 * self.points)
+    parameters: dict[str, Any]  # checked, without defaults
+    name: str  # swept parameters in words
+    position: tuple[int, ...]  # in the study's Dataset
+    reason: str = ""  # why the plan skips the case, or empty
 
 
-@dataclass(frozen=True)
-class Plan:
-    """The cases of a study, in order, and where each lies among its dimensions.
+class Review(NamedTuple):
+    """Result of setting up one case of each group, or of a sample of the groups."""
 
-    Parameters
-    ----------
-    name : str
-        Name of the study.
-    level : {"summary", "surface", "fields"}
-        What is kept.
-    cases : tuple of PlannedCase
-        Every case that is not excluded, skipped ones included.
-    cube : Cube
-        Dimensions and labels.
-    unknown : tuple of str
-        What the study excludes but no case has.
-    """
+    reasons: dict[int, str]  # why a group cannot be solved
+    # questions on values of a size that is mostly a mistake in the unit, with the number of groups
+    doubts: Counter[str]
+    checked: int  # groups that were set up
+    groups: int
+    cells: float  # mean per case
+    points: float
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Plan(Sequence[PlannedCase]):
+    """The cases of a study, in order."""
 
     name: str
-    level: Level
-    cases: tuple[PlannedCase, ...]
-    cube: Cube
-    unknown: tuple[str, ...] = ()
+    level: str  # retained arrays
+    base: Mapping[str, Any]  # parameters of all cases
+    axes: tuple[Axis, ...] = ()
+    explicit: tuple[Mapping[str, Any], ...] = ()  # cases on top of the base
+    # cases that are not excluded: numbers in the product, then of the explicit cases
+    chosen: IntArray = field(default_factory=lambda: np.zeros(1, dtype=np.int64))
+    unknown: tuple[str, ...] = ()  # excluded values that no case has
+
+    def __len__(self) -> int:
+        return len(self.chosen)
+
+    def __getitem__(self, index: Any) -> Any:
+        """Return one case, or a list of cases."""
+        if isinstance(index, slice):
+            return [self[number] for number in range(*index.indices(len(self)))]
+        number = range(len(self))[index]
+        position = tuple(map(int, np.unravel_index(self.flat[number], self.cube.shape)))
+        parameters, identity = self.parameters(number), self.ids[number].decode()
+        return PlannedCase(number, identity, parameters, self.words(number), position, self.reason(number))
 
     @property
-    def skipped(self) -> tuple[PlannedCase, ...]:
-        """Cases that cannot be solved, each with its reason."""
-        return tuple(case for case in self.cases if case.reason)
+    def shape(self) -> tuple[int, ...]:
+        """Number of steps of each axis."""
+        return tuple(len(axis.entries) for axis in self.axes)
 
     @property
-    def unique(self) -> tuple[PlannedCase, ...]:
-        """Cases to solve, each once, even if the study names it twice."""
-        return tuple({case.id: case for case in self.cases if not case.reason}.values())
+    def products(self) -> int:
+        """Number of combinations of the axes."""
+        return math.prod(self.shape) if self.axes or not self.explicit else 0
+
+    def varying(self, index: int) -> dict[str, Any]:
+        """Parameters of a case beside the base."""
+        number = int(self.chosen[index])
+        if number >= self.products:
+            return dict(self.explicit[number - self.products])
+        steps = np.unravel_index(number, self.shape) if self.shape else ()
+        return {
+            name: value
+            for axis, step in zip(self.axes, steps, strict=True)
+            for name, value in axis.entries[step].items()
+        }
+
+    def values(self, index: int) -> dict[str, Any]:
+        """Parameters of a case as the study gives them."""
+        return {**self.base, **self.varying(index)}
+
+    def parameters(self, index: int) -> dict[str, Any]:
+        """Parameters of a case without defaults, with the accuracy of a case that gives no cells."""
+        return without_defaults(completed(self.values(index)))
+
+    def words(self, index: int) -> str:
+        """Swept parameters of a case, for messages."""
+        return " ".join(in_words(name, value) for name, value in self.varying(index).items()) or "the only case"
+
+    @cached_property
+    def _layout(self) -> tuple[Cube, IntArray]:
+        """Dimensions of the study, and each case's number in the flattened cube."""
+        if not self.explicit:
+            return cube_of_axes(self.axes, label), self.chosen
+        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))], label)
+        return cube, np.ravel_multi_index(tuple(np.array(positions).T), cube.shape).astype(np.int64)
+
+    @property
+    def cube(self) -> Cube:
+        """Dimensions of the study."""
+        return self._layout[0]
+
+    @property
+    def flat(self) -> IntArray:
+        """Number of each case in the flattened cube."""
+        return self._layout[1]
+
+    def _fragments(self) -> Iterator[tuple[str, ...]]:
+        """Parts of each case's canonical JSON, sorted by name; empty for defaults."""
+        product = self.chosen[self.chosen < self.products]
+        names = {name for axis in self.axes for name in axis.entries[0]}
+        columns: dict[str, Iterable[str]] = {}
+        for name, value in completed({**self.base, **dict.fromkeys(names)}).items():
+            if name not in names:
+                columns[name] = repeat(fragment(name, value))
+        steps = np.unravel_index(product, self.shape) if self.shape else ()
+        for axis, column in zip(self.axes, steps, strict=True):
+            for name in axis.entries[0]:
+                table = [fragment(name, entry[name]) for entry in axis.entries]
+                columns[name] = map(table.__getitem__, column.tolist())
+        if product.size and self.axes:
+            ordered = [columns[name] for name in sorted(columns)]
+            yield from zip(*ordered, strict=False)
+        elif product.size:
+            yield tuple(next(iter(columns[name])) for name in sorted(columns))
+        for number in self.chosen[len(product) :]:
+            values = completed({**self.base, **self.explicit[number - self.products]})
+            yield tuple(fragment(name, values[name]) for name in sorted(values))
+
+    @cached_property
+    def ids(self) -> npt.NDArray[np.bytes_]:
+        """Identities of the cases."""
+        return np.fromiter(map(hash_of, self._fragments()), dtype="S64", count=len(self))
+
+    @cached_property
+    def groups(self) -> IntArray:
+        """Group of each case, numbered as they appear: equal up to friction in full sliding, and a film's speed."""
+        return _numbered(map(_group_key, self._fragments()), len(self))
+
+    @cached_property
+    def operators(self) -> IntArray:
+        """Number of the operator of each case: equal for cases that share body, load and cells."""
+        local = tuple(f'"{name}":' for name in LOCAL)
+        keys = (
+            hash(tuple(part for part in parts if part and not part.startswith(local))) for parts in self._fragments()
+        )
+        return _numbered(keys, len(self))
+
+    @cached_property
+    def review(self) -> Review:
+        """Check of one case of each group, or of a sample of them."""
+        _, firsts = np.unique(self.groups, return_index=True)
+        step = max(1, -(-len(firsts) // RUN.checked_groups))
+        reasons, questions = {}, Counter[str]()
+        cells, points, checked = 0.0, 0.0, 0
+        for index in firsts[::step].tolist():
+            checked += 1
+            try:
+                setup = self.setup(index)
+            except ContactStudyError as error:
+                reasons[int(self.groups[index])] = str(error)
+                continue
+            questions.update(doubts(setup.case))
+            cells, points = cells + math.prod(setup.shape), points + setup.points
+        # A group's cases differ in friction: its other values are checked here.
+        entries = [*(entry for axis in self.axes for entry in axis.entries), *self.explicit]
+        for friction in {entry["friction"] for entry in entries if "friction" in entry}:
+            if message := friction_doubt(friction):
+                questions.setdefault(message, checked)
+        solvable = max(1, checked - len(reasons))
+        return Review(reasons, questions, checked, len(firsts), cells / solvable, points / solvable)
+
+    def setup(self, index: int) -> Setup:
+        """Set up a case, or raise the reason why it cannot be solved."""
+        return build_setup(self.parameters(index), given=self.values(index))
+
+    def reason(self, index: int) -> str:
+        """Reason why the plan skips a case, or empty."""
+        return self.review.reasons.get(int(self.groups[index]), "") if self.review.reasons else ""
+
+    @cached_property
+    def skipped(self) -> list[int]:
+        """Numbers of the skipped cases."""
+        skipped = np.isin(self.groups, list(self.review.reasons)) if self.review.reasons else np.zeros(len(self), bool)
+        return np.flatnonzero(skipped).tolist()
+
+    @cached_property
+    def unique(self) -> list[int]:
+        """Cases to solve by their number, each once even if the study contains it twice."""
+        skipped = set(self.skipped)
+        first: dict[bytes, int] = {}
+        for index, identity in enumerate(self.ids.tolist()):
+            if index not in skipped:
+                first.setdefault(identity, index)
+        return list(first.values())
 
     @property
     def doubts(self) -> tuple[str, ...]:
-        """Questions on values of a size that is mostly a mistake in the unit, each once, with the number of cases."""
-        counts = Counter(question for case in self.unique for question in case.doubts)
-        return tuple(f"{question} ({number} case{'s' * (number > 1)})" for question, number in counts.items())
+        """Questions on values of a size that is mostly a mistake in the unit, each with the number of contacts."""
+        return tuple(
+            f"{question} ({number} contact{'s' * (number > 1)})" for question, number in self.review.doubts.items()
+        )
 
     @property
-    def size(self) -> int:
-        """Bytes of all files before compression: an upper bound."""
-        return sum(case.size(self.level) for case in self.unique)
+    def size(self) -> float:
+        """Bytes of all batches before compression: an estimate."""
+        size = float(BYTES_PER_CASE)
+        if self.level != "summary":
+            size += BYTES_PER_CELL * self.review.cells
+        if self.level == "fields":
+            size += BYTES_PER_POINT * self.review.points
+        return size * len(self.unique)
+
+
+def _group_key(fragments: tuple[str, ...]) -> int:
+    """Key of a case's group."""
+    if any(part.startswith(('"motion":', '"coupled":')) for part in fragments):
+        return hash(fragments)
+    local = ('"friction":', '"entrainment_speed":')
+    return hash(tuple(part for part in fragments if part and not part.startswith(local)))
+
+
+def _numbered(keys: Iterable[int], count: int) -> IntArray:
+    """Return the number of each key, in the order of their first appearance."""
+    numbers: dict[int, int] = {}
+    return np.fromiter((numbers.setdefault(key, len(numbers)) for key in keys), dtype=np.int64, count=count)
+
+
+def make_plan(
+    *,
+    name: str,
+    level: str,
+    base: Mapping[str, Any],
+    axes: tuple[Axis, ...],
+    cases: tuple[Mapping[str, Any], ...],
+    exclude: tuple[Mapping[str, list[Any]], ...],
+) -> Plan:
+    """Plan of a study: the product of its axes, then the explicit cases, without those that match a rule of labels."""
+    product = Plan(name=name, level=level, base=base, axes=axes, explicit=cases)
+    names = {entry for rule in exclude for entry in rule}
+    defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
+    shape, products = product.shape, product.products
+    out = np.zeros(shape if products else (0,), dtype=bool)
+    listed = [{**defaults, **base, **case} for case in cases]
+    out_listed = [any(_matches(values, rule) for rule in exclude) for values in listed]
+    values_of: dict[str, set[Any]] = {entry: set() for entry in names}
+    for entry in names:
+        values_of[entry].update(label(entry, values.get(entry)) for values in listed)
+        if products:
+            values_of[entry].update(label(entry, value) for value in _steps(entry, axes, defaults | dict(base)))
+    for rule in exclude if products else ():
+        matching = np.ones(shape, dtype=bool)
+        for entry, allowed in rule.items():
+            steps = _steps(entry, axes, defaults | dict(base))
+            matches = np.array([label(entry, value) in allowed for value in steps])
+            number = next((index for index, axis in enumerate(axes) if entry in axis.entries[0]), None)
+            matching &= (
+                matches[0]
+                if number is None
+                else matches.reshape([-1 if index == number else 1 for index in range(len(shape))])
+            )
+        out |= matching
+    unknown = [
+        f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
+        for rule in exclude
+        for entry, values in rule.items()
+        for value in values
+        if value not in values_of[entry]
+    ]
+    chosen = np.concatenate(
+        [np.flatnonzero(~out.ravel()), products + np.flatnonzero(~np.array(out_listed, dtype=bool))]
+    ).astype(np.int64)
+    return Plan(
+        name=name,
+        level=level,
+        base=base,
+        axes=axes,
+        explicit=cases,
+        chosen=chosen,
+        unknown=tuple(dict.fromkeys(unknown)),
+    )
+
+
+def _steps(name: str, axes: tuple[Axis, ...], values: Mapping[str, Any]) -> list[Any]:
+    """Values of a parameter along the axis that contains it; one value if none does."""
+    for axis in axes:
+        if name in axis.entries[0]:
+            return [entry[name] for entry in axis.entries]
+    return [values.get(name)]
+
+
+def _matches(values: Mapping[str, Any], rule: Mapping[str, list[Any]]) -> bool:
+    """Return whether a case matches a rule."""
+    return all(label(name, values.get(name)) in allowed for name, allowed in rule.items())
 
 
 def label(name: str, value: Any) -> Any:
-    """Value of a parameter as it stands on a dimension."""
-    if name == "profile":
+    """Value of a parameter as a coordinate contains it."""
+    if name == "profile" and value is not None:
         return profile_label(value)
     if isinstance(value, list):
         return f"{len(value)} points {value[0]:g} to {value[-1]:g}"
@@ -135,129 +393,18 @@ def label(name: str, value: Any) -> Any:
 
 def in_words(name: str, value: Any) -> str:
     """Return a parameter as ``name=value``."""
-    shown = label(name, value)
-    return f"{name}={shown:g}" if isinstance(shown, float) else f"{name}={shown}"
+    text = label(name, value)
+    return f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}"
 
 
-def in_engineers_words(name: str, value: Any) -> str:
-    """Value of a study's parameter in the units of engineers.
-
-    Examples
-    --------
-    >>> in_engineers_words("radius", 5e-3), in_engineers_words("field_y_over_a", [0.0])
-    ('5 mm', '1 value, 0')
-    """
-    shown = profile_in_words(value) if name == "profile" and isinstance(value, dict) else value
-    if isinstance(shown, (list, tuple)):
-        ends = f"{shown[0]:g}" if len(shown) == 1 else f"{shown[0]:g} to {shown[-1]:g}"
-        return f"{len(shown)} value{'s' if len(shown) > 1 else ''}, {ends}"
-    if isinstance(shown, bool):
-        return "yes" if shown else "no"
-    if not isinstance(shown, (int, float)):
-        return str(shown)
-    return quantity(float(shown), PARAMETERS[name].units if name in PARAMETERS else "1")
-
-
-def _excluded(values: Mapping[str, Any], rules: Iterable[Mapping[str, list[Any]]]) -> bool:
-    """Whether every entry of some rule matches."""
-    return any(all(label(name, values.get(name)) in allowed for name, allowed in rule.items()) for rule in rules)
-
-
-class Combination(NamedTuple):
-    """One case before it is planned: all its values, those that are its own, and its place in a product."""
-
-    values: dict[str, Any]
-    own: dict[str, Any]
-    position: tuple[int, ...]
-
-
-def combinations(
-    base: Mapping[str, Any],
-    axes: tuple[Axis, ...],
-    cases: tuple[Mapping[str, Any], ...],
-    exclude: tuple[Mapping[str, list[Any]], ...],
-    defaults: Mapping[str, Any],
-) -> tuple[list[Combination], tuple[str, ...]]:
-    """Expand a study: the product of its axes, then the explicit cases, without the excluded ones.
-
-    All values are checked already; rules of `exclude` hold lists of labels, and see `defaults` where a case says
-    nothing. Also returned is what of them no combination has.
-    """
-    chosen: list[Combination] = []
-    if axes or not cases:
-        for position in itertools.product(*(range(len(axis.entries)) for axis in axes)):
-            swept: dict[str, Any] = {}
-            for axis, index in zip(axes, position, strict=True):
-                swept |= axis.entries[index]
-            chosen.append(Combination({**base, **swept}, swept, position))
-    chosen += [Combination({**base, **case}, dict(case), ()) for case in cases]
-    seen = [{**defaults, **entry.values} for entry in chosen]
-    unknown = []
-    for name, wanted in ((name, value) for rule in exclude for name, values in rule.items() for value in values):
-        if all(label(name, values.get(name)) != wanted for values in seen):
-            unknown.append(f"exclude.{name} = {wanted!r}: no case has this value, so nothing is left out by it")
-    kept = [entry for entry, values in zip(chosen, seen, strict=True) if not _excluded(values, exclude)]
-    return kept, tuple(dict.fromkeys(unknown))
-
-
-def make_plan(
-    name: str,
-    level: Level,
-    kept: list[Combination],
-    axes: tuple[Axis, ...],
-    explicit: bool,
-    unknown: tuple[str, ...] = (),
-) -> Plan:
-    """Lay out the combinations of a study along its axes, or along what differs if it has explicit cases."""
-    if explicit:
-        cube, positions = cube_of_cases([entry.values for entry in kept], label)
-    else:
-        cube = cube_of_axes(axes, label)
-        positions = [entry.position if cube.dims != ("case",) or axes else (0,) for entry in kept]
-    planner = Planner()
-    planned = [
-        planner.planned(entry.values, entry.own, position) for entry, position in zip(kept, positions, strict=True)
-    ]
-    return Plan(name, level, tuple(planned), cube, unknown)
-
-
-class Planner:
-    """Makes planned cases of checked parameters; what one value says is worked out once for all cases that share it."""
-
-    def __init__(self) -> None:
-        # By name and identity of the value, which is kept beside so that the identity stays its own.
-        self._known: dict[tuple[str, int], tuple[Any, str, str]] = {}
-
-    def _said(self, name: str, value: Any) -> tuple[Any, str, str]:
-        """Return a value, its part of the identity, and the value in words."""
-        key = (name, id(value))
-        if key not in self._known:
-            self._known[key] = (value, fragment(name, value), in_words(name, value))
-        return self._known[key]
-
-    def planned(self, values: Mapping[str, Any], swept: Mapping[str, Any], position: tuple[int, ...]) -> PlannedCase:
-        """Return a case with its identity, its size, and why it cannot be solved if so."""
-        given = values
-        values = completed(values)
-        fragments = {name: self._said(name, value)[1] for name, value in values.items()}
-        identity = identity_of(fragments)
-        words = " ".join(self._said(name, value)[2] for name, value in swept.items()) or "the only case"
-        parameters = {name: counted(name, value) for name, value in values.items() if fragments[name]}
-        try:
-            setup = setup_of(parameters)
-            # Values at their default do not count for the identity, but they were said.
-            check_cells(given)
-        except ContactStudyError as error:
-            return PlannedCase(identity, parameters, words, position, reason=str(error))
-        cells = math.prod(setup.shape)
-        return PlannedCase(
-            identity,
-            parameters,
-            words,
-            position,
-            operator=setup.operator,
-            cells=cells,
-            points=setup.points,
-            described=setup.described,
-            doubts=doubts(setup.case),
-        )
+def value_text(name: str, value: Any) -> str:
+    """Value of a study's parameter in the units of engineers."""
+    value = describe_profile(value) if name == "profile" and isinstance(value, dict) else value
+    if isinstance(value, (list, tuple)):
+        ends = f"{value[0]:g}" if len(value) == 1 else f"{value[0]:g} to {value[-1]:g}"
+        return f"{len(value)} value{'s' if len(value) > 1 else ''}, {ends}"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if not isinstance(value, (int, float)):
+        return str(value)
+    return quantity(float(value), PARAMETERS[name].units if name in PARAMETERS else "1")

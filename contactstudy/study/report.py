@@ -1,36 +1,30 @@
-"""What the command line says of a study: lines of text from plans, states and reports."""
+"""Lines of the command line on a study: from plans, states and reports."""
 
 from __future__ import annotations
 
-from collections import Counter
+import contextlib
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from contactstudy.study.folder import Entry
+import numpy as np
+
+from contactstudy.study.folder import STATES, States
 from contactstudy.study.plan import Plan
 from contactstudy.study.progress import duration
 from contactstudy.study.run import RunReport
 
-# Most reasons on the screen; ``--all`` lists every case with its own.
-SHOWN = 20
+MOST_REASONS = 20  # Reasons on the screen; ``--all`` lists every case with its reason
 
 
 def shown(path: Path) -> str:
-    """Path relative to the current folder where that is shorter."""
-    try:
+    """Path relative to the current folder where it lies within it."""
+    with contextlib.suppress(ValueError, OSError):
         return str(path.relative_to(Path.cwd()))
-    except ValueError:
-        return str(path)
+    return str(path)
 
 
 def in_bytes(size: float) -> str:
-    """Size of files in words.
-
-    Examples
-    --------
-    >>> in_bytes(20), in_bytes(123456), in_bytes(5e12)
-    ('20 bytes', '123 kB', '5e+03 GB')
-    """
+    """Size of files in words."""
     for unit in ("bytes", "kB", "MB"):
         if size < 1000:
             return f"{size:.3g} {unit}"
@@ -39,81 +33,97 @@ def in_bytes(size: float) -> str:
 
 
 def run_lines(report: RunReport) -> Iterator[str]:
-    """Lines on what a run did."""
+    """Lines on the result of a run."""
     counts = ", ".join(f"{count} {status}" for status, count in report.counts.items())
-    yield f"{len(report.plan.cases)} cases: {counts}; {report.solved} solved now"
-    yield from _alike(("failed", entry.reason, case.name) for case, entry in report.failures)
+    yield f"{len(report.plan)} cases: {counts}; {report.solved} solved now"
+    yield from _grouped(("failed", reason, case.name) for case, reason in report.failures)
     if report.failures:
         yield f"  details in {shown(report.folder / 'run.log')}"
         yield f"  again with: contactstudy rerun {shown(report.folder)}"
-    yield from skipped_lines(report.plan)
-    for case in report.not_converged[:SHOWN]:
+    yield from _reasons(report.states, "skipped")
+    for case in report.not_converged[:MOST_REASONS]:
         yield f"  not converged, do not rely on it: {case.name}"
     for remark in report.remarks:
         yield f"  {remark}"
-    files = report.files
-    if files:
+    if files := report.files:
         size = sum(path.stat().st_size for path in files)
-        kind = "netCDF files" if len(files) > 1 else "netCDF file"
-        yield f"{len(files)} {kind}, {in_bytes(size)}, in {shown(files[0].parent)}"
+        yield f"{len(files)} netCDF file{'s' * (len(files) > 1)}, {in_bytes(size)}, in {shown(files[0].parent)}"
 
 
 def stale_lines(report: RunReport) -> Iterator[str]:
-    """Lines on what a run left as it was because another version solved it."""
-    stale = [entry for entry in report.entries if entry.status == "stale"]
-    if stale:
+    """Lines on cases that another version solved and the run left as they are."""
+    if stale := report.states.indices("stale"):
         again = f"contactstudy rerun {shown(report.folder)}"
-        yield f"{len(stale)} stale ({stale[0].reason}); again with: {again}"
+        yield f"{len(stale)} stale ({report.states.reasons[stale[0]]}); again with: {again}"
 
 
-def skipped_lines(plan: Plan) -> Iterator[str]:
-    """Lines on the cases that cannot be solved."""
-    yield from _alike(("skipped", case.reason, case.name) for case in plan.skipped)
+def _reasons(states: States, *statuses: str) -> Iterator[str]:
+    """Lines on cases of some states, with their reasons."""
+    indices = states.indices(*statuses)
+    yield from _grouped(
+        (STATES[states.status[index]], states.reasons[index], f"{states.plan[index].id[:16]} {states.plan[index].name}")
+        for index in indices
+        if index in states.reasons
+    )
 
 
-def _alike(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
-    """Lines on cases, each its status, reason and name: of those that are alike the first, and how many more."""
+def _grouped(cases: Iterable[tuple[str, str, str]]) -> Iterator[str]:
+    """Lines on cases, each its status, reason and name: of equal reasons the first case and the number of others."""
     groups: dict[tuple[str, str], list[str]] = {}
     for status, reason, name in cases:
         groups.setdefault((status, reason), []).append(name)
-    for (status, reason), names in list(groups.items())[:SHOWN]:
+    for (status, reason), names in list(groups.items())[:MOST_REASONS]:
         yield f"  {status}: {names[0]}: {reason}{f' (and {len(names) - 1} more)' if len(names) > 1 else ''}"
-    if len(groups) > SHOWN:
-        yield f"  ... and {len(groups) - SHOWN} more reasons"
+    if len(groups) > MOST_REASONS:
+        yield f"  ... and {len(groups) - MOST_REASONS} more reasons"
 
 
-def state_lines(plan: Plan, entries: list[Entry], *, everything: bool) -> Iterator[str]:
+def state_lines(states: States, *, everything: bool) -> Iterator[str]:
     """Lines of counts, and of the cases that need attention, or of every case."""
-    for status, count in Counter(entry.status for entry in entries).items():
+    for status, count in states.counts.items():
         yield f"  {count} {status}"
-    named = [(case, entry, f"{case.id[:16]} {case.name}") for case, entry in zip(plan.cases, entries, strict=True)]
     if everything:
-        for _, entry, name in named:
-            yield f"  {entry.status}: {name}" + (f": {entry.reason}" if entry.reason else "")
+        for case in states.plan:
+            reason = states.reasons.get(case.index, "")
+            yield f"  {STATES[states.status[case.index]]}: {case.id[:16]} {case.name}" + (
+                f": {reason}" if reason else ""
+            )
         return
-    yield from skipped_lines(plan)
-    listed = [(entry.status, entry.reason, name) for case, entry, name in named if entry.reason and not case.reason]
-    yield from _alike(listed)
-    if len(listed) > 1:
+    yield from _reasons(states, "skipped")
+    yield from _reasons(states, "failed", "stale", "missing")
+    if len(states.reasons) > 1:
         yield "  every case: --all"
 
 
-def forecast_lines(plan: Plan, entries: list[Entry]) -> Iterator[str]:
+def forecast_lines(states: States) -> Iterator[str]:
     """Lines on exclusions without effect and doubtful magnitudes, and on bytes and time of the cases to come."""
-    yield from (f"  {unknown}" for unknown in plan.unknown[:SHOWN])
-    for doubt in plan.doubts[:SHOWN]:
-        yield f"  doubtful, for units are SI: {doubt}"
-    pairs = list(zip(plan.cases, entries, strict=True))
-    done = {case.id: (case.cost, entry.scalars["seconds"]) for case, entry in pairs if "seconds" in entry.scalars}
-    todo = {case.id: case for case, entry in pairs if entry.status == "missing"}
+    plan = states.plan
+    yield from (f"  {unknown}" for unknown in plan.unknown[:MOST_REASONS])
+    for doubt in plan.doubts[:MOST_REASONS]:
+        yield f"  doubtful magnitude in SI units: {doubt}"
+    review = plan.review
+    if review.checked < review.groups:
+        yield f"  {review.checked} of {review.groups} contacts were checked; a run checks all"
     unique = plan.unique
-    duplicates = len(plan.cases) - len(plan.skipped) - len(unique)
-    if duplicates:
+    if duplicates := len(plan) - len(plan.skipped) - len(unique):
         yield f"  {duplicates} duplicates, solved once"
-    yield f"files: at most {in_bytes(sum(case.size(plan.level) for case in unique))} at level {plan.level}"
-    effort = sum(cost for cost, _ in done.values())
-    if todo and effort:
-        seconds = sum(taken for _, taken in done.values()) / effort * sum(case.cost for case in todo.values())
-        yield f"time: about {duration(seconds)} of one core for {len(todo)} cases"
-    elif todo:
-        yield f"time: known when the first of {len(todo)} cases is solved"
+    yield from _effort_lines(states, plan, len(set(states.indices("missing")) & set(unique)))
+
+
+def _effort_lines(states: States, plan: Plan, missing: int) -> Iterator[str]:
+    """Lines on the bytes of a study and on the time of its missing cases."""
+    seconds = states.numbers("seconds")
+    solved = int(np.isfinite(seconds).sum())
+    if solved:
+        size = sum(path.stat().st_size for path in states.results.paths)
+        total = in_bytes(size / solved * len(plan.unique))
+        yield f"files: about {total} at level {plan.level}, from {solved} solved cases"
+    else:
+        yield f"files: about {in_bytes(plan.size)} at level {plan.level} before compression"
+    if missing and solved:
+        yield (
+            f"time: about {duration(float(np.nanmean(seconds)) * missing)} of one core for {missing} cases, "
+            f"from {solved} solved ones"
+        )
+    elif missing:
+        yield f"time: not estimated for {missing} cases; `plan --sample N` solves N of them for an estimate"

@@ -1,4 +1,4 @@
-"""Running a study: from the plan to files, on local processes or on a cluster, resumable at any moment."""
+"""Running a study: from the plan to batches, on local processes or on a cluster, resumable at any moment."""
 
 from __future__ import annotations
 
@@ -6,124 +6,117 @@ import contextlib
 import signal
 import threading
 import time
-from collections import Counter
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from types import FrameType
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from contactstudy import checks
-from contactstudy.errors import Terminated
+from contactstudy.errors import InvalidInputError, Terminated
+from contactstudy.study.batches import case_batch, write_batch
 from contactstudy.study.definition import Study
+from contactstudy.study.engine import WAIT_SECONDS, Engine, refuse_in_a_worker
 from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.executor import WAIT_SECONDS, execute
-from contactstudy.study.folder import Entry, Folder
-from contactstudy.study.guard import refuse_in_a_worker
-from contactstudy.study.lock import locked
-from contactstudy.study.own_profiles import pickles_of
+from contactstudy.study.executor import Results, Tasks, execute
+from contactstudy.study.folder import Entry, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
-from contactstudy.study.work import Job, Record, Solver, differences
+from contactstudy.study.settings import RUN
+from contactstudy.study.worker import Outcome, Solver, Task, circumstances
 
-SAVE_SECONDS = 5.0
+if TYPE_CHECKING:
+    from distributed import Client
 
-# Questions on magnitudes that a run repeats; `plan` shows more.
-MOST_DOUBTS = 5
+MOST_DOUBTS = 5  # Questions on magnitudes that a run repeats; `plan` shows more
+AGAIN = ("failed", "stale", "skipped")  # States that can be solved anew
 
 
 @dataclass(frozen=True)
 class RunReport:
-    """What a run did.
+    """Result of a run.
 
     Parameters
     ----------
     folder : Path
         The study's folder.
-    plan : Plan
-        All cases.
-    entries : list of Entry
-        State of every case of the plan, in its order, after the run.
+    states : States
+        State of every case of the study after the run.
     solved : int
         Cases solved now, failed ones included.
     remarks : tuple of str
-        What the reader should know of this run: workers with other versions, workers that could not be used.
+        Messages on the run: damaged batches, workers that could not be used.
     """
 
     folder: Path
-    plan: Plan
-    entries: list[Entry]
+    states: States
     solved: int
     remarks: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {status}" for status, count in self.counts.items())
-        return (
-            f"RunReport({len(self.plan.cases)} cases: {counts}; {self.solved} solved now; folder={str(self.folder)!r})"
-        )
+        return f"RunReport({len(self.plan)} cases: {counts}; {self.solved} solved now; folder={str(self.folder)!r})"
+
+    @property
+    def plan(self) -> Plan:
+        """The cases."""
+        return self.states.plan
 
     @property
     def counts(self) -> dict[str, int]:
         """Number of cases of each status."""
-        return dict(Counter(entry.status for entry in self.entries))
+        return self.states.counts
 
     @property
     def not_converged(self) -> list[PlannedCase]:
         """Cases whose contact iteration did not reach its tolerance."""
-        pairs = zip(self.plan.cases, self.entries, strict=True)
-        return [case for case, entry in pairs if entry.scalars.get("converged", 1.0) == 0.0]
+        return [self.plan[index] for index in np.flatnonzero(self.states.numbers("converged") == 0.0).tolist()]
 
     @property
-    def failures(self) -> list[tuple[PlannedCase, Entry]]:
+    def failures(self) -> list[tuple[PlannedCase, str]]:
         """Failed cases, each with its reason."""
-        pairs = zip(self.plan.cases, self.entries, strict=True)
-        return [(case, entry) for case, entry in pairs if entry.status == "failed"]
+        return [(self.plan[index], self.states.reasons[index]) for index in self.states.indices("failed")]
+
+    def entry(self, index: int) -> Entry:
+        """State of one case with its numbers."""
+        return self.states.entry(index)
 
     @property
     def files(self) -> list[Path]:
-        """The netCDF files of the study's cases."""
-        return sorted({self.folder / entry.path for entry in self.entries if entry.path})
+        """Batches of the study."""
+        return self.states.results.paths
 
 
 @contextlib.contextmanager
-def _interruptible(say: Callable[[str], None]) -> Iterator[None]:
-    """Let the first Ctrl-C or SIGTERM end the block, and no further one break off the tidying up after it."""
+def _interruptible(notify: Callable[[str], None]) -> Iterator[None]:
+    """Let the first Ctrl-C, SIGTERM or SIGHUP end the block; further ones do not break off the work after it."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
+    numbers = [signal.SIGINT, signal.SIGTERM, *([signal.SIGHUP] if hasattr(signal, "SIGHUP") else [])]
+    previous = {number: signal.getsignal(number) for number in numbers}
+    # nohup makes a process ignore SIGHUP, which stays so.
+    handled = [number for number in numbers if previous[number] != signal.SIG_IGN]
 
     def handler(number: int, frame: FrameType | None) -> None:
-        for each in (signal.SIGINT, signal.SIGTERM):
-            signal.signal(each, signal.SIG_IGN)
-        say("interrupted: ending the workers ...")
-        raise Terminated("ended by SIGTERM") if number == signal.SIGTERM else KeyboardInterrupt
+        for other in handled:
+            signal.signal(other, signal.SIG_IGN)
+        notify("interrupted: ending the workers ...")
+        if number == signal.SIGINT:
+            raise KeyboardInterrupt
+        interrupt = Terminated(f"ended by {signal.Signals(number).name}")
+        interrupt.number = number
+        raise interrupt
 
-    previous = {number: signal.signal(number, handler) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number in handled:
+        signal.signal(number, handler)
     try:
         yield
     finally:
-        for number, former in previous.items():
-            signal.signal(number, former)
-
-
-def _todo(plan: Plan, folder: Folder, again: tuple[str, ...], log: Callable[[str], None]) -> list[Job]:
-    """Jobs for the cases that are not done; damaged files are moved out of the way first."""
-    for path, problem in folder.foreign_files():
-        log(f"{problem}; moved to {folder.set_aside(path)}")
-    jobs = []
-    for case in plan.unique:
-        entry, _ = folder.state(case.id, plan.level)
-        if entry.status == "missing" or (entry.status == "stale" and not entry.usable) or entry.status in again:
-            place, own = str(folder.path), pickles_of(case.parameters)
-            jobs.append(
-                Job(case.id, case.name, case.parameters, place, plan.level, case.operator, case.cost, plan.name, own)
-            )
-    return jobs
-
-
-def _interrupted(place: Folder, plan: Plan) -> str:
-    """Say what an interrupted run leaves, and how it goes on."""
-    kept = sum(place.case_path(case.id).exists() for case in plan.unique)
-    return f"interrupted: {kept} of {len(plan.unique)} cases are kept in {place.path}; run again to go on"
+        for number in handled:
+            signal.signal(number, previous[number])
 
 
 def run_study(
@@ -131,33 +124,39 @@ def run_study(
     folder: str | Path | None = None,
     *,
     workers: int | None = None,
-    scheduler: str | None = None,
+    scheduler: str | Client | None = None,
+    share: tuple[int, int] | None = None,
     wait: float = WAIT_SECONDS,
     progress: bool = True,
     again: tuple[str, ...] = (),
+    sample: int | None = None,
     solver: Solver | None = None,
 ) -> RunReport:
     """Solve every case of a study that is not solved yet.
 
-    May be interrupted in any way and called again: what is finished is not solved twice. A script that calls this
-    needs the guard ``if __name__ == "__main__":``, because the workers are processes that import it.
+    A run may be interrupted in any way and called again: finished cases are not solved twice. A script that calls this
+    function needs the guard ``if __name__ == "__main__":``, because the workers are processes that import it.
 
     Parameters
     ----------
     study : Study
         The study.
     folder : str or Path, optional
-        Where its files are; default ``results/<name>``. It belongs to this study.
+        Folder of its files; default ``results/<name>``. It belongs to this study.
     workers : int, optional
         Number of local processes; default one per core. 0 solves in this process, without dask.
-    scheduler : str, optional
-        Address ``tcp://...`` of a dask scheduler to use instead; its workers must see `folder`.
+    scheduler : str or distributed.Client, optional
+        Address ``tcp://...`` of a dask scheduler to use instead, or a client of it; its workers must see `folder`.
+    share : (int, int), optional
+        ``(3, 40)`` solves the third of forty independent parts of the study, into the same folder: for job arrays.
     wait : float
-        How long to wait for a worker of `scheduler` while there is none, seconds; infinity waits for ever.
+        Time to wait for a worker of `scheduler` while there is none, seconds; infinity waits for ever.
     progress : bool
         Whether to show a bar on a terminal; ``run.log`` in the folder is written in any case.
-    again : tuple of {"failed", "stale"}
-        Also solve cases of these states anew.
+    again : tuple of {"failed", "stale", "skipped"}
+        States of cases to solve anew.
+    sample : int, optional
+        Solve so many cases only, evenly spaced: from these, `plan` estimates time and bytes.
     solver : callable, optional
         Called instead of :func:`contactstudy.solve`, with the same arguments.
 
@@ -170,13 +169,13 @@ def run_study(
     InvalidInputError
         If an argument is of the wrong kind.
     StudyFileError
-        If no case of the study can be solved, or the scheduler does not answer or has no worker that can be used.
+        If all cases are impossible, or the scheduler does not answer or lacks usable workers.
     LockedError
-        If another process runs a study in the folder.
+        If another process runs the study, or this share of it, in the folder.
     StoreError
         If the disk or a permission is in the way.
     KeyboardInterrupt
-        After Ctrl-C or SIGTERM, when workers have ended and the lock is released; it says how many cases are kept.
+        After Ctrl-C, SIGTERM or SIGHUP, when workers have ended; the message contains the number of finished cases.
 
     Examples
     --------
@@ -192,86 +191,176 @@ def run_study(
     """
     refuse_in_a_worker()
     checks.instance("study", study, Study, "a Study, as from Study.from_toml(path)")
+    engine = Engine(workers=workers, scheduler=scheduler, wait=wait, solver=solver)
+    part = _checked_share(share)
     plan = study.plan()
     if not plan.unique:
-        reason = plan.skipped[0].reason if plan.skipped else "every combination is excluded"
+        reason = plan.reason(plan.skipped[0]) if plan.skipped else "every combination is excluded"
         raise StudyFileError(f"study {study.name!r} has no case that can be solved: {reason}")
-    place = Folder(folder if folder is not None else Path("results") / study.name)
-    place.create()
+    results_folder = Folder(folder if folder is not None else Path("results") / study.name)
+    results_folder.create()
     with (
-        Progress(place.path / "run.log", shown=progress) as log,
-        _interruptible(log.tell),
-        locked(place.path) as took_over,
+        results_folder.locked(part),
+        Progress(results_folder.path / f"{part.name}.log", shown=progress) as log,
+        _interruptible(log.notify),
     ):
-        if took_over:
-            log.say(took_over)
         try:
-            place.clean()
-            place.write_study(study)
-            for unknown in plan.unknown[:MOST_DOUBTS]:
-                log.remark(unknown)
-            for doubt in plan.doubts[:MOST_DOUBTS]:
-                log.remark(f"doubtful, for units are SI: {doubt}")
-            jobs = _todo(plan, place, again, log.say)
-            log.begin(jobs, total=len(plan.unique))
-            records = execute(jobs, workers=workers, scheduler=scheduler, wait=wait, solver=solver, say=log.remark)
-            _finish(records, place, jobs, log)
+            results_folder.clean(part)
+            results_folder.write_study(study)
+            for message in (*plan.unknown[:MOST_DOUBTS], *plan.doubts[:MOST_DOUBTS]):
+                log.remark(message if message in plan.unknown else f"doubtful magnitude in SI units: {message}")
+            results, messages = results_folder.verified_results(part)
+            for message in messages:
+                log.remark(message)
+            groups = _groups_to_solve(States(plan, results), again, part, sample)
+            lock = results_folder.path / f"{part.name}.lock"
+            task = Task(
+                jobs=(),
+                folder=str(results_folder.batches),
+                lock=(str(lock), lock.read_text(encoding="utf-8")),
+                prefix=part.prefix,
+                level=plan.level,
+                study=plan.name,
+                run=results.latest_run + 1,
+            )
+            del results
+            solved = sum(map(len, groups))
+            log.begin(solved, total=len(plan.unique))
+            tasks = Tasks(plan, groups, task)
+            _collect(execute(tasks, engine, log.remark), task, results_folder, part, log)
         except KeyboardInterrupt as interrupt:
-            words = _interrupted(place, plan)
-            log.say(words)
-            # A fresh one: the reader needs to know what is kept, not where the solver was.
-            raise (Terminated if isinstance(interrupt, Terminated) else KeyboardInterrupt)(words) from None
-        report = RunReport(place.path, plan, place.entries(plan), len(jobs), tuple(log.remarks))
-        log.say(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
+            message = _interruption(results_folder, plan)
+            log.log(message)
+            # The message counts, not the line at which the solver was.
+            interrupt.args = (message,)
+            raise interrupt.with_traceback(None) from None
+        except BaseException as error:
+            log.log(f"stopped: {type(error).__name__}: {error}")
+            raise
+        report = RunReport(results_folder.path, results_folder.states(plan), solved, tuple(log.remarks))
+        log.log(f"done: {', '.join(f'{count} {status}' for status, count in report.counts.items())}")
     return report
 
 
-def _finish(records: Generator[Record, None, None], place: Folder, jobs: list[Job], log: Progress) -> None:
-    """Take in the records, and leave the folder tidy however that ends."""
+def _checked_share(share: tuple[int, int] | None) -> Share:
+    """Share of a run."""
+    if share is None:
+        return Share()
+    if not isinstance(share, tuple) or len(share) != 2 or not all(type(entry) is int for entry in share):
+        raise InvalidInputError("share", share, "two numbers, such as (3, 40) for the third of forty shares")
+    number, count = share
+    if not 1 <= number <= count:
+        raise InvalidInputError("share", share, "a number from 1 to the count of shares, and that count")
+    return Share(number, count)
+
+
+def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sample: int | None) -> list[list[int]]:
+    """Cases that are not done, group by group, those with a common operator together, the expensive ones first."""
+    for status in again:
+        checks.known_name("again", status, AGAIN)
+    plan = states.plan
+    unique = chosen = np.array(plan.unique, dtype=np.int64)
+    if sample is not None:
+        count = min(checks.count("sample", sample), len(unique))
+        chosen = unique[np.linspace(0, len(unique) - 1, count).astype(np.int64)]
+    missing = set(states.indices("missing", *again)) | {
+        index for index in states.indices("stale") if not states.usable[index]
+    }
+    missing &= set(chosen.tolist())
+    members: dict[tuple[int, int], list[int]] = {}
+    for index in unique.tolist():
+        members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
+    order = sorted(members, key=lambda key: (_is_cheap(plan.values(members[key][0])), key))
+    groups = [members[key] for key in order]
+    if share.count > 1:
+        pieces = _pieces([key[0] for key in order], max(1, len(groups) // (RUN.turns * share.count)))
+        groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
+    return [remaining for group in groups if (remaining := _remaining(plan, group, missing))]
+
+
+def _remaining(plan: Plan, group: list[int], missing: set[int]) -> list[int]:
+    """Cases of a group to solve; films start from one another along falling speeds, so all of them or none."""
+    remaining = [index for index in group if index in missing]
+    if remaining and "entrainment_speed" in plan.values(group[0]):
+        return sorted(group, key=lambda index: -plan.values(index)["entrainment_speed"])
+    return remaining
+
+
+def _is_cheap(values: dict[str, object]) -> bool:
+    """Whether the ends of the body need no solution."""
+    return values.get("body") == "half-space" or values.get("model", "exact") != "exact"
+
+
+def _pieces(operators: list[int], longest: int) -> list[int]:
+    """Return the number of each group's piece: consecutive groups with one operator, at most so many."""
+    pieces: list[int] = []
+    length = 0
+    for index, operator in enumerate(operators):
+        new = index > 0 and (operator != operators[index - 1] or length == longest)
+        pieces.append((pieces[-1] if pieces else 0) + new)
+        length = 1 if new else length + 1
+    return pieces
+
+
+def _interruption(results_folder: Folder, plan: Plan) -> str:
+    """Message on an interrupted run."""
+    counts = results_folder.states(plan).counts
+    finished = counts.get("ok", 0) + counts.get("stale", 0)
+    return f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}; run again to go on"
+
+
+def _collect(results: Results, template: Task, results_folder: Folder, share: Share, log: Progress) -> None:
+    """Take in the outcomes as they come, and join small batches meanwhile and at the end."""
+    compacted = time.monotonic()
     try:
-        _collect(records, place, jobs, log)
-    except KeyboardInterrupt:
-        raise
-    except BaseException as error:
-        log.say(f"stopped: {type(error).__name__}: {error}")
-        raise
+        with contextlib.closing(results):
+            for jobs, outcomes in results:
+                names = {job.id: job.name for job in jobs}
+                for outcome in outcomes:
+                    log.finished(names[outcome.id], outcome)
+                    if outcome.message.startswith("WorkerDied"):
+                        parameters = next(job.parameters for job in jobs if job.id == outcome.id)
+                        _write_failure(outcome, parameters, template)
+                log.show()
+                if time.monotonic() - compacted > RUN.compact_seconds:
+                    _compact(results_folder, share, log)
+                    compacted = time.monotonic()
     finally:
-        # The manifest is a cache: a disk that cannot take it must not hide why the run ended.
-        with contextlib.suppress(StoreError):
-            place.clean()
-            place.save_manifest()
+        results_folder.clean(share)
+    _compact(results_folder, share, log, at_end=True)
 
 
-def _collect(records: Generator[Record, None, None], place: Folder, jobs: list[Job], log: Progress) -> None:
-    """Take in the records as they come."""
-    by_id = {job.id: job for job in jobs}
-    saved = time.monotonic()
-    with contextlib.closing(records):
-        for record in records:
-            job = by_id[record.id]
-            if record.status == "ok":
-                place.failure_path(record.id).unlink(missing_ok=True)
-                place.remember(place.case_path(record.id), record.id, record.run, record.scalars)
-                if other := differences(record.run):
-                    log.remark(f"a worker solves with other versions than this process has: {other}")
-            else:
-                place.write_failure(record.id, job.parameters, record.error, record.message)
-            log.finished(job, record)
-            if time.monotonic() - saved > SAVE_SECONDS:
-                place.save_manifest()
-                saved = time.monotonic()
+def _compact(results_folder: Folder, share: Share, log: Progress, *, at_end: bool = False) -> None:
+    """Join small batches; a full disk leaves them as they are."""
+    try:
+        results_folder.compact(share, at_end=at_end)
+    except StoreError as error:
+        log.log(f"batches are not joined: {error}")
+
+
+def _write_failure(outcome: Outcome, parameters: dict[str, object], template: Task) -> None:
+    """Write the state of a case that no worker survived."""
+    batch = case_batch(
+        identity=outcome.id,
+        parameters=parameters,
+        status=outcome.status,
+        message=outcome.message,
+        run=template.run,
+        circumstances={**circumstances(), "study": template.study, "level": template.level},
+    )
+    write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
 
 
 def rerun_study(
     folder: str | Path,
     *,
     workers: int | None = None,
-    scheduler: str | None = None,
+    scheduler: str | Client | None = None,
     wait: float = WAIT_SECONDS,
     progress: bool = True,
     solver: Solver | None = None,
 ) -> RunReport:
-    """Solve the failed and the stale cases of a folder's study anew, and the missing ones.
+    """Solve the failed, skipped and stale cases of a folder's study anew, and the missing ones.
 
     Parameters
     ----------
@@ -291,6 +380,6 @@ def rerun_study(
         scheduler=scheduler,
         wait=wait,
         progress=progress,
-        again=("failed", "stale"),
+        again=AGAIN,
         solver=solver,
     )

@@ -1,4 +1,4 @@
-"""A check: one quantity, what it should be and why, what it is, and whether that is near enough."""
+"""A check: one quantity, its reference with the source, the difference and the tolerance."""
 
 from __future__ import annotations
 
@@ -12,17 +12,9 @@ from contactstudy.checks import FloatArray
 
 @dataclass(frozen=True, eq=False)
 class Curve:
-    """A profile behind a check, for a figure.
+    """A profile behind a check, for a figure."""
 
-    Attributes
-    ----------
-    along, quantity : str
-        Labels of the axes.
-    positions, computed, expected : array
-        Both profiles.
-    """
-
-    along: str
+    axis: str
     quantity: str
     positions: FloatArray
     computed: FloatArray
@@ -36,14 +28,13 @@ class Check:
     Attributes
     ----------
     case, quantity : str
-        What was solved, and what of it is compared, with its unit.
+        Solved problem, and the compared quantity with its unit.
     source : str
-        The reference: what it is and where it comes from.
+        Source of the reference.
     computed, expected : float
-        Both values; of a field those at its worst point.
+        Both values; of a field at its worst point.
     difference : float
-        What is held against the tolerance: ``computed - expected``, or that over ``expected`` where the quantity says
-        so; of a field the largest, or the median.
+        ``computed - expected``, over ``expected`` if the quantity is relative; of a field the largest or the median.
     tolerance : float
         Largest difference that passes.
     curve : Curve, optional
@@ -61,7 +52,7 @@ class Check:
 
     @property
     def passed(self) -> bool:
-        """Whether the difference is within the tolerance; a difference that is not a number is not."""
+        """Whether the difference is a number within the tolerance."""
         return bool(abs(self.difference) <= self.tolerance)
 
 
@@ -76,15 +67,7 @@ def compare(
     relative: bool = False,
     curve: Curve | None = None,
 ) -> Check:
-    """Compare two numbers.
-
-    Examples
-    --------
-    >>> compare("sphere", "peak pressure", "Hertz", 0.99, 1.0, 0.02).passed
-    True
-    >>> compare("sphere", "peak pressure", "Hertz", float("nan"), 1.0, 0.02).passed
-    False
-    """
+    """Compare two numbers."""
     difference = float(computed) - float(expected)
     return Check(
         case=case,
@@ -109,29 +92,22 @@ def compare_fields(
     median: bool = False,
     curve: Curve | None = None,
 ) -> Check:
-    """Compare two arrays: their largest difference, or its median.
-
-    Examples
-    --------
-    >>> check = compare_fields("strip", "stress", "closed form", [1.0, 2.5], [1.0, 2.0], 0.1)
-    >>> check.computed, check.expected, check.difference, check.passed
-    (2.5, 2.0, 0.5, False)
-    """
-    found, right = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
-    distance = np.abs(found - right)
+    """Compare two arrays: their largest difference, or its median."""
+    values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
+    distance = np.abs(values - references)
     if np.isnan(distance).any():
-        at = int(np.flatnonzero(np.isnan(distance))[0])
+        worst = int(np.flatnonzero(np.isnan(distance))[0])
     elif median:
-        at = int(np.argsort(distance)[distance.size // 2])
+        worst = int(np.argsort(distance)[distance.size // 2])
     else:
-        at = int(distance.argmax())
+        worst = int(distance.argmax())
     return Check(
         case=case,
         quantity=f"{quantity}, {'median' if median else 'largest'} difference",
         source=source,
-        computed=float(found[at]),
-        expected=float(right[at]),
-        difference=float(distance[at]),
+        computed=float(values[worst]),
+        expected=float(references[worst]),
+        difference=float(distance[worst]),
         tolerance=tolerance,
         curve=curve,
     )

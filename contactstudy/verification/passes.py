@@ -1,4 +1,4 @@
-"""Checks of what many passes leave: shakedown limits, eigenstrains, passes on either side of a limit, steady states."""
+"""Checks of many passes: shakedown limits, eigenstrains, residual stress on either side of a limit, steady states."""
 
 from __future__ import annotations
 
@@ -12,32 +12,27 @@ from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies import FiniteLengthSpace, HalfSpace, Material
 from contactstudy.checks import FloatArray
 from contactstudy.fatigue import shakedown, shakedown_limit
-from contactstudy.passes import ElasticPlastic, residual_stress, rolled_in
+from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, residual_stress
 from contactstudy.verification.check import Check, Curve, compare, compare_fields
 from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
-from contactstudy.verification.load_cases import PASSES_CASES, PassesCase
-from contactstudy.verification.stored import load_passes
+from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
-STIFF = Material(1000.0, 0.3)
-"""A thousand times as stiff as the peak pressure of the contacts."""
-
+STIFF = Material(1000.0, 0.3)  # A thousand times as stiff as the peak pressure of the contacts
+# Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up
 TOLERANCES = {
     "settling": (0.06, 0.03),
     "settling_sliding": (0.06, 0.05),
     "flowing": (0.15, 0.12),
     "flowing_sliding": (0.2, 0.12),
 }
-"""Allowed differences of residual stress, and of shear summed over depth. Above the limit errors add up."""
-
-QUICK_CASES = ("settling", "settling_sliding")
-"""Passes of the quick level."""
+QUICK_CASES = ("settling", "settling_sliding")  # Passes of the quick level
 
 
 def line_contact(friction: float) -> xr.Dataset:
     """Hertz' line contact of half-width and peak pressure 1 in plane strain, Poisson's ratio 0.3, from the top down."""
     y, z = np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71)
-    found = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
-    fields = {name: (("x", "y", "z"), values[None]) for name, values in found.items()}
+    stress = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
+    fields = {name: (("x", "y", "z"), values[None]) for name, values in stress.items()}
     return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z}).assign(hertz_max_pressure=1.0)
 
 
@@ -58,8 +53,8 @@ def on_top(friction: float) -> tuple[float, float]:
 def shakedown_checks() -> Iterator[Check]:
     """Limits of line contacts."""
     case, quantity = "line contact without friction", "p0 / k"
-    found, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
-    first, limit = float(found["first_yield_limit"]), float(axial["shakedown_limit"])
+    plane, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
+    first, limit = float(plane["first_yield_limit"]), float(axial["shakedown_limit"])
     on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
     yield compare(case, f"{quantity} at first yield", "McEwen (1949)", first, 1 / on_axis, 2e-3, relative=True)
     yield compare(case, f"{quantity} at shakedown", "Johnson (1962)", limit, 4.0, 2e-3, relative=True)
@@ -76,32 +71,34 @@ def residual_checks() -> Iterator[Check]:
     edges = np.linspace(-0.7, 0.7, 15), np.linspace(0.1, 1.5, 15)
     x, z = (0.5 * (e[1:] + e[:-1]) for e in edges)
     inside = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
-    own = (1.0, 0.5, -0.3, 0.4)
+    eigenstrain = (1.0, 0.5, -0.3, 0.4)
     names = [f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xz")]
     strains = xr.Dataset(
-        {name: (("x", "z"), value * inside) for name, value in zip(names, own, strict=True)}, {"x": x, "z": z}
+        {name: (("x", "z"), value * inside) for name, value in zip(names, eigenstrain, strict=True)}, {"x": x, "z": z}
     )
     at_x, at_z = np.array([-0.9, -0.15, 0.05, 0.45]), np.array([0.05, 0.35, 0.75, 0.9, 1.4])
-    found = residual_stress(body, strains, at_x, at_z, x_edges=edges[0], z_edges=edges[1])
+    stress = eigenstrain_stress(body, strains, at_x, at_z, x_edges=edges[0], z_edges=edges[1])
     source = "Muskhelishvili's forces in a half-plane, on the sides of the rectangle"
-    expected = rectangle_in_half_plane(at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), own, STIFF.young, STIFF.poisson)
+    expected = rectangle_in_half_plane(
+        at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), eigenstrain, STIFF.young, STIFF.poisson
+    )
     size = np.abs(expected).max()
     for name, right in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
         case = "eigenstrain in a rectangle of a half-space"
-        yield compare_fields(case, f"{name} over the largest stress", source, found[name] / size, right / size, 1e-4)
+        yield compare_fields(case, f"{name} over the largest stress", source, stress[name] / size, right / size, 1e-4)
     between = FiniteLengthSpace(length=1.0, material=STIFF)
     deep = np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 6.0])
     x, z = np.array([0.125, 0.375, 0.625, 0.875]), 0.5 * (deep[1:] + deep[:-1])
-    every = (("x", "z"), np.ones((4, 6)))
-    heat = xr.Dataset({"plastic_strain_xx": every, "plastic_strain_zz": every}, {"x": x, "z": z})
-    found = residual_stress(between, heat, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
-    largest = max(float(abs(found[name]).max()) for name in STRESSES) / STIFF.young
+    uniform = (("x", "z"), np.ones((4, 6)))
+    heat = xr.Dataset({"plastic_strain_xx": uniform, "plastic_strain_zz": uniform}, {"x": x, "z": z})
+    stress = eigenstrain_stress(between, heat, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    largest = max(float(abs(stress[name]).max()) for name in STRESSES) / STIFF.young
     case = "eigenstrains xx and zz all over a body between ends"
     yield compare(case, "largest stress / E", "it fits together", largest, 0.0, 1e-5)
-    stretched = xr.Dataset({"plastic_strain_yy": every}, {"x": x, "z": z})
-    found = residual_stress(between, stretched, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
-    along = float(found["sigma_yy"].mean()) / STIFF.young
-    yield compare("eigenstrain yy all over it", "sigma_yy / E", "Hooke's law", along, -1.0, 1e-5)
+    stretched = xr.Dataset({"plastic_strain_yy": uniform}, {"x": x, "z": z})
+    stress = eigenstrain_stress(between, stretched, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
+    axial = float(stress["sigma_yy"].mean()) / STIFF.young
+    yield compare("eigenstrain yy all over it", "sigma_yy / E", "Hooke's law", axial, -1.0, 1e-5)
 
 
 def passing_checks() -> Iterator[Check]:
@@ -110,10 +107,10 @@ def passing_checks() -> Iterator[Check]:
     body = HalfSpace(material=STIFF)
     case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
     below = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
-    flow = rolled_in(contact, body, below, passes=5)["plastic_flow"].values
+    flow = residual_stress(contact, body, below, passes=5)["plastic_flow"].values
     yield compare(case, "flow of the last pass over the first's, 3 % below", source, flow[-1] / flow[0], 0.0, 1e-3)
     above = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
-    flow = rolled_in(contact, body, above, passes=5)["plastic_flow"].values
+    flow = residual_stress(contact, body, above, passes=5)["plastic_flow"].values
     yield compare(case, "flow of the fifth pass over the fourth's, 3 % above", source, flow[-1] / flow[-2], 1.0, 0.05)
 
 
@@ -126,37 +123,36 @@ def over_half_plane(case: PassesCase, z: FloatArray) -> xr.Dataset:
     hardening = STIFF.young * case.kinematic_hardening
     plastic = ElasticPlastic(yield_stress=np.sqrt(3.0) * case.shear_yield_stress, kinematic_hardening=hardening)
     body = HalfSpace(material=Material(STIFF.young, case.poisson))
-    found = rolled_in(contact, body, plastic, case.passes).isel(x=0)
-    # Passes that would change nothing are not made.
-    return found.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
+    result = residual_stress(contact, body, plastic, case.passes).isel(x=0)
+    # The passes end where the residual stress is steady.
+    return result.reindex(pass_number=np.arange(1, case.passes + 1), method="ffill")
 
 
 def finite_element_checks(name: str) -> Iterator[Check]:
-    """Residual stress, and what every pass drags the top along, against finite elements."""
-    reference = load_passes(name)
-    case, left = reference.case, reference.left
-    z, tolerances = left["z"].values, TOLERANCES[name]
-    found = over_half_plane(case, z)
-    after = found.isel(pass_number=-1)
-    size = max(float(np.abs(left[component]).max()) for component in ("sigma_xx", "sigma_yy"))
+    """Residual stress and plastic shear of each pass against finite elements."""
+    case, residual = PASSES_CASES[name], load_reference(PASSES_FILE, name)
+    z, tolerances = residual["z"].values, TOLERANCES[name]
+    passed = over_half_plane(case, z)
+    after = passed.isel(pass_number=-1)
+    size = max(float(np.abs(residual[component]).max()) for component in ("sigma_xx", "sigma_yy"))
     label = f"{name}: p0 = {1 / case.shear_yield_stress:.3g} k, f = {case.friction:g}, {case.passes} passes"
-    own = "finite elements (scikit-fem), own error"
+    origin = "finite elements (scikit-fem), own error"
     for component in ("sigma_xx", "sigma_yy"):
-        computed, expected = after[component].values / size, left[component].values / size
-        source = f"{own} {left[component].attrs['error_estimate'] / size:.0e}"
+        computed, expected = after[component].values / size, residual[component].values / size
+        source = f"{origin} {residual[component].attrs['error_estimate'] / size:.0e}"
         quantity = f"residual {component} over the largest"
         curve = Curve("z / a", quantity, z, computed, expected) if component == "sigma_yy" else None
         yield compare_fields(label, quantity, source, computed, expected, tolerances[0], curve=curve)
-    strain, computed = left["plastic_strain_yz_young"], STIFF.young * found["plastic_strain_yz"].values
+    strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passed["plastic_strain_yz"].values
     drag, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
-    source = f"{own} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
+    source = f"{origin} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"
     largest = np.abs(expected).max()
     yield compare_fields(label, quantity, source, drag / largest, expected / largest, tolerances[1])
 
 
-def checks(*, full: bool) -> Iterator[Check]:
-    """All of them; at the quick level two of the cases of finite elements."""
+def passes_checks(*, full: bool) -> Iterator[Check]:
+    """Every check of passes; at the quick level two of the cases of finite elements."""
     yield from shakedown_checks()
     yield from residual_checks()
     yield from passing_checks()

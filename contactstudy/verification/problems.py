@@ -1,14 +1,24 @@
-"""Unit problems that the checks share: ``E*`` is 1, lengths are in half-widths ``a``, pressures in ``p0``."""
+"""Unit problems of the checks, and stored solutions of some by independent finite elements.
+
+Lengths are in units of ``a`` and pressures in units of ``p0``: half-width and peak of a prescribed load, or of the
+Hertz line contact of the same load per length, with ``E* = 1``, ``R = a / 2`` and the gap ``y**2``.
+``python -m benchmarks.finite_elements.generate`` makes the files in ``data`` with scikit-fem, without a formula of the
+solver: Fourier series along y, elements of high order in x and z.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
 
+from contactstudy import checks
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.material import Material
@@ -18,26 +28,14 @@ Range = tuple[float, float]
 
 
 def unit_material(poisson: float = 0.3) -> Material:
-    """Material of contact modulus 1.
-
-    Examples
-    --------
-    >>> round(unit_material(0.25).plane_strain_modulus, 12)
-    1.0
-    """
+    """Material of contact modulus 1."""
     return Material(young=1 - poisson**2, poisson=poisson)
 
 
 def on_cells(
     function: Callable[[FloatArray, FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
-    """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y.
-
-    Examples
-    --------
-    >>> on_cells(lambda x, y: x + y, (0, 2), (0, 2), (2, 2)).values.tolist()
-    [[1.0, 2.0], [2.0, 3.0]]
-    """
+    """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y."""
     return on_grid(lambda grid: function(grid.x[:, None], grid.y[None, :]), Grid(x_range, y_range, *cells))
 
 
@@ -50,10 +48,7 @@ def on_grid(function: Callable[[Grid], FloatArray], grid: Grid) -> xr.DataArray:
 def cell_means(
     integral_y: Callable[[FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
-    """Means over the cells of a load that is uniform along x, from its integral over y from the left.
-
-    Pressure is uniform in each cell: with its mean there the resultant is exact.
-    """
+    """Means over the cells of a load uniform along x, from its integral over y: exact resultants."""
 
     def means(grid: Grid) -> FloatArray:
         edges = np.linspace(*y_range, grid.cells_y + 1)
@@ -87,3 +82,175 @@ def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:
         return values
 
     return on_grid(pressure, grid)
+
+
+LINE_LOAD = 0.5 * np.pi  # Load per length of the line contact of half-width and peak pressure 1
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """The same pressure from end to end."""
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Shape along x."""
+        return np.ones_like(np.asarray(x, dtype=float))
+
+    def __str__(self) -> str:
+        return "g(x) = 1"
+
+
+@dataclass(frozen=True)
+class Linear:
+    """A pressure that falls from 1 at ``x = 0`` with a constant slope."""
+
+    slope: float
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Shape along x."""
+        return np.asarray(1 - self.slope * np.asarray(x, dtype=float))
+
+    def __str__(self) -> str:
+        return f"g(x) = 1 - {self.slope} x"
+
+
+@dataclass(frozen=True)
+class Bump:
+    """A squared cosine, zero from `half_width` off its centre."""
+
+    centre: float
+    half_width: float
+
+    def __call__(self, x: FloatArray) -> FloatArray:
+        """Shape along x."""
+        t = np.clip((np.asarray(x, dtype=float) - self.centre) / self.half_width, -1, 1)
+        return np.asarray(np.cos(0.5 * np.pi * t) ** 2)
+
+    def __str__(self) -> str:
+        c, w = self.centre, self.half_width
+        return f"g(x) = cos(pi (x - {c}) / {2 * w})^2 on |x - {c}| < {w}, else 0"
+
+
+def quartic(y: FloatArray) -> FloatArray:
+    """`h(y)`: `(1 - y^2)^2` inside `|y| < 1`, zero outside."""
+    return np.asarray(np.clip(1 - np.asarray(y, dtype=float) ** 2, 0, None) ** 2)
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """A body with free ends at ``x = 0`` and ``x = length``, and the load ``p0 g(x) h(y)`` on its top."""
+
+    length: float  # distance between the ends
+    g: Callable[[FloatArray], FloatArray]  # shape of the load along x
+    friction: float = 0.0  # traction along +y
+    poisson: float = 0.3
+
+    @property
+    def h(self) -> Callable[[FloatArray], FloatArray]:
+        """Shape of the load along y."""
+        return quartic
+
+    def pressure(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Pressure at the tensor product of points."""
+        return np.outer(self.g(np.asarray(x)), self.h(np.asarray(y)))
+
+    @property
+    def symmetric(self) -> bool:
+        """Whether the load is even about mid-length."""
+        x = np.linspace(0, self.length, 101)
+        return bool(np.allclose(self.g(x), self.g(x)[::-1]))
+
+
+@dataclass(frozen=True)
+class ContactCase:
+    """A rigid roller centred over a body with two free ends: the gap is ``y**2 + crown (x - length / 2)**2``."""
+
+    length: float  # distance between the ends
+    distance: float  # e, from a free end to the roller's; negative beyond it
+    crown: float = 0.0  # half of the curvature of the generatrix over a / (2 R)
+    poisson: float = 0.3
+
+    @property
+    def start(self) -> float:
+        """First x under the roller."""
+        return max(self.distance, 0.0)
+
+    @property
+    def stop(self) -> float:
+        """Last x under the roller."""
+        return self.length - self.start
+
+    @property
+    def load(self) -> float:
+        """Load of the line contact of half-width and peak pressure 1 over the whole contact."""
+        return LINE_LOAD * (self.stop - self.start)
+
+    def gap_x(self, x: FloatArray) -> FloatArray:
+        """Gap along the roller's generatrix."""
+        return np.asarray(self.crown * (np.asarray(x, dtype=float) - 0.5 * self.length) ** 2)
+
+    def gap(self, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Gap at the tensor product of points, infinite beyond the roller."""
+        outside = (x < self.start) | (x > self.stop)
+        return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
+
+
+@dataclass(frozen=True)
+class PassesCase:
+    """Passes of Hertz' line contact of half-width and peak pressure 1 over an elastic-plastic half-plane."""
+
+    shear_yield_stress: float  # k over the peak pressure
+    friction: float  # full sliding, along +y
+    passes: int
+    kinematic_hardening: float = 0.0  # Prager's, over Young's modulus
+    poisson: float = 0.3
+
+
+# Loads whose stresses are stored, by name
+LOAD_CASES: dict[str, LoadCase] = {
+    "full": LoadCase(8.0, Uniform()),
+    "middle": LoadCase(8.0, Bump(4.0, 2.0)),
+    "eccentric": LoadCase(8.0, Bump(1.5, 1.0)),
+    "full_sliding": LoadCase(8.0, Uniform(), friction=0.3),
+    "eccentric_sliding": LoadCase(8.0, Bump(1.5, 1.0), friction=0.3),
+    "thin": LoadCase(2.5, Uniform()),
+    "plate_sliding": LoadCase(0.5, Uniform(), friction=0.3),
+    "wedge_sliding": LoadCase(4.0, Linear(0.2), friction=0.2, poisson=0.1),
+}
+# Contacts that are stored, by name
+CONTACT_CASES: dict[str, ContactCase] = {
+    "flush": ContactCase(8.0, 0.0),
+    "inside": ContactCase(8.0, 1.0),
+    "crowned": ContactCase(8.0, 0.5, crown=0.15),
+    "overhanging": ContactCase(8.0, -2.0, crown=0.03),
+}
+# Passes whose residual stresses and plastic strains are stored: either side of the shakedown limits 4.0 k, 3.2 k
+PASSES_CASES: dict[str, PassesCase] = {
+    "settling": PassesCase(1 / 3.6, friction=0.0, passes=2),
+    "settling_sliding": PassesCase(1 / 3.1, friction=0.2, passes=5),
+    "flowing": PassesCase(1 / 4.3, friction=0.0, passes=3),
+    "flowing_sliding": PassesCase(1 / 3.4, friction=0.2, passes=2),
+}
+# Files of the stored finite elements, one group for each case
+STRESS_FILE, CONTACT_FILE = "finite_elements_stress.nc", "finite_elements_contact.nc"
+PASSES_FILE = "finite_elements_passes.nc"
+CASES: dict[str, Mapping[str, object]] = {
+    STRESS_FILE: LOAD_CASES,
+    CONTACT_FILE: CONTACT_CASES,
+    PASSES_FILE: PASSES_CASES,
+}
+
+
+def data_file(name: str) -> Path:
+    """Path of a data file: inside the installed package, or in the project's folder of an editable installation."""
+    inside = Path(str(files("contactstudy.verification"))) / "data" / name
+    return inside if inside.exists() else Path(__file__).resolve().parents[2] / "data" / name
+
+
+def load_reference(file: str, name: str) -> xr.Dataset:
+    """Load the stored solution of a case: its attributes hold case and `error_estimate`, of the field or each variable.
+
+    Stresses (x, y, z); pressure (x, y >= 0) at nodes and line load (x); or residual stresses (z) and plastic strains
+    (pass_number, z) times Young's modulus.
+    """
+    checks.known_name("name", name, CASES[file])
+    return xr.load_dataset(data_file(file), group=name)

@@ -1,69 +1,67 @@
-"""The verification suite: which checks belong to which level, run one after the other."""
+"""The verification suite: groups of checks, levels, and its report on the screen, as netCDF and as a Markdown page."""
 
 from __future__ import annotations
 
+import re
+import textwrap
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
 
 from contactstudy import checks as arguments
 from contactstudy.arrays.variables import describe
-from contactstudy.verification import (
-    consistency,
-    convergence,
-    finite_elements,
-    friction,
-    half_space,
-    heat,
-    limits,
-    passes,
-    published,
-    quarter_space,
-    wear,
-)
+from contactstudy.errors import InvalidInputError
+from contactstudy.study.files import write_dataset, write_text
 from contactstudy.verification.check import Check
-from contactstudy.verification.convergence import Table
+from contactstudy.verification.exact import consistency_checks, half_space_checks, limit_checks
+from contactstudy.verification.film import film_checks
+from contactstudy.verification.free_ends import finite_element_checks, published_checks, quarter_space_checks
+from contactstudy.verification.passes import passes_checks
+from contactstudy.verification.tribology import friction_checks, heat_checks, wear_checks
 
-LEVELS = ("quick", "full")
-"""How thorough a run is."""
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
+
+LEVELS = ("quick", "full")  # Levels of a run
+# Checks by the kind of their reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
-    "half-space": lambda full: half_space.checks(),
-    "limits": lambda full: limits.checks(),
-    "quarter space": lambda full: quarter_space.checks(),
-    "finite elements": lambda full: finite_elements.checks(full=full),
-    "published": lambda full: published.checks(),
-    "friction": lambda full: friction.checks(full=full),
-    "heat": lambda full: heat.checks(),
-    "wear": lambda full: wear.checks(),
-    "passes": lambda full: passes.checks(full=full),
-    "consistency": lambda full: consistency.checks(),
+    "half-space": lambda full: half_space_checks(),
+    "limits": lambda full: limit_checks(),
+    "quarter space": lambda full: quarter_space_checks(),
+    "finite elements": lambda full: finite_element_checks(full=full),
+    "published": lambda full: published_checks(),
+    "friction": lambda full: friction_checks(full=full),
+    "heat": lambda full: heat_checks(),
+    "wear": lambda full: wear_checks(),
+    "passes": lambda full: passes_checks(full=full),
+    "film": lambda full: film_checks(full=full),
+    "consistency": lambda full: consistency_checks(),
 }
-"""Checks by what they compare with; those of convergence are added at the full level."""
 
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """What a run of the suite found.
+    """Results of the suite.
 
     Attributes
     ----------
     level : str
         "quick" or "full".
     groups : dict of str to list of Check
-        Checks by what they compare with.
-    tables : list of Table
-        Convergence tables (full level).
+        Checks by the kind of their reference.
     seconds : float
-        Time taken.
+        Duration.
     """
 
     level: str
     groups: dict[str, list[Check]] = field(default_factory=dict)
-    tables: list[Table] = field(default_factory=list)
     seconds: float = 0.0
 
     @property
@@ -73,11 +71,11 @@ class Verification:
 
     @property
     def passed(self) -> bool:
-        """Whether every check passed; nothing checked is not a pass."""
+        """Whether there are checks and every one passed."""
         return bool(self.checks) and all(check.passed for check in self.checks)
 
     def to_dataset(self) -> xr.Dataset:
-        """All checks as data, one per entry along ``check``; convergence errors along ``entry``."""
+        """All checks as data along ``check``."""
         groups = [name for name, group in self.groups.items() for _ in group]
         columns: dict[str, object] = {"group": np.array(groups, dtype=object)}
         for name in ("case", "quantity", "source"):
@@ -86,17 +84,6 @@ class Verification:
             columns[name] = np.array([getattr(check, name) for check in self.checks])
         columns["passed"] = np.array([check.passed for check in self.checks], dtype=bool)
         data = xr.Dataset({name: ("check", values) for name, values in columns.items()})
-        if self.tables:
-            rows = [
-                (table.title, table.setting, table.source, quantity, value, error)
-                for table in self.tables
-                for quantity, errors in table.errors.items()
-                for value, error in zip(table.values, errors, strict=True)
-            ]
-            names = ("title", "setting", "against", "of", "value", "error")
-            for name, values in zip(names, zip(*rows, strict=True), strict=True):
-                kind = object if isinstance(values[0], str) else float
-                data[f"convergence_{name}"] = ("entry", np.array(values, dtype=kind))
         data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
         return describe(data, "verification of contactstudy")
 
@@ -107,9 +94,9 @@ def run(level: str = "quick", report: Callable[[str, Check], None] | None = None
     Parameters
     ----------
     level : str
-        "quick" for a minute of one core, "full" for a few, with all load cases and the convergence tables.
+        "quick" for a minute of one core, "full" for a few, with all load cases.
     report : callable, optional
-        Called with the group and each check as soon as it is done.
+        Called with the group and each check after its comparison.
 
     Raises
     ------
@@ -119,26 +106,14 @@ def run(level: str = "quick", report: Callable[[str, Check], None] | None = None
     arguments.instance("level", level, str, "a name")
     arguments.known_name("level", level, LEVELS)
     began = time.perf_counter()
-    full = level == "full"
     groups: dict[str, list[Check]] = {}
-    tables: list[Table] = []
-
-    def convergence_checks() -> Iterator[Check]:
-        yield from convergence.quadrature_checks()
-        for table in convergence.tables():
-            tables.append(table)
-            yield from table.checks()
-
-    sources = {name: make(full) for name, make in GROUPS.items()}
-    if full:
-        sources["convergence"] = convergence_checks()
-    for name, source in sources.items():
+    for name, make_checks in GROUPS.items():
         groups[name] = []
-        for check in source:
+        for check in make_checks(level == "full"):
             groups[name].append(check)
             if report is not None:
                 report(name, check)
-    return Verification(level, groups, tables, time.perf_counter() - began)
+    return Verification(level, groups, time.perf_counter() - began)
 
 
 def verify(level: str = "quick") -> xr.Dataset:
@@ -147,13 +122,13 @@ def verify(level: str = "quick") -> xr.Dataset:
     Parameters
     ----------
     level : str
-        "quick" for a minute of one core, "full" for a few, with all load cases and the convergence tables.
+        "quick" for a minute of one core, "full" for a few, with all load cases.
 
     Returns
     -------
     Dataset
         Along ``check``: `group`, `case`, `quantity`, `source` of the reference, `computed`, `expected`, `difference`,
-        `tolerance`, `passed`. The full level adds the convergence tables along ``entry``.
+        `tolerance`, `passed`.
 
     Raises
     ------
@@ -167,3 +142,120 @@ def verify(level: str = "quick") -> xr.Dataset:
     contactstudy.errors.InvalidInputError: level = 'thorough': must be one of full, quick
     """
     return run(level).to_dataset()
+
+
+# Columns of the report
+HEADING = f"{'':4}  {'difference':>10}  {'allowed':>8}  {'computed':>11}  {'reference':>11}  case: quantity [source]"
+
+
+def line(check: Check) -> str:
+    """One line of the table on the screen."""
+    verdict = "ok" if check.passed else "FAIL"
+    numbers = f"{check.difference:10.1e}  {check.tolerance:8.1e}  {check.computed:11.6g}  {check.expected:11.6g}"
+    return f"{verdict:4}  {numbers}  {check.case}: {check.quantity} [{check.source}]"
+
+
+def summary(verification: Verification) -> str:
+    """Last line on the screen."""
+    checks = verification.checks
+    failed = sum(not check.passed for check in checks)
+    verdict = f"{failed} failed" if failed else "all passed"
+    return f"{len(checks)} checks in {verification.seconds:.0f} s: {verdict}"
+
+
+def page(verification: Verification, figures: dict[str, str]) -> str:
+    """Markdown page; `figures` are file names by group."""
+    verdict = "every check passed" if verification.passed else "**some checks failed**"
+    data = verification.to_dataset()
+    parts = [
+        "# Verification of contactstudy",
+        f"{data.attrs['source']}, level {verification.level}: {summary(verification)}; {verdict}.",
+        "Lengths are in half-widths a, pressures and stresses in peak pressures p0; E* = 1.",
+    ]
+    for name, group in verification.groups.items():
+        parts.append(f"## {name[0].upper()}{name[1:]}")
+        rows = ["| case | quantity | reference | computed | expected | difference | allowed | |", "|---" * 8 + "|"]
+        for check in group:
+            numbers = [
+                f"{check.computed:.6g}",
+                f"{check.expected:.6g}",
+                f"{check.difference:.1e}",
+                f"{check.tolerance:.1e}",
+            ]
+            verdict = "ok" if check.passed else "**FAIL**"
+            rows.append(row([check.case, check.quantity, check.source, *numbers, verdict]))
+        parts.append("\n".join(rows))
+        if name in figures:
+            parts.append(f"![{name}: computed and reference]({figures[name]})")
+    return "\n\n".join(parts) + "\n"
+
+
+def row(cells: list[str]) -> str:
+    """Row of a Markdown table."""
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells).replace("|  |", "| |") + " |"
+
+
+def panels(count: int) -> tuple[Figure, list[Axes]]:
+    """Figure with panels in rows of three."""
+    from matplotlib.figure import Figure
+
+    columns = min(count, 3)
+    figure = Figure(figsize=(4.2 * columns, 3.1 * -(-count // 3)), layout="constrained")
+    return figure, [figure.add_subplot(-(-count // 3), columns, number + 1) for number in range(count)]
+
+
+def plot_profiles(checks: list[Check]) -> Figure:
+    """Draw the profiles of checks: computed as a line, the reference as circles."""
+    drawn = [check for check in checks if check.curve is not None]
+    figure, axes = panels(len(drawn))
+    for ax, check in zip(axes, drawn, strict=True):
+        curve = check.curve
+        assert curve is not None
+        thinned = slice(None, None, max(1, curve.positions.size // 40))
+        ax.plot(curve.positions, curve.computed, color="C0", label="computed")
+        ax.plot(
+            curve.positions[thinned],
+            curve.expected[thinned],
+            linestyle="none",
+            marker="o",
+            markersize=4,
+            markerfacecolor="none",
+            color="C1",
+            label="reference",
+        )
+        ax.set_title("\n".join(textwrap.wrap(check.case, 48)), fontsize="small")
+        ax.set_xlabel(curve.axis)
+        ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.quantity), fontsize="small")
+        ax.grid(alpha=0.3)
+    if axes:
+        axes[0].legend(fontsize="small")
+    return figure
+
+
+def draw(verification: Verification, folder: Path) -> dict[str, Path]:
+    """Write one figure for each group with profiles, and return the paths by group."""
+    paths: dict[str, Path] = {}
+    for name, checks in verification.groups.items():
+        if any(check.curve is not None for check in checks):
+            paths[name] = folder / f"{name.replace(' ', '_').replace('-', '_')}.png"
+            plot_profiles(checks).savefig(paths[name], dpi=110)
+    return paths
+
+
+def make_folder(folder: Path) -> None:
+    """Make the folder of a report, or raise `InvalidInputError` if it cannot be one."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidInputError("out", str(folder), "a folder that can be written", str(error)) from None
+
+
+def write(verification: Verification, folder: Path) -> list[Path]:
+    """Write ``verification.nc``, ``verification.md`` and its figures, and return their paths."""
+    make_folder(folder)
+    data = verification.to_dataset()
+    data["passed"] = data["passed"].astype(np.int8)
+    write_dataset(folder / "verification.nc", data)
+    figures = draw(verification, folder)
+    write_text(folder / "verification.md", page(verification, {name: path.name for name, path in figures.items()}))
+    return [folder / "verification.nc", folder / "verification.md", *figures.values()]

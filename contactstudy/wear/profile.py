@@ -12,36 +12,20 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import check_solved_for
-from contactstudy.arrays.required import require
+from contactstudy.arrays.variables import require
 from contactstudy.case.case import Case
-from contactstudy.case.gap import GAP_NODES
+from contactstudy.case.roller import GAP_NODES
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured import Measured
 
-ROUNDING = 1e-9
-"""Distance over another that is rounding. Accuracy."""
-
-CLOSER = 10
-"""Points between the outer column's middle and the end, each half as far from it as the one before. Accuracy."""
-
-NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)
-"""Gauss points from which a column's mean depth is taken."""
-
-BORDER = 4
-"""Worn columns beside the border of what has worn, where the shape as worn is interpolated instead of the depth.
-Accuracy."""
-
-BORDER_POINTS = 8
-"""Points in each of them. Accuracy."""
-
-CORRECTIONS = 8
-"""Rounds in which points are moved until every column takes its own depth of the interpolation. Accuracy."""
+ROUNDING = 1e-9  # Distance over another that is rounding
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
 
 
 def check_same_roller(name: str, worn: xr.Dataset, case: Case) -> None:
-    """Raise if wear is of another roller or body than those of a case; load, friction and motion may be others."""
+    """Raise if wear belongs to another roller or body; load, friction and motion may differ."""
     check_solved_for(worn, case, name, only=("body", "roller", "end_distance"))
 
 
@@ -53,7 +37,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     case : Case
         The case that wore.
     worn : Dataset
-        What `wear_in` returned for it.
+        Result of `wear_in` for the case.
     distance : float, optional
         One of its distances, metres; default: the last.
 
@@ -67,7 +51,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     Raises
     ------
     InvalidInputError
-        If the result has no such distance, or is of another roller or body.
+        If the result lacks the distance, or belongs to another roller or body.
 
     Examples
     --------
@@ -87,24 +71,24 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     check_same_roller("worn", worn, case)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
-    known = worn["distance"].values
-    at = known.size - 1
+    distances = worn["distance"].values
+    index = distances.size - 1
     if distance is not None:
-        wanted = checks.not_negative("distance", distance, "metres")
-        at = int(np.abs(known - wanted).argmin())
-        if not np.isclose(known[at], wanted, rtol=1e-9, atol=0.0):
-            raise InvalidInputError("distance", wanted, f"one of those of the result, such as {known[at]:g} m")
+        requested = checks.not_negative("distance", distance, "metres")
+        index = int(np.abs(distances - requested).argmin())
+        if not np.isclose(distances[index], requested, rtol=1e-9, atol=0.0):
+            raise InvalidInputError("distance", requested, f"a distance of the result, such as {distances[index]:g} m")
     middle = case.roller_middle
     x = worn["x"].values - middle
     start, stop = (end - middle for end in case.contact_range)
     rounding = ROUNDING * case.roller.length
     under = (x >= start - rounding) & (x <= stop + rounding)
     columns = _Columns.of(worn, x, under, start, stop)
-    depth = worn["wear_depth"].values[at, under]
-    ends = _Ends.of(case, columns, depth, worn["pressure"].values[at, under])
+    depth = worn["wear_depth"].values[index, under]
+    ends = _Ends.of(case, columns, depth, worn["pressure"].values[index, under])
     profile = _through(case, columns, ends, depth)
-    own = case.roller.profile
-    return Sum((*(own.terms if isinstance(own, Sum) else (own,)), profile))
+    unworn = case.roller.profile
+    return Sum((*(unworn.terms if isinstance(unworn, Sum) else (unworn,)), profile))
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,16 +101,16 @@ class _Columns:
     @classmethod
     def of(cls, worn: xr.Dataset, x: FloatArray, under: NDArray[np.bool_], start: float, stop: float) -> _Columns:
         """Columns of a result, of different widths or all alike."""
-        own = x[under]
+        centres = x[under]
         alike = "x_width" not in worn.coords
-        widths = np.full(own.size, (x[-1] - x[0]) / (x.size - 1)) if alike else worn["x_width"].values[under]
-        edges = np.append(own - 0.5 * widths, own[-1] + 0.5 * widths[-1])
+        widths = np.full(centres.size, (x[-1] - x[0]) / (x.size - 1)) if alike else worn["x_width"].values[under]
+        edges = np.append(centres - 0.5 * widths, centres[-1] + 0.5 * widths[-1])
         within = np.clip(edges, start, stop)
         points = 0.5 * (within[1:] + within[:-1])[:, None] + 0.5 * np.diff(within)[:, None] * NODES
-        # Uniform cells have the gap of their middles; one that the end cuts has what it carries on the part inside.
+        # The gap of a uniform cell is taken at its middle, unless the end cuts the cell.
         slack = ROUNDING * (stop - start)
-        whole = alike & (edges[:-1] >= start - slack) & (edges[1:] <= stop + slack)
-        return cls(within, np.where(whole[:, None], own[:, None], points))
+        uncut = alike & (edges[:-1] >= start - slack) & (edges[1:] <= stop + slack)
+        return cls(within, np.where(uncut[:, None], centres[:, None], points))
 
     @property
     def middles(self) -> FloatArray:
@@ -140,11 +124,9 @@ class _Columns:
 
 @dataclass(frozen=True, eq=False)
 class _Ends:
-    """Depth that pressure up to a sharp end takes: near it the body sinks in like ``s ln s``, s from the end.
+    """Depth from pressure up to a sharp end: near it the body sinks in like ``s ln s``, s from the end.
 
-    A pressure p that ends there leaves the slope ``2 p / (pi E') ln s`` on the body on either side of the end, with its
-    plane-strain modulus E' (Johnson, Contact Mechanics, section 2.5). A profile without this part presses a punch's
-    edge into the body: a pressure without bound that would not have outlasted the wear.
+    The slope is ``2 p / (pi E') ln s`` (Johnson, section 2.5); a profile without it is a punch of unbounded pressure.
     """
 
     places: tuple[float, float]
@@ -167,26 +149,22 @@ class _Ends:
     def depth(self, x: FloatArray) -> FloatArray:
         """Return this part of the depth, at distances from mid-length."""
         total = np.zeros_like(x)
-        for place, slope in zip(self.places, self.slopes, strict=True):
-            away = np.maximum(np.abs(x - place) / self.length, np.finfo(np.float64).tiny)
-            total += slope * self.length * away * np.log(away)
+        for end, slope in zip(self.places, self.slopes, strict=True):
+            distance = np.maximum(np.abs(x - end) / self.length, np.finfo(np.float64).tiny)
+            total += slope * self.length * distance * np.log(distance)
         return total
 
 
 def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> Measured:
-    """Smooth profile from which every column takes its depth.
-
-    Without the ends' part, what has worn off up to each edge is interpolated by a spline; its slope is the depth:
-    smooth between the columns and towards the ends, with the columns' means.
-    """
+    """Smooth profile with the depth of every column: slope of a spline of the worn area without the ends."""
     half, (start, stop) = 0.5 * case.roller.length, ends.places
-    rest = depth - columns.depths(ends.depth)
-    volume = np.concatenate([[0.0], np.cumsum(rest * np.diff(columns.edges))])
+    remainder = depth - columns.depths(ends.depth)
+    volume = np.concatenate([[0.0], np.cumsum(remainder * np.diff(columns.edges))])
     spline = make_interp_spline(columns.edges, volume, k=min(3, depth.size)).derivative()
     borders = _borders(case, columns, depth)
     places = _points(columns, start, stop)
     for border in borders:
-        more = np.linspace(border.x[0], border.x[-1], BORDER_POINTS * border.x.size)
+        more = np.linspace(border.x[0], border.x[-1], 8 * border.x.size)  # points in each column
         apart = np.abs(places - more[:, None]).min(axis=1) > ROUNDING * case.roller.length
         places = np.sort(np.append(places, more[apart]))
     points = np.maximum(spline(places) + ends.depth(places), 0.0)
@@ -198,37 +176,35 @@ def _through(case: Case, columns: _Columns, ends: _Ends, depth: FloatArray) -> M
         corrected &= (columns.middles < border.x[0]) | (columns.middles > border.x[-1])
     middles = np.searchsorted(places, columns.middles)
     profile = _measured(half, places, points)
-    for _ in range(CORRECTIONS):
-        taken = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
-        points[middles] = np.maximum(points[middles] + np.where(corrected, depth - taken, 0.0), 0.0)
+    for _ in range(8):  # Rounds that move the points until the interpolation has the depth of every column
+        means = columns.depths(lambda x: profile.drop(x, case.roller.length))  # noqa: B023, called at once
+        points[middles] = np.maximum(points[middles] + np.where(corrected, depth - means, 0.0), 0.0)
         profile = _measured(half, places, points)
     return profile
 
 
 def _borders(case: Case, columns: _Columns, depth: FloatArray) -> list[PchipInterpolator]:
-    """Shape as worn beside the borders of what has worn, up to the first unworn column: monotone between columns.
-
-    There the depth ends within a column. What a smooth depth leaves of an unworn edge radius is a ridge, which would
-    not have outlasted the wear; the shape as worn has none.
-    """
-    found: list[PchipInterpolator] = []
+    """Worn shape beside the borders of the wear, up to the first unworn column: monotone, without a ridge."""
+    borders: list[PchipInterpolator] = []
     worn = np.flatnonzero(depth > 0)
     if not worn.size:
-        return found
+        return borders
     shape = depth + columns.depths(lambda x: case.roller.profile.drop(x, case.roller.length))
     for outer, step in ((worn[0] - 1, 1), (worn[-1] + 1, -1)):
         if 0 <= outer < depth.size:
-            numbers = np.sort(outer + step * np.arange(BORDER + 1))
+            # Worn columns beside the border of the wear with an interpolation of the worn shape instead of the depth
+            numbers = np.sort(outer + step * np.arange(5))
             numbers = numbers[(numbers >= 0) & (numbers < depth.size)]
             if np.isfinite(shape[numbers]).all() and numbers.size > 2:
-                found.append(PchipInterpolator(columns.middles[numbers], shape[numbers]))
-    return found
+                borders.append(PchipInterpolator(columns.middles[numbers], shape[numbers]))
+    return borders
 
 
 def _points(columns: _Columns, start: float, stop: float) -> FloatArray:
     """Return the columns' edges and middles, and ever closer points towards the contact's ends."""
     edges, middles = columns.edges, columns.middles
-    closer = 0.5 ** np.arange(1, CLOSER + 1)
+    # Points between the outer column's middle and the end, each half as far from it as the one before
+    closer = 0.5 ** np.arange(1, 11)
     first, last = start + closer * (middles[0] - start), stop - closer * (stop - middles[-1])
     return np.concatenate([[start], np.sort(np.concatenate([first, last, edges[1:-1], middles])), [stop]])
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -12,40 +13,25 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.required import require
-from contactstudy.arrays.units import numbers_in_si
-from contactstudy.arrays.variables import describe
+from contactstudy.arrays.variables import describe, numbers_in_si, require
 from contactstudy.cache import ArrayKey
-from contactstudy.caller import warn
 from contactstudy.case.case import Case
-from contactstudy.case.gap import onto_ends
 from contactstudy.case.gridding import choose_grid
+from contactstudy.case.magnitudes import warn_doubtful
 from contactstudy.case.motion import Shift, Sliding
+from contactstudy.case.roller import onto_ends
 from contactstudy.checks import FloatArray
-from contactstudy.contact.contact import Settings, Shape
-from contactstudy.contact.prescribed import Prescribed
-from contactstudy.contact.settled import settled_contact
+from contactstudy.contact.normal.contact import Settings, Shape
+from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.refinement.refined_contact import refine_contact
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
-from contactstudy.interrupts import BriefInterrupt
 from contactstudy.profiles.base import checked_drop
 from contactstudy.wear.profile import check_same_roller
-from contactstudy.wear.steps import State, Stepper
-from contactstudy.wear.worn_contact import WornContact
+from contactstudy.wear.steps import State, Stepper, WornContact
 
-LAWS = ("slip", "work")
-"""What wear is proportional to: pressure times slip, or frictional work."""
-
-DEEPEST = 0.01
-"""Mean worn depth over the roller's radius up to which the radius counts as unchanged. Accuracy."""
-
-TOLERANCES = (1e-5, 0.1)
-"""Tolerances that the contact is solved well enough for, and that mean something."""
-
-ROOM = 1.4
-"""Width of the window over that which the unworn contact needs: load moves along the axis as the ends wear."""
-
-MOST_ITERATIONS = 2000
-"""Bound on the iterations of one contact: those of large steps change their contact often. Speed."""
+LAWS = ("slip", "work")  # Laws: wear proportional to pressure times slip, or to frictional work
+DEEPEST = 0.01  # Bound on the mean worn depth over the roller's radius: the radius counts as unchanged
+TOLERANCES = (1e-5, 0.1)  # Tolerances that the contact is solved well enough for, and that mean something
 
 
 def wear_in(
@@ -77,7 +63,7 @@ def wear_in(
     circumference : float, optional
         Length along y of the surface over which the wear is spread, metres; default: the roller's, ``2 pi R``.
     grid : Grid, optional
-        Cells. Default: in full sliding the columns that settle the unworn contact, else those of `choose_grid`.
+        Cells. Default: in full sliding the columns that settle the unworn contact, else the cells of `choose_grid`.
     after : Dataset, optional
         Result of this function from whose last state to go on; of the same roller and body, while load, friction and
         motion may be others.
@@ -91,8 +77,9 @@ def wear_in(
     Dataset
         Along `distance`, beginning with the state before the first step: `wear_depth` and `profile_drop` of the worn
         profile (distance, x), metres, `line_load` (distance, x), N/m, `pressure` (distance, x, y), `worn_volume`, m3,
-        `wear_error`, the estimated error of the depth over the largest depth, and `next_step`, metres. In all,
-        `volume_error`: the volume over what the law gives, minus one. Its attributes hold the unworn case and the
+        `wear_error`, the estimated error of the depth by the steps over the largest depth (the error of the cells is
+        not contained), and `next_step`, metres. In all, `volume_error`: the volume over the volume of the law, minus
+        one. Its attributes hold the unworn case and the
         settings. See `worn_profile` for the profile itself.
 
     Raises
@@ -106,13 +93,11 @@ def wear_in(
     Warns
     -----
     ConvergenceWarning
-        If `max_steps` did not suffice, or a contact did not converge. What is returned then ends with the last step.
+        If `max_steps` did not suffice, or a contact did not converge. The result ends with the last step.
 
     Notes
     -----
-    The roller turns, so what it loses is spread over its circumference and depends on x alone; the body stays as it
-    is. Every step is implicit: the depth that it wears off is part of its own contact, as a compliance under the load
-    per length, so no step can wear off more than lies in the gap.
+    The roller turns, so its wear is uniform along the circumference and depends on x alone; the body does not wear.
 
     Examples
     --------
@@ -127,6 +112,7 @@ def wear_in(
     """
     began = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
+    warn_doubtful(case)
     checks.instance("law", law, str, "a name")
     checks.known_name("law", law, LAWS)
     if isinstance(case.motion, Shift):
@@ -140,26 +126,26 @@ def wear_in(
     if not TOLERANCES[0] <= tolerance <= TOLERANCES[1]:
         raise InvalidInputError("tolerance", tolerance, f"from {TOLERANCES[0]:g} to {TOLERANCES[1]:g}")
     max_steps = checks.count("max_steps", max_steps)
-    begun, depth, cells, step, error = (
+    distance_before, depth, cells, step, error = (
         (0.0, None, _cells(case, grid), None, 0.0) if after is None else _state_of(after, case, grid)
     )
-    stops, every = _stops(distance, begun)
+    stops, all_steps = _stops(distance, distance_before)
 
     gap = case.gap(cells)
     prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
     shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
-    contact = WornContact(case, shape, Settings(max_iterations=MOST_ITERATIONS))
+    # Bound on the iterations of one contact: in large steps the contact area changes often
+    contact = WornContact(case, shape, Settings(max_iterations=2000))
     stepper = Stepper(contact, rate / around, law, tolerance)
-    with BriefInterrupt():
-        first = stepper.begun(begun, np.zeros(cells.cells_x) if depth is None else depth, error)
-        if not first.slip.any():
-            raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
-        _check_depth(case, stepper, first, float(stops[-1]))
-        states, steps = [first], [stepper.first_step(first) if step is None else step]
-        for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
-            if every or state.distance in stops:
-                states.append(state)
-                steps.append(ahead)
+    first = stepper.initial(distance_before, np.zeros(cells.cells_x) if depth is None else depth, error)
+    if not first.slip.any():
+        raise InvalidInputError("case", f"friction = {case.friction}", "one in which something rubs")
+    _check_depth(case, stepper, first, float(stops[-1]))
+    states, steps = [first], [stepper.first_step(first) if step is None else step]
+    for state, ahead in _limited(stepper, first, stops, steps[0], max_steps):
+        if all_steps or state.distance in stops:
+            states.append(state)
+            steps.append(ahead)
     settings = {"coefficient": rate, "law": law, "circumference": float(around), "tolerance": tolerance}
     worn = _labelled(case, stepper, states, steps, around)
     return with_provenance(worn, case, settings, {"wear": time.perf_counter() - began})
@@ -172,22 +158,23 @@ def _cells(case: Case, grid: Grid | None) -> Grid:
         return grid
     if not isinstance(case.motion, Sliding):
         return choose_grid(case)
-    settled = settled_contact(case, 0.01, 1e-6).contact.shape.grid
-    low, high = settled.y_range
-    count = 2 * int(np.ceil(0.5 * ROOM * settled.cells_y))
-    wider = count / settled.cells_y
-    return Grid.between(settled.x_edges, (wider * low, wider * high), count)
+    refined = refine_contact(case, 0.01, 1e-6).contact.shape.grid
+    low, high = refined.y_range
+    # Width of the window over that which the unworn contact needs: load moves along the axis as the ends wear
+    count = 2 * int(np.ceil(0.5 * 1.4 * refined.cells_y))
+    wider = count / refined.cells_y
+    return Grid.between(refined.x_edges, (wider * low, wider * high), count)
 
 
-def _stops(distance: object, begun: float) -> tuple[FloatArray, bool]:
+def _stops(distance: object, first: float) -> tuple[FloatArray, bool]:
     """Distances to reach, and whether every step is wanted."""
-    every = np.ndim(distance) == 0  # type: ignore[arg-type]
+    all_steps = np.ndim(distance) == 0  # type: ignore[arg-type]
     stops = checks.coordinates("distance", numbers_in_si("distance", distance, "m"))
     if (np.diff(stops) <= 0).any():
         raise InvalidInputError("distance", stops.tolist(), "increasing (metres)")
-    if stops[0] < begun or stops[-1] <= begun:
-        raise InvalidInputError("distance", stops.tolist(), f"beyond {begun:g} m, where the wear begins")
-    return stops, every
+    if stops[0] < first or stops[-1] <= first:
+        raise InvalidInputError("distance", stops.tolist(), f"beyond {first:g} m, where the wear begins")
+    return stops, all_steps
 
 
 def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
@@ -220,23 +207,25 @@ def _limited(
     stepper: Stepper, state: State, stops: FloatArray, step: float, max_steps: int
 ) -> Iterator[tuple[State, float]]:
     """Go to one distance after the other, in a number of steps at most."""
-    taken = 0
+    steps = 0
     for stop in stops[stops > state.distance]:
         for reached, ahead in stepper.states(state, float(stop), step):
-            taken += 1
+            steps += 1
             state, step = reached, ahead
             yield state, step
-            if taken >= max_steps and state.distance < stops[-1]:
-                warn(
+            if steps >= max_steps and state.distance < stops[-1]:
+                warnings.warn(
                     f"the wear stopped after max_steps = {max_steps} at {state.distance:g} m of {stops[-1]:g} m; go on "
                     "with after=, or raise max_steps or tolerance",
                     ConvergenceWarning,
+                    stacklevel=2,
                 )
                 return
         if not state.converged:
-            warn(
+            warnings.warn(
                 "a contact of a wear step did not converge; take a smaller tolerance or other cells",
                 ConvergenceWarning,
+                stacklevel=2,
             )
 
 
@@ -272,17 +261,13 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
         },
         coords=coords,
     )
-    result["distance"].attrs = {"units": "m", "long_name": "distance slid" if _slides(case) else "distance rolled"}
+    motion = "slid" if isinstance(case.motion, Sliding) else "rolled"
+    result["distance"].attrs = {"units": "m", "long_name": f"distance {motion}"}
     return describe(result, "wear of a roller's profile")
 
 
-def _slides(case: Case) -> bool:
-    """Whether distances are those slid."""
-    return isinstance(case.motion, Sliding)
-
-
 def _volume_error(volumes: FloatArray, expected: FloatArray) -> float:
-    """Largest difference between the worn volume and what the law gives, over the latter."""
+    """Largest difference between the worn volume and the volume of the law, over the latter."""
     gained, due = volumes - volumes[0], expected - expected[0]
-    made = due > 0
-    return float(np.abs(gained[made] / due[made] - 1).max(initial=0.0))
+    positive = due > 0
+    return float(np.abs(gained[positive] / due[positive] - 1).max(initial=0.0))

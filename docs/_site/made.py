@@ -25,23 +25,25 @@ from mkdocs.structure.files import File, Files
 
 import contactstudy
 from contactstudy import materials
-from contactstudy.analysis.measures import MEASURES
+from contactstudy.analysis.peaks import MEASURES
 from contactstudy.arrays import vocabulary
-from contactstudy.arrays.vocabulary import derived, solved
 from contactstudy.commands import command_parser
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.study.parameters import documented
-from contactstudy.study.profile_kinds import DESIGN, PROFILES, MeasuredPoints, Numbers
+from contactstudy.study.profile_tables import DESIGN, PROFILES
 
 ROOT = Path(__file__).parents[2]
 MARKER = re.compile(r"^<!-- made: ([\w-]+) -->$", re.MULTILINE)
+SCRIPT = re.compile(r"^\[(\w+\.py)\]\(\1\)$", re.MULTILINE)
 WHOLE = (
     "analysis",
     "bearing",
     "design",
     "export",
     "fatigue",
-    "passes",
+    "heat",
+    "operators",
+    "plasticity",
     "plots",
     "profiles",
     "report",
@@ -58,10 +60,11 @@ FIRST = (
     "profiles",
     "contact",
     "fields",
+    "operators",
     "analysis",
     "fatigue",
     "heat",
-    "passes",
+    "plasticity",
     "wear",
     "bearing",
     "design",
@@ -101,9 +104,9 @@ def profile_kinds() -> str:
             code(entry.name) + ("" if entry.default in (MISSING, None) else f" ({entry.default:g})")
             for entry in fields(kind.made)
         ]
-        if isinstance(kind, Numbers) and kind.designed:
+        if kind.designed:
             keys.append(code(*DESIGN))
-        if isinstance(kind, MeasuredPoints):
+        if name == "measured":
             keys.append(code("file"))
         rows.append(
             (code(name), f"[`{kind.made.__name__}`][contactstudy.profiles.{kind.made.__name__}]", ", ".join(keys))
@@ -160,11 +163,11 @@ def dataset_variables() -> str:
 
 def _subjects() -> Iterator[tuple[str, dict[str, vocabulary.Variable], str]]:
     """Name, variables and meaning of each dictionary that ``VARIABLES`` is made of."""
-    for module in (solved, derived):
-        for node, after in itertools.pairwise(ast.parse(inspect.getsource(module)).body):
-            if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict) and _target(node) != "COORDINATES":
-                name = _target(node)
-                yield name, getattr(module, name), first_sentence(_text(after))
+    for node, after in itertools.pairwise(ast.parse(inspect.getsource(vocabulary)).body):
+        if isinstance(node, ast.Assign) and isinstance(node.value, ast.Dict):
+            name = _target(node)
+            if name not in ("COORDINATES", "RULES"):
+                yield name, getattr(vocabulary, name), first_sentence(_text(after))
 
 
 def _target(node: ast.Assign) -> str:
@@ -280,7 +283,7 @@ TABLES: dict[str, Callable[[], str]] = {
 def python_pages() -> dict[str, str]:
     """Return the Python reference: Markdown of one page for each folder with public names, as a reader needs them."""
     shown: dict[str, list[str]] = {}
-    for name in contactstudy.__all__:
+    for name in sorted(contactstudy.__all__, key=lambda name: name != "solve"):
         value = getattr(contactstudy, name)
         home = value.__name__ if isinstance(value, ModuleType) else value.__module__
         folder = home.split(".")[1]
@@ -300,13 +303,15 @@ def python_pages() -> dict[str, str]:
 
 
 def _linked(text: str, folder: str) -> str:
-    """Return a module's docstring with its roles as links, and its literal blocks as Markdown has them."""
+    """Return a module's docstring without its table of files, with links and Markdown's literal blocks."""
 
     def link(match: re.Match[str]) -> str:
         name = match[1]
         target = name if name.startswith("contactstudy.") else f"contactstudy.{folder}.{name}"
         return f'<autoref optional identifier="{target}"><code>{name}</code></autoref>'
 
+    # The page on architecture contains the table of files.
+    text = re.sub(r"\n*^=+  =+$.*^=+  =+$", "", text, flags=re.MULTILINE | re.DOTALL)
     return re.sub(r":\w+:`~?([\w.]+)`", link, text).replace("::\n\n", ":\n\n")
 
 
@@ -340,6 +345,13 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
     return files
 
 
+def script(name: str) -> str:
+    """Return a folded block with a script of the gallery."""
+    text = (ROOT / "docs" / "gallery" / name).read_text()
+    return f'<details markdown="1"><summary>{name}</summary>\n\n```python\n{text}```\n\n</details>'
+
+
 def on_page_markdown(markdown: str, **_: object) -> str:
-    """Fill in the tables."""
+    """Fill in the tables and the scripts of the gallery."""
+    markdown = SCRIPT.sub(lambda match: script(match[1]), markdown)
     return MARKER.sub(lambda match: TABLES[match[1]](), markdown)

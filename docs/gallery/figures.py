@@ -1,171 +1,112 @@
-"""Figures of the documentation: ``python docs/gallery/figures.py`` writes them beside this file.
+"""Figures of the documentation: ``python docs/gallery/figures.py [NAME ...]`` draws them into this folder.
 
-Figures of a page are drawn by the code of the page itself.
+The code of a figure is the script of its name in this folder, the page of its name in the tutorial, or a program of
+`studies`. `figures.json` contains a hash of the code; without names the program draws the figures with another hash.
 """
 
 from __future__ import annotations
 
-import contextlib
+import ast
+import hashlib
+import json
+import os
 import re
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
-import matplotlib
-
-matplotlib.use("Agg")
-
-import numpy as np
-from matplotlib import pyplot
-from matplotlib.axes import Axes
-
-from contactstudy import profiles
-from contactstudy.plots import plot_profiles
-
 HERE = Path(__file__).resolve().parent
-PAPER, STEEL, ROLLER = {"dpi": 110}, "0.88", "0.72"
+ROOT = HERE.parents[1]
+RECORD = HERE / "figures.json"
+BLOCKS = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 
-
-def dimension(ax: Axes, start: tuple[float, float], stop: tuple[float, float], text: str = "") -> None:
-    """Draw a line with an arrow at both ends, and its name in the middle."""
-    ax.annotate("", start, stop, arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.9})
-    if text:
-        middle = (0.5 * (start[0] + stop[0]), 0.5 * (start[1] + stop[1]))
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 2.0}
-        ax.text(*middle, text, ha="center", va="center", fontsize="small", bbox=box)
-
-
-def draw_roller(ax: Axes, start: float, length: float, profile: profiles.Profile, top: float) -> None:
-    """Fill a roller over the surface z = 0, its drop as it is."""
-    x = 0.5 * length * np.linspace(-1, 1, 801)
-    outline = np.minimum(profile.drop(x, length), top)
-    middle = start + 0.5 * length
-    ax.fill_between(middle + x, outline, top, facecolor=ROLLER, edgecolor="none")
-    ax.plot(middle + x, outline, color="black", linewidth=1.2)
-    for end, height in ((x[0], outline[0]), (x[-1], outline[-1])):
-        ax.plot([middle + end] * 2, [height, top], color="black", linewidth=1.2)
-
-
-def draw_conventions(ax: Axes) -> None:
-    """One roller on one body with all the words."""
-    body, start, length, fillet, top = 12.0, 1.4, 9.2, 1.0, 3.6
-    crown = profiles.PartialCrown(3.6, 14.0) + profiles.Cylinder(fillet)
-    middle = start + length / 2
-    ax.fill_between([0, body], -2.2, 0, facecolor=STEEL, edgecolor="none")
-    ax.plot([0, 0, body, body], [-2.2, 0, 0, -2.2], color="black", linewidth=1.2)
-    draw_roller(ax, start, length, crown, top)
-    ax.plot([start - 0.6, start + length + 0.6], [top, top], color="black", linewidth=0.8, linestyle=(0, (8, 2, 2, 2)))
-    ax.text(start + length + 0.75, top, "axis", va="center", fontsize="small")
-    at = start + 0.14 * fillet
-    depth = float(crown.drop(np.array([at - middle]), length)[0])
-    dimension(ax, (at, 0), (at, depth))
-    ax.text(at - 0.25, 0.5 * depth, "drop", ha="right", va="center", fontsize="small")
-    dimension(ax, (middle - 2.4, 0), (middle - 2.4, top), "radius at mid-length")
-    ax.plot([middle, middle], [-0.9, top], color="0.35", linewidth=0.7, linestyle=":")
-    ax.annotate("", (middle + 1.8, 1.4), (middle, 1.4), arrowprops={"arrowstyle": "->", "linewidth": 0.9})
-    ax.text(middle + 0.15, 1.65, "x of a profile", fontsize="small")
-    for edge in (start, start + length):
-        ax.plot([edge, edge], [0, -1.0], color="0.35", linewidth=0.7)
-    dimension(ax, (start, -0.75), (start + length, -0.75), "roller's length")
-    dimension(ax, (0, -0.75), (start, -0.75), "e")
-    dimension(ax, (0, -1.65), (body, -1.65), "body's length")
-    ax.annotate(
-        "fillet\n(corner radius)",
-        (start + length - 0.3 * fillet, float(crown.drop(np.array([length / 2 - 0.3 * fillet]), length)[0])),
-        (start + length + 0.5, 1.6),
-        fontsize="small",
-        va="center",
-        arrowprops={"arrowstyle": "->", "linewidth": 0.9},
-    )
-    ax.text(-0.15, -1.2, "end I,\nx = 0 of a case", ha="right", fontsize="small")
-    ax.text(body + 0.15, -1.2, "end II", fontsize="small")
-    ax.set_xlim(-2.4, 14.4)
-    ax.set_ylim(-2.2, 4.0)
-    ax.set_aspect("equal")
-    ax.set_axis_off()
-
-
-def draw_position(ax: Axes, distance: float, text: str) -> None:
-    """Left end of a roller over the left end of a body."""
-    ax.fill_between([0, 4], -1.6, 0, facecolor=STEEL, edgecolor="none")
-    ax.plot([0, 0, 4], [-1.6, 0, 0], color="black", linewidth=1.2)
-    x = distance + np.concatenate([[0.0], 0.35 * (1 - np.cos(np.linspace(0, np.pi / 2, 60)))])
-    outline = np.concatenate([[1.5], 0.35 * (1 - np.sin(np.linspace(0, np.pi / 2, 60)))])
-    x, outline = np.append(x, 4.0), np.append(outline, 0.0)
-    ax.fill_between(x, outline, 1.5, facecolor=ROLLER, edgecolor="none")
-    ax.plot(x, outline, color="black", linewidth=1.2)
-    if distance:
-        ax.plot([distance, distance], [0.0, -0.6], color="0.35", linewidth=0.7)
-        ax.annotate("", (0, -0.5), (distance, -0.5), arrowprops={"arrowstyle": "<->", "shrinkA": 0, "shrinkB": 0})
-    ax.set_title(text, fontsize="medium")
-    ax.set_xlim(-1.2, 3.2)
-    ax.set_ylim(-1.6, 1.7)
-    ax.set_aspect("equal")
-    ax.set_axis_off()
-
-
-def conventions() -> None:
-    """Sketch of what drop, length, fillet and e are."""
-    figure = pyplot.figure(figsize=(8.0, 5.4), layout="constrained")
-    axes = figure.subplot_mosaic([["all"] * 3, ["inside", "flush", "over"]], height_ratios=[1.7, 1.0])
-    draw_conventions(axes["all"])
-    draw_position(axes["inside"], 0.9, "e > 0: inside")
-    draw_position(axes["flush"], 0.0, "e = 0: flush")
-    draw_position(axes["over"], -0.7, "e < 0: overhanging")
-    figure.savefig(HERE / "profile_conventions.png", **PAPER)
-    pyplot.close(figure)
-
-
-def comparison() -> None:
-    """Profiles of one roller, made for one load."""
-    length, design = 10e-3, {"radius": 5e-3, "modulus": 113.7e9}
-    shown = {
-        "Lundberg": profiles.Lundberg.for_pressure(2e9, **design),
-        "Johns-Gohar": profiles.JohnsGohar.for_pressure(2e9, **design),
-        "Fujiwara-Kawase, K1 = 2, K2 = 0.5": profiles.FujiwaraKawase.for_pressure(
-            2e9, edge_drop=14e-6, k1=2.0, k2=0.5, **design
-        ),
-        "ISO/TS 16281": profiles.IsoCylindrical(diameter=10e-3),
-        "full crown, 1.5 m": profiles.FullCrown(crown_radius=1.5),
-        "straight, arcs, dub-off": profiles.PartialCrown(4e-3, 1.2, dub_length=0.8e-3, dub_radius=0.06),
-    }
-    figure, ax = pyplot.subplots(figsize=(8.0, 3.4), layout="constrained")
-    plot_profiles(shown, length, ax, deepest=15e-6)
-    figure.savefig(HERE / "profiles.png", **PAPER)
-    pyplot.close(figure)
-
-
-def of_page(page: str, *names: str) -> None:
-    """Run the Python blocks of a page, and keep the figures that it saves under these names."""
-    text = (HERE.parent / page).read_text()
-    variables: dict[str, object] = {}
-    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
-        for block in re.findall(r"^```python\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
-            exec(compile(block, page, "exec"), variables)
-        for name in names:
-            shutil.copy(f"{name}.png", HERE)
-    pyplot.close("all")
-
-
-PAGES = {
-    "tutorial/first_roller.md": ("first_roller",),
-    "tutorial/first_study.md": ("first_study",),
-    "how-to/settled_number.md": ("settled",),
-    "how-to/elastic_roller.md": ("elastic_roller",),
-    "how-to/tilt.md": ("tilt",),
-    "how-to/rolling.md": ("rolling",),
-    "how-to/contact_law.md": ("contact_law",),
-    "how-to/lamina_factors.md": ("lamina_factors",),
-    "how-to/best_profile.md": ("best_profile",),
-    "how-to/fatigue_life.md": ("fatigue",),
-    "how-to/heat_and_wear.md": ("flash_temperature", "wear"),
-    "how-to/passes.md": ("passes",),
+PROGRAMS = {
+    "study_best_profile": ("studies/best_profile.py", "results/best_profile/best_profile.png"),
+    "study_quarter_space": ("studies/quarter_space.py", "results/quarter_space/quarter_space.png"),
+    "study_regime_map": ("studies/regime_map.py", "results/regime_map/regime_map_1.png"),
+    "study_regime_map_slight": ("studies/regime_map.py", "results/regime_map/regime_map_2.png"),
+    "study_regime_map_worn": ("studies/regime_map.py", "results/regime_map/regime_map_3.png"),
+    "study_residual_stress": ("studies/residual_stress.py", "results/residual_stress/residual_stress.png"),
+    "study_rolling": ("studies/rolling.py", "results/rolling.png"),
+    "study_shakedown": ("studies/shakedown.py", "results/shakedown/shakedown.png"),
+    "study_worn_profile": ("studies/worn_profile.py", "results/worn_profile/worn_profile.png"),
 }
-"""Figures that pages save, by page."""
+"""Program of `studies` that draws a figure, and its file."""
+
+
+def code_of(name: str) -> str:
+    """Python code of a figure."""
+    if name in PROGRAMS:
+        return (ROOT / PROGRAMS[name][0]).read_text()
+    page = ROOT / "docs" / "tutorial" / f"{name}.md"
+    return "\n".join(BLOCKS.findall(page.read_text())) if page.exists() else (HERE / f"{name}.py").read_text()
+
+
+def names() -> list[str]:
+    """Names of all figures with code."""
+    scripts = {path.stem for path in HERE.glob("*.py")} - {"figures", "screens"}
+    pages = {path.stem for path in (ROOT / "docs" / "tutorial").glob("*.md")} - {"index"}
+    return sorted(scripts | pages | PROGRAMS.keys())
+
+
+def studies_of(code: str) -> list[Path]:
+    """Study files that code names."""
+    return [ROOT / "studies" / file for file in sorted(set(re.findall(r"\w+\.toml", code)))]
+
+
+def statements(code: str) -> str:
+    """Syntax tree without comments and docstrings."""
+    tree = ast.parse(code)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef):
+            node.body = [entry for entry in node.body if not is_text(entry)]
+    return ast.dump(tree)
+
+
+def is_text(node: ast.stmt) -> bool:
+    """Whether a statement is a docstring."""
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
+
+
+def digests() -> dict[str, str]:
+    """Hash of each figure's code, of the study files that it names, and of the modules of `plots` that it calls."""
+    modules = [path.read_text() for path in sorted((ROOT / "contactstudy" / "plots").glob("[!_]*.py"))]
+    hashes = {}
+    for name in names():
+        code = code_of(name)
+        studies = [study.read_text() for study in studies_of(code)]
+        called = set(re.findall(r"\bplot_\w+|\bstudy_figures", code))
+        used = [text for text in modules if called & set(re.findall(r"^def (\w+)", text, re.MULTILINE))]
+        text = "".join([*map(statements, [code, *used]), *studies])
+        hashes[name] = hashlib.sha256(text.encode()).hexdigest()[:16]
+    return hashes
+
+
+def draw(name: str) -> None:
+    """Draw a figure, and record the hash of its code."""
+    (ROOT / "results").mkdir(exist_ok=True)
+    environment = os.environ | {"MPLBACKEND": "Agg"}
+    if name in PROGRAMS:
+        program, figure = PROGRAMS[name]
+        for study in studies_of(code_of(name)):
+            subprocess.run([sys.executable, "-m", "contactstudy.cli", "run", study], cwd=ROOT, check=True)
+        subprocess.run([sys.executable, program], cwd=ROOT, env=environment, check=True)
+        shutil.copy(ROOT / figure, HERE / f"{name}.png")
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            for shared in ("studies", "results"):
+                Path(folder, shared).symlink_to(ROOT / shared)
+            script = Path(folder, f"{name}_figure.py")
+            script.write_text(code_of(name))
+            subprocess.run([sys.executable, script], cwd=folder, env=environment, check=True)
+            shutil.copy(Path(folder, f"{name}.png"), HERE)
+    stored = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+    RECORD.write_text(json.dumps(dict(sorted((stored | {name: digests()[name]}).items())), indent=1) + "\n")
 
 
 if __name__ == "__main__":
-    conventions()
-    comparison()
-    for page, names in PAGES.items():
-        of_page(page, *names)
+    stored = json.loads(RECORD.read_text()) if RECORD.exists() else {}
+    for figure in sys.argv[1:] or [name for name, value in digests().items() if stored.get(name) != value]:
+        draw(figure)

@@ -43,8 +43,8 @@ def of_explore(folder: Path) -> None:
             with browser(1400, 900) as page:
                 open_served(page, address)
                 page.locator("input[type=checkbox]").first.check()
-                page.wait_for_selector("th:has-text('other')")
-                page.locator("select").nth(1).select_option(index=1)  # the other case's profile
+                page.wait_for_selector("th:has-text('second case')")
+                page.locator("select").nth(1).select_option(index=1)  # profile of the second case
                 page.wait_for_timeout(2000)
                 page.screenshot(path=HERE / "explore.png", full_page=True)
         finally:

@@ -17,13 +17,13 @@ def test_axis_without_a_single_dimension(dims: tuple[str, str]) -> None:
         analysis.dimension_along(xr.DataArray(np.zeros((1, 1)), dims=dims), "x")
 
 
-def test_positions_of_a_study_belong_to_each_case(opened: xr.Dataset) -> None:
+def test_positions_of_a_study(opened: xr.Dataset) -> None:
     place = analysis.positions(opened["pressure"], "x")
     assert place.dims == ("e_over_a", "friction", "body", "x_over_a")
-    assert axis_dimensions(opened["von_mises"]) == {"x": "x_field", "y": "y_field", "z": "z"}
+    assert axis_dimensions(opened["von_mises"]) == {"x": "x_over_a", "y": "y_field", "z": "z"}
 
 
-def test_positions_must_be_there() -> None:
+def test_missing_positions() -> None:
     with pytest.raises(InvalidInputError, match="with the positions x"):
         analysis.positions(xr.DataArray([1.0], dims="x_index"), "x")
 
@@ -33,7 +33,7 @@ def test_cell_size_of_padded_cells() -> None:
     assert float(cell_size(array, "x")) == 0.5
 
 
-def test_one_case_of_a_study_looks_like_a_result(opened: xr.Dataset) -> None:
+def test_single_case_of_a_study(opened: xr.Dataset) -> None:
     selected = opened.sel(e_over_a=1, friction=0.1, body="finite-length")
     one = analysis.single_case(selected)
     assert one["pressure"].dims == ("x", "y")
@@ -43,14 +43,14 @@ def test_one_case_of_a_study_looks_like_a_result(opened: xr.Dataset) -> None:
     assert analysis.single_case(one).identical(one)
 
 
-def test_a_case_that_failed_has_no_fields(opened: xr.Dataset) -> None:
+def test_failed_case(opened: xr.Dataset) -> None:
     one = analysis.single_case(opened.sel(e_over_a=1, friction=FAILS, body="finite-length"))
     assert "pressure" not in one
     with pytest.raises(InvalidInputError, match=r"'a failed case': must be a solved case; .*this friction fails"):
         one.contact.slices()
 
 
-def test_more_than_one_case_is_refused(opened: xr.Dataset) -> None:
+def test_more_than_one_case(opened: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match=r"single case; select one"):
         analysis.single_case(opened)
     with pytest.raises(InvalidInputError, match="Dataset"):

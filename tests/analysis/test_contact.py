@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from contactstudy import InvalidInputError, analysis
-from contactstudy.analysis.border import contact_borders
+from contactstudy.analysis.axial import contact_borders
 from tests.stand_in_solver import FAILS
 
 
@@ -34,7 +34,7 @@ def test_along_the_axis_by_hand() -> None:
     ("start", "stop", "expected"),
     [(0, 5, 13), (-np.inf, np.inf, 13), (1, 2, 1), (1.5, 2.5, 4), (2.25, 2.75, 3.5), (4, 9, 0)],
 )
-def test_load_between_counts_cells_by_their_part(start: float, stop: float, expected: float) -> None:
+def test_load_between(start: float, stop: float, expected: float) -> None:
     load = analysis.load_between(contact(VALUES), start, stop)
     assert float(load) == pytest.approx(expected)
     assert load.attrs["units"] == "N"
@@ -49,19 +49,19 @@ def test_load_between_counts_cells_by_their_part(start: float, stop: float, expe
         ([0, 1], [1, 2], r"start = \[0, 1\]: must be a number"),
     ],
 )
-def test_no_part_of_the_cells_carries_no_load_but_is_refused(start, stop, message: str) -> None:
+def test_interval_outside_the_cells(start, stop, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         analysis.load_between(contact(VALUES), start, stop)
 
 
-def test_results_over_a_and_one_row_of_cells_are_refused() -> None:
+def test_results_over_a_and_one_row() -> None:
     scaled = analysis.normalized(contact(VALUES).assign(hertz_half_width=2.0, hertz_max_pressure=4.0))
     with pytest.raises(InvalidInputError, match=r"in SI.*analysis.normalized"):
         analysis.line_load(scaled)
     with pytest.raises(InvalidInputError, match="two positions along y or more"):
         analysis.line_load(contact(VALUES).isel(y=[1]))
     with pytest.raises(InvalidInputError, match=r"variable = 5: must be a name"):
-        analysis.peak(contact(VALUES), 5)  # type: ignore[arg-type]
+        analysis.largest_sample(contact(VALUES), 5)  # type: ignore[arg-type]
 
 
 def test_scalars_by_hand() -> None:
@@ -84,12 +84,12 @@ def test_scalars_by_hand() -> None:
 
 
 @given(about=st.floats(-10, 10))
-def test_moment_about_another_point_differs_by_the_load_times_the_distance(about: float) -> None:
+def test_moment_about_another_point(about: float) -> None:
     result = analysis.contact_results(contact(VALUES), about)
     assert float(result["moment"]) == pytest.approx(4 - 13 * (about - 2.5), abs=1e-9)
 
 
-def test_length_that_carries_nothing(strip_result) -> None:
+def test_contact_length_loss(strip_result) -> None:
     result = strip_result()
     assert float(analysis.contact_results(result)["contact_length_loss"]) == pytest.approx(0, abs=1e-12)
     lifted = result.assign(pressure=result["pressure"].where(result["x"] > 2, 0.0))
@@ -98,7 +98,7 @@ def test_length_that_carries_nothing(strip_result) -> None:
 
 
 @given(half_width=st.floats(0.4, 1.9), middle=st.floats(-0.3, 0.3))
-def test_border_of_a_hertz_pressure_is_found_between_the_cells(half_width: float, middle: float) -> None:
+def test_border_of_a_hertz_pressure(half_width: float, middle: float) -> None:
     place = (np.arange(80) - 39.5) / 16
     pressure = np.sqrt(np.maximum(1 - ((place - middle) / half_width) ** 2, 0))
     first, last = contact_borders(pressure, place)
@@ -129,7 +129,7 @@ def test_real_contact(solved: xr.Dataset) -> None:
     assert float(middle) == pytest.approx(hertz, rel=0.03)
 
 
-def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
+def test_study_against_its_cases(opened: xr.Dataset) -> None:
     together = analysis.contact_results(opened)
     assert together["contact_area"].dims == ("e_over_a", "friction", "body")
     for e in (0.0, 1.0, 2.0):
@@ -143,7 +143,7 @@ def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
     assert together.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_load_between_takes_a_position_of_each_case(opened: xr.Dataset) -> None:
+def test_load_between_in_a_study(opened: xr.Dataset) -> None:
     start = opened["e_over_a"] * opened["hertz_half_width"]
     stop = start + 2 * opened["hertz_half_width"]
     together = analysis.load_between(opened, start, stop)
@@ -156,8 +156,8 @@ def test_load_between_takes_a_position_of_each_case(opened: xr.Dataset) -> None:
     assert together.sel(friction=FAILS).isnull().all()
 
 
-def test_surfaces_of_a_study_stay_lazy(opened: xr.Dataset) -> None:
-    assert analysis.axial_profiles(opened)["half_width"].chunks is not None
+def test_lazy_surfaces(opened: xr.Dataset) -> None:
+    assert analysis.axial_profiles(opened.chunk())["half_width"].chunks is not None
 
 
 def test_nothing_in_contact() -> None:
@@ -182,14 +182,14 @@ def test_nothing_in_contact() -> None:
         lambda dataset: analysis.load_between(dataset, 0.0, 1.0),
     ],
 )
-def test_missing_variables_are_named(function) -> None:
+def test_missing_variables(function) -> None:
     with pytest.raises(InvalidInputError, match=r"(pressure|initial_gap) is missing"):
         function(xr.Dataset({"normal_load": 1.0}))
     with pytest.raises(InvalidInputError, match="Dataset"):
         function(np.zeros(3))
 
 
-def test_moment_about_something_that_is_no_number() -> None:
+def test_moment_about_nan() -> None:
     with pytest.raises(InvalidInputError, match="about"):
         analysis.contact_results(contact(VALUES), np.nan)
 
@@ -203,7 +203,7 @@ def test_moment_about_something_that_is_no_number() -> None:
         (slice(2, 3), np.nan, np.nan),
     ],
 )
-def test_a_cut_is_not_the_end_of_a_contact(part: slice, first: float, last: float) -> None:
+def test_cut_ends(part: slice, first: float, last: float) -> None:
     # Rows that carry nothing on either side of y, as in every window that holds the contact.
     whole = contact(VALUES).pad(y=1, constant_values=0).assign_coords(y=np.arange(-2.0, 3.0), normal_load=13.0)
     whole = whole.reset_coords("normal_load").assign(hertz_half_width=1.0)
@@ -219,16 +219,16 @@ def test_a_cut_is_not_the_end_of_a_contact(part: slice, first: float, last: floa
     assert [float(each) for each in half.values()] == [1.0, 4.0]
 
 
-def test_a_real_contact_cut_in_the_middle(solved: xr.Dataset) -> None:
+def test_cut_of_a_solved_contact(solved: xr.Dataset) -> None:
     half = solved.sel(x=slice(0.26e-3, None))
     assert np.isnan(analysis.edge_pressure(half)["edge_pressure_first"])
     whole = analysis.edge_pressure(solved)["edge_pressure_last"]
     assert float(analysis.edge_pressure(half)["edge_pressure_last"]) == float(whole)
-    assert "contact_length" in solved.contact.short()
-    assert "contact_length" not in half.contact.short()
+    assert "contact_length" in solved.contact.summary()
+    assert "contact_length" not in half.contact.summary()
 
 
-def test_the_order_of_the_positions_does_not_matter(solved: xr.Dataset) -> None:
+def test_order_of_positions(solved: xr.Dataset) -> None:
     mixed = solved.isel(x=slice(None, None, -1), y=np.random.default_rng(1).permutation(solved.sizes["y"]))
     xr.testing.assert_identical(analysis.edge_pressure(mixed), analysis.edge_pressure(solved))
     xr.testing.assert_identical(analysis.half_width(mixed).sortby("x"), analysis.half_width(solved))

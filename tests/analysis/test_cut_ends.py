@@ -1,4 +1,4 @@
-"""Cuts are told from ends: a roller as long as its body, whose outermost columns are pressed."""
+"""Cut ends of a roller as long as its body."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def ends(part: xr.Dataset) -> list[float]:
 
 
 @pytest.mark.parametrize("said", [True, False])
-def test_the_real_ends_of_either_half_stay(flush: xr.Dataset, said: bool) -> None:
+def test_ends_of_halves(flush: xr.Dataset, said: bool) -> None:
     whole = flush if said else flush.drop_attrs(deep=False)
     middle = flush.sizes["x"] // 2
     first, last = ends(whole)
@@ -42,7 +42,7 @@ def test_the_real_ends_of_either_half_stay(flush: xr.Dataset, said: bool) -> Non
     assert np.isnan(ends(whole.isel(x=slice(middle - 5, middle + 5)))).all()
 
 
-def test_cells_that_are_left_out_are_no_cut(flush: xr.Dataset) -> None:
+def test_missing_cells(flush: xr.Dataset) -> None:
     thinned = flush.isel(x=slice(None, None, 2))
     assert not np.isnan(ends(thinned)).any()
 
@@ -55,7 +55,7 @@ def test_pressures_in_megapascals(flush: xr.Dataset) -> None:
         assert float(converted[name]) == pytest.approx(float(value)), name
 
 
-def test_a_whole_contact_has_one_peak_and_a_part_its_own(flush: xr.Dataset) -> None:
+def test_peaks_of_a_contact_and_a_part(flush: xr.Dataset) -> None:
     """The settled one, with its error; infinite where an end is singular, as its edge pressure and factor are."""
     found = analysis.contact_results(flush)
     assert float(found["peak_pressure"]) == float(flush["peak_pressure"])
@@ -66,5 +66,5 @@ def test_a_whole_contact_has_one_peak_and_a_part_its_own(flush: xr.Dataset) -> N
     singular = np.isinf(float(flush["end_pressure_last"]))
     assert np.isinf(float(found["edge_pressure_last"])) == singular
     assert np.isinf(float(analysis.edge_factors(flush)["end_over_middle_last"])) == singular
-    assert "no error known" in found["edge_pressure_first"].attrs["comment"]
-    assert "no error known" in analysis.peak(flush, "pressure")["peak_pressure"].attrs["comment"]
+    assert found["edge_pressure_first"].attrs["error_kind"] == "not estimated"
+    assert analysis.largest_sample(flush, "pressure")["peak_pressure"].attrs["error_kind"] == "not estimated"

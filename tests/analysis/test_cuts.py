@@ -22,7 +22,7 @@ def linear() -> xr.Dataset:
 
 
 @given(start=point, end=point)
-def test_a_linear_field_is_followed_exactly(start, end) -> None:
+def test_linear_field(start, end) -> None:
     assume(not np.allclose(start, end))
     cut = analysis.along_line(linear(), start, end, points=7)
     assert cut["von_mises"].values == pytest.approx((2 * cut["x"] - 3 * cut["y"] + cut["z"]).values, abs=1e-12)

@@ -16,7 +16,7 @@ from contactstudy import (
     solve_contact,
 )
 from contactstudy.analysis import contact_edges
-from contactstudy.analysis.border import EDGE_UNCERTAINTY
+from contactstudy.analysis.axial import EDGE_UNCERTAINTY
 from contactstudy.profiles import Cylinder, FullCrown
 
 UNIT = HalfSpace(material=Material(0.75, 0.5))
@@ -32,7 +32,7 @@ def ellipsoid(window: float, cells: int, slimness: float = 1.0) -> xr.Dataset:
 
 
 @given(st.floats(1.7, 2.0))
-def test_hertz_circle_wherever_its_edge_lies_in_a_cell(window):
+def test_hertz_circle(window):
     contact = ellipsoid(window, 64)
     step = float(contact.y[1] - contact.y[0])
     edges = contact_edges(contact)
@@ -43,7 +43,7 @@ def test_hertz_circle_wherever_its_edge_lies_in_a_cell(window):
     assert float(edges.contact_area) == pytest.approx(np.pi, rel=3e-3)
 
 
-def test_better_than_counting_cells_by_an_order_of_magnitude():
+def test_edges_against_counted_cells():
     fitted, counted = [], []
     for window in np.linspace(1.75, 1.85, 11):
         contact = ellipsoid(float(window), 64)
@@ -64,13 +64,13 @@ def test_edges_mirror_with_the_contact():
     assert float(turned.x_first) == pytest.approx(-float(edges.x_last), abs=1e-12)
 
 
-def test_area_and_length_of_an_ellipse_follow_its_axes():
+def test_area_and_length_of_an_ellipse():
     edges = contact_edges(ellipsoid(1.9, 96, slimness=0.7))
     across, along = 2 * float(edges.half_width.max()), float(edges.contact_length)
     assert float(edges.contact_area) == pytest.approx(np.pi / 4 * across * along, rel=2e-3)
 
 
-def test_a_contact_that_reaches_the_ends_of_the_body_ends_there(on_cells):
+def test_contact_to_the_ends_of_the_body(on_cells):
     body = FiniteLengthSpace(length=4.0, material=Material(1.0, 0.3))
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0.0, 4.0), (-2.0, 2.0), (32, 32))
     edges = contact_edges(solve_contact(body, gap, load=2.0))
@@ -80,7 +80,7 @@ def test_a_contact_that_reaches_the_ends_of_the_body_ends_there(on_cells):
     assert float(edges.contact_area) == pytest.approx(2 * half_width.mean() * 4.0, rel=1e-3)
 
 
-def test_a_flat_shape_ends_at_the_face_of_its_last_cell(on_cells):
+def test_flat_shape(on_cells):
     shape = on_cells(
         lambda x, y: np.where((np.abs(x) < 1) & (np.abs(y) < 0.5), 0.0, np.inf), (-2.0, 2.0), (-2.0, 2.0), (32, 32)
     )
@@ -108,12 +108,12 @@ def test_needs_pressure_and_gap(missing):
         contact_edges(ellipsoid(1.8, 16).drop_vars(missing))
 
 
-def test_refuses_what_is_not_a_dataset():
+def test_not_a_dataset():
     with pytest.raises(InvalidInputError, match="Dataset"):
         contact_edges([1.0])
 
 
-def test_a_border_short_of_its_columns_centre_still_gives_an_area():
+def test_area_with_a_border_short_of_a_centre():
     """A small fillet, where the pressure piles up: the fitted border may lie within the outermost loaded column."""
     material, modulus = Material(210e9, 0.3), 0.5 * Material(210e9, 0.3).plane_strain_modulus
     half_width = 2 * 1.5e9 * 5e-3 / modulus
@@ -135,7 +135,7 @@ def test_a_case_of_a_study(opened):
     assert float(one.contact.contact_edges()["contact_length"]) > 0
 
 
-def test_the_narrow_middle_of_a_contact_with_wide_ends_counts():
+def test_area_with_a_narrow_middle():
     x, y = -4 + 0.1 * (np.arange(80) + 0.5), 0.05 * (np.arange(40) - 19.5)
     half_width = 0.3 + 0.3 * np.exp(-((np.abs(x) - 3.5) ** 2) / 0.1)
     outside = y**2 - half_width[:, None] ** 2
@@ -149,7 +149,7 @@ def test_the_narrow_middle_of_a_contact_with_wide_ends_counts():
     assert float(contact_edges(contact).contact_area) == pytest.approx(0.2 * half_width.sum(), rel=0.01)
 
 
-def test_a_contact_on_uniform_cells_is_no_longer_than_its_body() -> None:
+def test_length_on_uniform_cells() -> None:
     """The pressure of a flat crown falls off towards flush ends, and would be 0 a little beyond them."""
     steel = Material(210e9, 0.3)
     roller = Roller(radius=5e-3, length=1e-3, profile=FullCrown(crown_radius=0.5))

@@ -38,7 +38,7 @@ def test_uniform_contact_has_no_edge(strip_result) -> None:
         assert np.allclose(factors.to_array(), 1.0), variable
 
 
-def test_a_field_near_one_end_only_has_no_middle(strip_result) -> None:
+def test_field_near_one_end(strip_result) -> None:
     result = strip_result().isel(x_field=slice(0, 3))
     factors = analysis.edge_factors(result, "von_mises", result)
     assert np.isnan(float(factors["end_over_middle_first"]))

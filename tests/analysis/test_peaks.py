@@ -1,4 +1,4 @@
-"""Largest values and their places: Hertz' line contact, whose extremes textbooks list, and studies."""
+"""Measures and largest samples: the textbook extremes of Hertz' line contact, and studies."""
 
 from __future__ import annotations
 
@@ -23,54 +23,66 @@ from tests.stand_in_solver import FAILS
 )
 def test_line_contact(strip_result, variable: str, value: float, depth: float) -> None:
     scale, peak_pressure = 2e-4, 1e9
-    result = analysis.section_peak(strip_result(scale, peak_pressure), variable)
+    result = analysis.largest_sample(strip_result(scale, peak_pressure), variable, along="x")
     assert result[f"peak_{variable}"].dims == ("x_field",)
     assert result[f"peak_{variable}"].values / peak_pressure == pytest.approx(value, abs=1e-3)
     assert result[f"peak_{variable}_z"].values / scale == pytest.approx(depth, abs=0.03)
-    overall = analysis.peak(strip_result(scale, peak_pressure), variable)
+    overall = analysis.largest_sample(strip_result(scale, peak_pressure), variable)
     assert float(overall[f"peak_{variable}"]) == float(result[f"peak_{variable}"].max())
     assert overall[f"peak_{variable}_x"].attrs["units"] == "m"
 
 
 def test_friction_shifts_the_largest_von_mises(strip_result) -> None:
-    result = analysis.peak(strip_result(friction=0.2))
+    result = analysis.largest_sample(strip_result(friction=0.2))
     # A traction along +y on the body; table of the line contact with f = 0.2.
     assert float(result["peak_von_mises"]) == pytest.approx(0.590, abs=2e-3)
     assert float(result["peak_von_mises_y"]) == pytest.approx(0.55, abs=0.05)
 
 
-def test_a_study_gives_what_its_cases_give(opened: xr.Dataset) -> None:
+def test_study_against_its_cases(opened: xr.Dataset) -> None:
     for variable in ("von_mises", "pressure", "tresca", "hydrostatic"):
-        together = analysis.peak(opened, variable)
+        together = analysis.largest_sample(opened, variable)
         for e in (0.0, 1.0, 2.0):
             chosen = {"e_over_a": e, "friction": 0.1, "body": "finite-length"}
-            alone = analysis.peak(analysis.single_case(opened.sel(chosen)), variable)
+            alone = analysis.largest_sample(analysis.single_case(opened.sel(chosen)), variable)
             for name, value in alone.items():
                 assert float(together[name].sel(chosen)) == pytest.approx(float(value), rel=1e-6), name
         assert together.sel(friction=FAILS).to_array().isnull().all()
 
 
-def test_sections_of_a_study_are_as_its_cases(opened: xr.Dataset) -> None:
-    together = analysis.section_peak(opened)
+def test_sections_of_a_study(opened: xr.Dataset) -> None:
+    together = analysis.largest_sample(opened, along="x")
     chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
-    alone = analysis.section_peak(analysis.single_case(opened.sel(chosen)))
-    assert np.array_equal(together["peak_von_mises"].sel(chosen), alone["peak_von_mises"])
+    alone = analysis.largest_sample(analysis.single_case(opened.sel(chosen)), along="x")
+    sections = together["peak_von_mises"].sel(chosen).dropna("x_over_a")
+    assert np.array_equal(sections, alone["peak_von_mises"])
 
 
-def test_unknown_measure_is_named_with_its_neighbour(strip_result) -> None:
+def test_unknown_measure(strip_result) -> None:
     with pytest.raises(InvalidInputError, match="did you mean 'von_mises'"):
-        analysis.peak(strip_result(), "von_misses")
+        analysis.largest_sample(strip_result(), "von_misses")
     with pytest.raises(InvalidInputError, match="tau_xy is missing"):
-        analysis.peak(strip_result().drop_vars("tau_xy"), "tresca")
+        analysis.largest_sample(strip_result().drop_vars("tau_xy"), "tresca")
 
 
-def test_variable_that_is_no_field(strip_result) -> None:
+def test_variable_without_axes(strip_result) -> None:
     with pytest.raises(InvalidInputError, match="field along"):
-        analysis.peak(strip_result(), "hertz_half_width")
+        analysis.largest_sample(strip_result(), "hertz_half_width")
     with pytest.raises(InvalidInputError, match="field along x"):
-        analysis.section_peak(xr.Dataset({"a": ("z", [1.0])}, {"z": [0.0]}), "a")
+        analysis.largest_sample(xr.Dataset({"a": ("z", [1.0])}, {"z": [0.0]}), "a", along="x")
 
 
-def test_measure_of_nothing_but_padding(opened: xr.Dataset) -> None:
+def test_measure_of_padding(opened: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="nan everywhere"):
         analysis.measure(opened.sel(friction=FAILS), "tresca")
+
+
+def test_principal_stresses_as_measures(strip_result) -> None:
+    result = strip_result(friction=0.2)
+    principal = [analysis.measure(result, f"principal_stress_{rank}") for rank in (1, 2, 3)]
+    assert (principal[0] >= principal[1]).all()
+    assert (principal[1] >= principal[2]).all()
+    np.testing.assert_allclose(principal[0] - principal[2], analysis.measure(result, "tresca"), rtol=1e-9, atol=1e-6)
+    np.testing.assert_allclose(sum(principal) / 3, analysis.measure(result, "hydrostatic"), rtol=1e-9, atol=1e-6)
+    assert principal[0].attrs == {"units": "Pa", "long_name": "largest principal stress"}
+    assert float(analysis.largest_sample(result, "principal_stress_1")["peak_principal_stress_1"]) > 0

@@ -9,7 +9,7 @@ import xarray as xr
 from contactstudy import InvalidInputError, analysis
 
 
-def test_results_of_different_size_are_the_same_over_p0_and_a(strip_result) -> None:
+def test_scaled_results(strip_result) -> None:
     small, large = (analysis.normalized(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9)))
     for name in ("pressure", "von_mises", "tau_yz"):
         assert np.allclose(small[name], large[name], atol=1e-12)
@@ -29,7 +29,7 @@ def test_scalars_scale_by_their_units(strip_result) -> None:
     assert scaled["resultant"].attrs["long_name"].endswith("over p0 a**2")
 
 
-def test_a_study_scales_each_case_by_its_own(opened: xr.Dataset) -> None:
+def test_scales_of_a_study(opened: xr.Dataset) -> None:
     scaled = analysis.normalized(opened)
     chosen = {"e_over_a": 1.0, "friction": 0.1, "body": "finite-length"}
     expected = opened["pressure"].sel(chosen) / 1.5e9
@@ -41,12 +41,12 @@ def test_a_study_scales_each_case_by_its_own(opened: xr.Dataset) -> None:
     assert np.array_equal(scaled["y_field"], opened["y_field"])
 
 
-def test_scales_must_be_there() -> None:
+def test_missing_scales() -> None:
     with pytest.raises(InvalidInputError, match="hertz_half_width"):
         analysis.normalized(xr.Dataset({"pressure": 1.0}))
 
 
-def test_positions_over_a_select_by_them(solved: xr.Dataset) -> None:
+def test_selection_over_a(solved: xr.Dataset) -> None:
     over = analysis.positions_over_a(solved)
     half_width = float(solved["hertz_half_width"])
     expected = solved["pressure"].sel(x=2 * half_width, y=0.5 * half_width, method="nearest")
@@ -58,7 +58,7 @@ def test_positions_over_a_select_by_them(solved: xr.Dataset) -> None:
     assert known == pytest.approx({"e_over_a": 1.0, "friction": 0.1, "gamma": 0.104}, rel=2e-3)
 
 
-def test_single_case_goes_back_from_positions_over_a(solved: xr.Dataset) -> None:
+def test_single_case_is_the_inverse(solved: xr.Dataset) -> None:
     back = analysis.single_case(analysis.positions_over_a(solved))
     for name in ("pressure", "von_mises"):
         assert back[name].dims == solved[name].dims
@@ -66,7 +66,7 @@ def test_single_case_goes_back_from_positions_over_a(solved: xr.Dataset) -> None
     assert np.array_equal(back["x"], solved["x"])
 
 
-def test_results_over_a_join_to_a_study(strip_result) -> None:
+def test_joined_results_over_a(strip_result) -> None:
     both = [analysis.positions_over_a(strip_result(*scale)) for scale in ((1e-4, 1e9), (3e-4, 3e9))]
     named = [one.assign_coords(e_over_a=i) for i, one in enumerate(both)]
     joined = xr.concat(named, "e_over_a", join="override", coords="different", compat="equals")
@@ -80,10 +80,10 @@ def test_positions_over_a_of_a_study(opened: xr.Dataset) -> None:
     over = analysis.positions_over_a(opened)
     assert over["pressure"].dims[-2:] == ("x_over_a", "y_over_a")
     assert np.array_equal(over["pressure"], opened["pressure"], equal_nan=True)
-    assert np.array_equal(over["von_mises"].x_field_over_a, opened["x_field_over_a"])
+    assert np.array_equal(over["von_mises"].x_over_a, opened["x_over_a"])
 
 
-def test_positions_that_differ_over_a_are_refused(strip_result) -> None:
+def test_differing_positions_over_a(strip_result) -> None:
     one = strip_result(1e-4, 1e9)
     cases = one.assign(hertz_half_width=("load", [1e-4, 2e-4]))
     with pytest.raises(InvalidInputError, match="the same x_over_a in all cases; select one case"):
@@ -91,12 +91,12 @@ def test_positions_that_differ_over_a_are_refused(strip_result) -> None:
     assert analysis.positions_over_a(cases.isel(load=1))["x_over_a"].max() == pytest.approx(2.9375)
 
 
-def test_positions_that_are_not_there_are_not_made_up(strip_result) -> None:
+def test_dimension_without_positions(strip_result) -> None:
     with pytest.raises(InvalidInputError, match=r"coords = .*must be with the positions x \(metres\)"):
         analysis.positions_over_a(strip_result(1e-4, 1e9).drop_vars("x"))
 
 
-def test_positions_over_a_are_called_the_same_everywhere(strip_result) -> None:
+def test_names_of_positions_over_a(strip_result) -> None:
     result = strip_result(1e-4, 1e9)
     scaled, over = analysis.normalized(result), analysis.positions_over_a(result)
     for name in ("x", "y", "z", "x_field"):
@@ -105,13 +105,13 @@ def test_positions_over_a_are_called_the_same_everywhere(strip_result) -> None:
     assert scaled["z"].attrs["comment"] == "depth, below the loaded surface"
 
 
-def test_positions_over_a_are_of_millimetres_too(strip_result) -> None:
+def test_positions_in_millimetres(strip_result) -> None:
     result = strip_result(1e-4, 1e9)
     in_mm = result.assign_coords(x=(1e3 * result["x"]).assign_attrs(units="mm"))
     assert np.allclose(analysis.positions_over_a(in_mm)["x_over_a"], analysis.positions_over_a(result)["x_over_a"])
 
 
-def test_positions_that_are_over_a_already_are_refused(strip_result) -> None:
+def test_positions_over_a_twice(strip_result) -> None:
     scaled = analysis.normalized(strip_result(1e-4, 1e9))
     with pytest.raises(InvalidInputError, match="already"):
         analysis.positions_over_a(scaled)

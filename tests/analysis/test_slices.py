@@ -1,4 +1,4 @@
-"""The table per slice."""
+"""Slices: loads, pressures, stresses and errors."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.analysis.between_columns import Columns, largest_between
-from contactstudy.arrays.variables import UNBOUNDED
+from contactstudy.analysis.slices import Columns, border_load_errors, largest_between, power_means
+from contactstudy.arrays.variables import ERROR_KIND, ESTIMATED, NOT_ESTIMATED
 from contactstudy.study import Study, open_study, run_study
 from tests.split_columns import split_columns
 
 
 @given(count=st.integers(1, 16))
-def test_slices_carry_the_whole_load_however_many(strip_result, count: int) -> None:
+def test_load_of_slices(strip_result, count: int) -> None:
     result = strip_result()
     table = analysis.slices(result, count)
     assert float(table["normal_load"].sum()) == pytest.approx(float(analysis.contact_results(result)["resultant"]))
@@ -44,7 +44,7 @@ def test_columns_of_the_line_contact(strip_result) -> None:
     assert table["peak_orthogonal_shear_amplitude_z"].to_numpy() == pytest.approx(0.5, abs=0.03)
 
 
-def test_slices_without_stress_points_say_so(strip_result) -> None:
+def test_slices_without_stress_points(strip_result) -> None:
     table = analysis.slices(strip_result().isel(x_field=[0]), 4)
     assert table["peak_von_mises"].isnull().values.tolist() == [False, True, True, True]
 
@@ -72,7 +72,7 @@ def test_bad_input(strip_result, opened: xr.Dataset) -> None:
         analysis.slices(opened)
 
 
-def test_order_does_not_matter_and_stresses_at_one_depth_are_left_out(solved: xr.Dataset) -> None:
+def test_order_and_stresses_at_one_depth(solved: xr.Dataset) -> None:
     there = analysis.slices(solved, 4)
     turned = analysis.slices(solved.isel(x=slice(None, None, -1)), 4)
     assert turned["normal_load"].values == pytest.approx(there["normal_load"].values)
@@ -101,8 +101,14 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_stated_errors_cover_what_finer_columns_say(kind: str) -> None:
+QUICK = ("crowned", "straight, flush and tilted", "sharp end inside the face")
+"""Kinds of the default tier."""
+
+
+@pytest.mark.parametrize(
+    "kind", [pytest.param(kind, marks=() if kind in QUICK else pytest.mark.slow) for kind in KINDS]
+)
+def test_errors_against_finer_columns(kind: str) -> None:
     coarse = solve(KINDS[kind], stresses=False, accuracy=0.01)
     fine = solve(KINDS[kind], split_columns(coarse, 4), stresses=False)
     for count in (3, 12, 30):
@@ -115,7 +121,7 @@ def test_stated_errors_cover_what_finer_columns_say(kind: str) -> None:
             assert typical < 0.1, (count, name)
 
 
-def test_slices_and_their_errors_are_the_same_from_either_end() -> None:
+def test_mirrored_slices() -> None:
     """A border between an unloaded slice and the contact leaves the same open on both sides."""
     result = solve(pressed(profiles.FullCrown(crown_radius=0.1), 1e-3, 1.4e-3), stresses=False, accuracy=0.03)
     table = analysis.slices(result, 25)
@@ -132,7 +138,7 @@ def test_slices_and_their_errors_are_the_same_from_either_end() -> None:
     assert errors[0] == 5.0
 
 
-def test_the_table_holds_a_peak_in_narrow_columns_and_no_number_at_a_singular_end() -> None:
+def test_narrow_columns_and_singular_ends() -> None:
     rounded = solve(KINDS["rounded edges"], stresses=False)
     largest = analysis.slices(rounded, 10)["axial_pressure"]
     for side, part in (("first", 0), ("last", -1)):
@@ -144,12 +150,12 @@ def test_the_table_holds_a_peak_in_narrow_columns_and_no_number_at_a_singular_en
     assert np.isfinite(sharp["normal_load_error"]).all()
 
 
-def test_a_case_of_a_study_has_errors_on_its_own_cells(tmp_path) -> None:
+def test_errors_of_a_case_of_a_study(tmp_path) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.5e-3, "e_over_a": 1.0, "stresses": False}
     edge = {"name": "rounded", "kind": "cylinder", "fillet_radius": 0.05e-3}
     study = Study(name="small", base=base | {"profile": edge}, sweep={"max_pressure": [1.2e9, 1.5e9]})
     run_study(study, tmp_path, workers=0, progress=False)
-    own, shared = (open_study(tmp_path, cells=cells).sel(max_pressure=1.5e9) for cells in ("own", "common"))
+    own, shared = (open_study(tmp_path, cells=cells).sel(max_pressure=1.5e9) for cells in ("original", "common"))
     table = analysis.slices(own, 6)
     assert float(table["axial_pressure"][0]) == pytest.approx(
         float(own["peak_pressure_first"]), abs=float(own["peak_pressure_first_error"])
@@ -158,17 +164,27 @@ def test_a_case_of_a_study_has_errors_on_its_own_cells(tmp_path) -> None:
     assert np.isnan(analysis.slices(shared, 6)["axial_pressure_error"]).all()
 
 
-def test_numbers_without_an_error_say_so(solved: xr.Dataset) -> None:
+def test_error_kinds(solved: xr.Dataset) -> None:
     settled = solve(KINDS["straight, flush with free ends"], stresses=False, accuracy=0.05)
     parts = {"given cells": solved, "cut": settled.sel(x=slice(0.5e-3, None)), "half": settled.sel(y=slice(0, None))}
     for what, result in parts.items():
         table = analysis.slices(result, 4)
         for name in ("axial_pressure", "normal_load"):
             assert np.isnan(table[f"{name}_error"]).all(), what
-            assert UNBOUNDED in table[name].attrs["comment"], what
-            assert UNBOUNDED in table[f"{name}_error"].attrs["comment"], what
+            assert table[name].attrs[ERROR_KIND] == NOT_ESTIMATED, what
+            assert table[f"{name}_error"].attrs[ERROR_KIND] == NOT_ESTIMATED, what
     for name, array in analysis.slices(solved, 4).data_vars.items():
         if name not in ("position", "width"):
-            assert UNBOUNDED in array.attrs["comment"], name
+            assert array.attrs[ERROR_KIND] == NOT_ESTIMATED, name
     whole = analysis.slices(settled, 4)
-    assert not any(UNBOUNDED in whole[name].attrs["comment"] for name in ("axial_pressure", "normal_load"))
+    assert all(whole[name].attrs[ERROR_KIND] == ESTIMATED for name in ("axial_pressure", "normal_load"))
+
+
+def test_values_of_parts_between_borders() -> None:
+    edges, borders = np.array([[0.0, 1], [1, 2], [2, 3], [3, 4]]), np.array([0.0, 2.0, 4.0])
+    pressure = Columns(edges, edges.mean(axis=1), np.array([1.0, 1, 2, 2]))
+    largest, error = largest_between(pressure, borders)
+    np.testing.assert_allclose((largest, error), ([np.sqrt(2.5), 2.0], [0.5, 0.5]))
+    np.testing.assert_allclose(border_load_errors(pressure, borders), [0.25, 0.25])
+    means = power_means(Columns(edges, edges.mean(axis=1), np.array([1.0, 1, 1, 3])), borders, 1.0)
+    np.testing.assert_allclose(means, ([1.0, 2.125], [0.0, 0.625]), atol=1e-12)

@@ -25,13 +25,13 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
-from contactstudy.arrays.units import in_si, required_in_si
+from contactstudy.arrays.variables import in_si, required_in_si
 from contactstudy.bearing import contact_law
-from contactstudy.case.friction import AxialFriction, checked_friction
-from contactstudy.case.roughness import heights_on
+from contactstudy.case.motion import AxialFriction, checked_friction
 from contactstudy.design import best_profile
-from contactstudy.passes import ElasticPlastic
+from contactstudy.plasticity import ElasticPlastic
 from contactstudy.profiles import FullCrown, Measured
+from contactstudy.roughness import heights_on
 
 OnCells = Callable[..., xr.DataArray]
 
@@ -100,9 +100,9 @@ def test_yield_stress_over_depth() -> None:
     over = xr.DataArray([600.0, 400.0], {"z": ("z", [0.0, 1.0], {"units": "mm"})}, "z", attrs={"units": "MPa"})
     material = ElasticPlastic(yield_stress=over)
     for each in (material, replace(material, isotropic_hardening=1e9)):
-        np.testing.assert_allclose(each.yield_at(np.array([0.5e-3])), 500e6)
+        np.testing.assert_allclose(each.yield_stress_at(np.array([0.5e-3])), 500e6)
     hard = xr.DataArray([750.0], {"z": [0.0]}, "z", attrs={"units": "HV"})
-    assert ElasticPlastic.from_hardness(hard).yield_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
+    assert ElasticPlastic.from_hardness(hard).yield_stress_at(np.zeros(1))[0] == pytest.approx(750 * 9.80665e6 / 3)
     with pytest.raises(InvalidInputError, match="HV, or left out"):
         ElasticPlastic.from_hardness(hard.assign_attrs(units="HRC"))
 

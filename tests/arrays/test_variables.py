@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 import re
 from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -12,25 +14,42 @@ import pytest
 import xarray as xr
 
 import contactstudy as cs
-from contactstudy import analysis, bearing, design, fatigue, passes, study, verification, wear
+from contactstudy import (
+    InvalidInputError,
+    analysis,
+    bearing,
+    design,
+    fatigue,
+    film,
+    heat,
+    plasticity,
+    study,
+    verification,
+    wear,
+)
+from contactstudy.analysis.summary import summarize
 from contactstudy.arrays.variables import (
     COORDINATES,
+    ERROR_KIND,
+    ESTIMATED,
+    NOT_ESTIMATED,
     RULES,
-    UNBOUNDED,
     VARIABLES,
     describe,
     named,
+    require,
     specification,
     variable_of,
+    without_error,
 )
-from contactstudy.bearing.energy_spline import FitErrors
-from contactstudy.bearing.nodes import Presser
-from contactstudy.bearing.tabulation import law_table
+from contactstudy.bearing.tabulation import Presser, law_table
+from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
 from contactstudy.verification.check import compare
-from contactstudy.verification.convergence import Table
 from tests.bearing.test_energy_spline import NODES
+from tests.small_study import small_study
+from tests.stand_in_solver import solve_fake
 
 Returned = dict[str, xr.Dataset]
 
@@ -40,11 +59,24 @@ KEEPS_WHAT_IT_GETS = {"normalized", "single_case", "measure", "positions", "alon
 
 def functions() -> dict[str, Callable[..., object]]:
     """Public functions that return labelled data, by name."""
-    packages: list[ModuleType] = [cs, analysis, bearing, design, fatigue, passes, study, verification, wear]
+    packages: list[ModuleType] = [
+        cs,
+        analysis,
+        bearing,
+        design,
+        fatigue,
+        film,
+        heat,
+        plasticity,
+        study,
+        verification,
+        wear,
+    ]
     values = {name: getattr(package, name) for package in packages for name in package.__all__}
-    for module in (cs.roughness, cs.slices):
-        own = vars(module).items()
-        values |= {name: value for name, value in own if getattr(value, "__module__", "") == module.__name__}
+    for module in (cs.roughness, cs.stress):
+        values |= {
+            name: value for name, value in vars(module).items() if getattr(value, "__module__", "") == module.__name__
+        }
     return {
         name: value
         for name, value in values.items()
@@ -70,24 +102,32 @@ def _rubbed(case: cs.Case, contact: xr.Dataset, motion: cs.Rolling | cs.Shift) -
     return cs.solve_contact(case.body, labelled, load=case.normal_load, friction=0.1, motion=motion)
 
 
+def one_case(folder: Path) -> xr.Dataset:
+    """A case of a study, loaded from the folder."""
+    cs.run_study(small_study(sweep={"e_over_a": [0.0]}), folder, workers=0, solver=solve_fake, progress=False)
+    return study.load_case(folder, str(cs.open_study(folder)["case_id"].values.item()))
+
+
 @pytest.fixture(scope="module")
 def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_path_factory) -> Returned:
     """What every public function returns, by its name."""
     steel = cs.Material(210e9, 0.3)
-    metal = cs.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+    metal = heat.ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
     length, half_width = 0.4e-3, 65e-6
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
     case = cs.Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1)
     grid = cs.Grid((0.0, length), (-4 * half_width, 4 * half_width), 16, 48)
     depths = half_width * np.array([0.25, 0.5, 1.0])
-    solved = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths, error_estimate=True)
+    solved = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths)
     pressure = solved["pressure"]
     contact = cs.solve_contact(body, solved["initial_gap"], load=case.normal_load)
     coarse = cs.solve(case, grid.coarsened(), stresses=False)
     # Sharp rigid ends inside the face: the pressure is singular at both.
     wider = cs.FiniteLengthSpace(length=2 * length, material=steel)
     sharp = cs.Case(body=wider, roller=cs.Roller(radius=5e-3, length=length), max_pressure=1.5e9)
+    chamfer = cs.profiles.Chamfer(width=0.1e-3, angle=0.01)
+    chamfered = cs.Case(body=body, roller=cs.Roller(radius=5e-3, length=length, profile=chamfer), max_pressure=1.5e9)
     strip = strip_result(half_width, 1.5e9)
     limits = fatigue.FatigueLimits(bending=500e6, torsion=300e6)
     criterion = fatigue.dang_van(strip, limits)
@@ -96,15 +136,22 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     file = tmp_path_factory.mktemp("rough") / "map.nc"
     rough.to_netcdf(file)
     check = compare("case", "peak pressure", "closed form", 1.0, 1.0, 0.1)
-    errors = {"stress": (0.1, 0.01)}
-    table = Table(title="orders", setting="order", source="the finest", values=(1.0, 2.0), errors=errors, used=2.0)
-    checked = suite.Verification("full", {"one": [check]}, [table])
-    law = bearing.ContactLaw(law_table(Presser(case, 0.01, 1e-6), NODES, FitErrors(0.01, 0.01)))
+    checked = suite.Verification("full", {"one": [check]})
+    law = bearing.ContactLaw(law_table(Presser(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
     smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
     crowned = cs.Case(body=body, roller=smooth, max_pressure=1.5e9)
+    oiled = replace(
+        crowned,
+        motion=cs.Sliding(body_speed=2.0, roller_speed=2.0),
+        lubricant=cs.Lubricant.preset("heavy machine oil", 60.0).replaced(conductivity=0.14),
+    )
+    lubricated = film.solve_film(
+        oiled, accuracy=0.2, asperities=film.Asperities(rms=2e-7), resolution=film.FilmResolution(levels=2)
+    )
     values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": solved,
-        "solve on refined columns": cs.solve(sharp, z=depths, accuracy=0.05),
+        "solve on refined columns": cs.solve(sharp, z=depths, accuracy=0.1),
+        "solve, chamfered": cs.solve(chamfered, stresses=False, accuracy=0.1),
         "solve_contact": contact,
         "solve_contact, rolling": _rubbed(case, contact, cs.Rolling(longitudinal_creepage=1e-3)),
         "solve_contact, shifted": _rubbed(case, contact, cs.Shift(y=1e-8)),
@@ -128,22 +175,32 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
             accuracy=0.1,
             evaluations=8,
         ),
-        "flash_temperature": cs.flash_temperature(
-            case, solved, body=metal, roller=metal, body_speed=-1.0, roller_speed=1.0, z=depths
+        "solve_film": lubricated,
+        "film_traction": film.film_traction(oiled, lubricated, [0.0, 0.1]),
+        "flash_temperature": heat.flash_temperature(
+            replace(case, motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0)),
+            solved,
+            body=metal,
+            roller=metal,
+            z=depths,
         ),
-        "summarize": cs.summarize(solved),
+        "summarize": summarize(solved),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
-        "slice_model": cs.slices.slice_model(case),
+        "slice_model": bearing.slice_model(case),
+        "atlas": cs.atlas(100.0, 1.0, 0.2),
         "open_study": opened,
+        "load_case": one_case(tmp_path_factory.mktemp("study")),
         "collect": opened.drop_dims([dim for dim in opened.dims if dim not in opened["status"].dims]),
         "verify": checked.to_dataset(),
         "load_between": analysis.load_between(solved, 0.0, 1e-4),
-        "peak": xr.merge([analysis.peak(solved, name) for name in ("pressure", "von_mises")]),
+        "peak": xr.merge([analysis.largest_sample(solved, name) for name in ("pressure", "von_mises")]),
         "edge_factors": analysis.edge_factors(solved, reference=solved),
         "along_line": analysis.along_line(strip, (1e-4, 0.0, 2e-5), (1e-4, 0.0, 5e-5), variables="von_mises"),
         "in_plane": analysis.in_plane(strip, y=0.0, variables="von_mises"),
         "measure": analysis.measure(solved, "tresca"),
+        **{f"measure, {rank}": analysis.measure(solved, f"principal_stress_{rank}") for rank in (1, 2, 3)},
+        "edge_tension": edge_tension(solved),
         "positions": analysis.positions(pressure, "x"),
         "discretisation_error": analysis.discretisation_error(solved, coarse),
         "slices": analysis.slices(solved, 4),
@@ -153,10 +210,12 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "lundberg_palmgren": risk,
         "ioannides_harris": fatigue.ioannides_harris(criterion["dang_van"]),
         "relative_life": fatigue.relative_life(risk, risk),
-        "residual_stress": passes.residual_stress(
+        "eigenstrain_stress": plasticity.eigenstrain_stress(
             body, xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 2)))}, {"x": [1e-4, 2e-4], "z": depths[:2]})
         ),
-        "rolled_in": cs.passes.rolled_in(strip.isel(x_field=[4]), body, cs.passes.ElasticPlastic(yield_stress=8e8), 2),
+        "residual_stress": cs.plasticity.residual_stress(
+            strip.isel(x_field=[4]), body, cs.plasticity.ElasticPlastic(yield_stress=8e8), 2
+        ),
         "shakedown_in_plane": fatigue.shakedown_in_plane(strip.isel(z=slice(None, None, 4)), body),
         "shakedown": fatigue.shakedown(strip.isel(x_field=[4]), axial=True),
     }
@@ -181,7 +240,11 @@ def test_every_variable_stands_in_the_table_with_its_unit(returned: Returned) ->
             known = specification(str(name)) or specification(str(name), coordinate=True)
             if known is None:
                 strangers.append((function, name))
-            elif name not in OF_THE_MOTION and not str(name).startswith("risk") and function not in KEEPS_WHAT_IT_GETS:
+            elif (
+                name not in OF_THE_MOTION
+                and not str(name).startswith(("risk", "end_intensity"))  # units depend on an exponent
+                and function not in KEEPS_WHAT_IT_GETS
+            ):
                 expected = {"units": known.units} if known.units else {}
                 if {key: array.attrs[key] for key in ("units",) if key in array.attrs} != expected:
                     unlike.append((function, name, array.attrs))
@@ -230,7 +293,7 @@ def test_every_row_of_the_table_is_returned(returned: Returned) -> None:
 
 
 def test_a_study_of_listed_cases_has_the_coordinate_case() -> None:
-    from contactstudy.study.cube import cube_of_axes
+    from contactstudy.study.plan import cube_of_axes
 
     assert set(cube_of_axes([], lambda name, value: value).labels) == {"case"}
 
@@ -304,6 +367,39 @@ def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
         for name, value in stated.data_vars.items():
             number = value.ndim == 0 and value.dtype.kind == "f" and not str(name).endswith("_error")
             if number and name not in given and f"{name}_error" not in stated:
-                assert UNBOUNDED in value.attrs["comment"], name
-    assert UNBOUNDED in solved["load_position"].attrs["comment"]  # its _error says how well the balance is met
-    assert all(UNBOUNDED in value.attrs["comment"] for value in analysis.axial_profiles(solved).data_vars.values())
+                assert value.attrs[ERROR_KIND] == NOT_ESTIMATED, name
+    values = (solved["load_position"], *analysis.axial_profiles(solved).data_vars.values())
+    assert all(value.attrs[ERROR_KIND] == NOT_ESTIMATED for value in values)
+
+
+@pytest.mark.parametrize(
+    ("missing", "hint"),
+    [
+        ("tau_yz", "tau_yz is missing; a study keeps it at level 'fields'"),
+        ("pressure", "pressure is missing; a study keeps it at level 'surface'"),
+        ("hertz_half_width", "hertz_half_width is missing"),
+        ("luck", "luck is missing"),
+    ],
+)
+def test_require_names_the_study_level_of_a_missing_variable(missing: str, hint: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        require(xr.Dataset({"gap": 0.0}), "gap", missing, argument="result")
+    assert caught.value.hint == hint
+    assert str(caught.value).startswith("result = ['gap']")
+
+
+def test_require_quotes_the_message_of_a_failed_case() -> None:
+    failed = xr.Dataset({"status": "failed", "message": "too narrow"})
+    with pytest.raises(InvalidInputError, match=r"a failed case.*too narrow"):
+        require(failed, "pressure")
+
+
+def test_require_refuses_other_types() -> None:
+    with pytest.raises(InvalidInputError, match=r"list.*Dataset"):
+        require([], argument="result")
+
+
+def test_error_kinds() -> None:
+    found = without_error(xr.Dataset({"peak_pressure": 1.0, "peak_pressure_error": 0.1, "approach": 1.0}), "approach")
+    kinds = {name: value.attrs.get(ERROR_KIND) for name, value in describe(found).data_vars.items()}
+    assert kinds == {"peak_pressure": ESTIMATED, "peak_pressure_error": None, "approach": NOT_ESTIMATED}

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import Case, FiniteLengthSpace, Material, Roller, profiles
+from contactstudy import Case, HalfSpace, Material, Roller, profiles
 from contactstudy.bearing import ContactLaw, contact_law
 
 STEEL = Material(210e9, 0.3)
@@ -13,9 +13,9 @@ STEEL = Material(210e9, 0.3)
 
 @pytest.fixture(scope="session")
 def short_case() -> Case:
-    """A crowned roller between free ends."""
+    """A crowned roller on a half-space; `test_at_approach` has free ends."""
     roller = Roller(radius=5e-3, length=0.5e-3, profile=profiles.Lundberg(0.2e-6))
-    return Case(body=FiniteLengthSpace(length=0.6e-3, material=STEEL), roller=roller, load=70.0)
+    return Case(body=HalfSpace(material=STEEL), roller=roller, load=70.0)
 
 
 @pytest.fixture(scope="session")

@@ -17,7 +17,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.arrays.variables import UNBOUNDED
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.bearing import lamina_factors
 from contactstudy.verification import closed_forms
 from tests.split_columns import split_columns
@@ -34,7 +34,7 @@ def uniform() -> xr.Dataset:
     return solve(case, stresses=False, accuracy=0.02)
 
 
-def test_a_uniform_pressure_has_the_load_of_its_line_contact(uniform: xr.Dataset) -> None:
+def test_uniform_pressure(uniform: xr.Dataset) -> None:
     found = lamina_factors(uniform)
     load = float(uniform.normal_load) / 4e-3
     np.testing.assert_allclose(found.hertz_load_per_length[3:-3], load, rtol=0.03)
@@ -44,7 +44,7 @@ def test_a_uniform_pressure_has_the_load_of_its_line_contact(uniform: xr.Dataset
     assert 0 < float(found.stress_riser_error[10]) < 0.05
 
 
-def test_half_space_and_flush_ends_approach_the_slices_from_either_side() -> None:
+def test_slices_as_the_limit_of_long_rollers() -> None:
     """Slices that do not know of each other are the limit of a straight roller that is long against its contact.
 
     The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
@@ -61,7 +61,7 @@ def test_half_space_and_flush_ends_approach_the_slices_from_either_side() -> Non
     assert middles["flush"][2] - middles["half-space"][2] < 0.12
 
 
-def test_the_number_of_laminae_is_no_part_of_the_life(uniform: xr.Dataset) -> None:
+def test_number_of_laminae(uniform: xr.Dataset) -> None:
     few, many = (lamina_factors(uniform, laminae=count) for count in (30, 90))
     risks = [float((each.hertz_load_per_length**4.5 * each.width).sum()) for each in (few, many)]
     assert risks[0] == pytest.approx(risks[1], rel=1e-9)
@@ -79,7 +79,7 @@ def test_free_ends_relieve_the_outermost_lamina() -> None:
     assert ends[1] < 0.8 * ends[0]
 
 
-def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
+def test_sharp_end_and_uniform_cells() -> None:
     roller, body = Roller(radius=5e-3, length=0.5e-3), FiniteLengthSpace(length=0.7e-3, material=STEEL)
     case = Case(body=body, roller=roller, max_pressure=1.5e9)
     sharp = lamina_factors(solve(case, stresses=False, accuracy=0.05))
@@ -88,21 +88,19 @@ def test_a_sharp_end_has_no_finite_factor_and_uniform_cells_no_error() -> None:
     given = lamina_factors(solve(case, choose_grid(case), stresses=False))
     assert np.isfinite(given.stress_riser).all()
     assert np.isnan(given.stress_riser_error).all()
-    assert given.stress_riser_error.attrs["comment"] == UNBOUNDED
-    assert UNBOUNDED in given.edge_factor.attrs["comment"]
+    assert given.stress_riser_error.attrs[ERROR_KIND] == NOT_ESTIMATED
+    assert given.edge_factor.attrs["comment"] == "of independent slices"
 
 
 @pytest.mark.parametrize(
     ("profile", "tilt"),
     [
-        (profiles.FullCrown(crown_radius=0.06), 0.0),
         (profiles.FullCrown(crown_radius=0.02), 4e-3),
-        (profiles.Cylinder(fillet_radius=0.05e-3), 4e-4),
-        (DESIGN, 6e-3),
+        pytest.param(profiles.Cylinder(fillet_radius=0.05e-3), 4e-4, marks=pytest.mark.slow),
         (profiles.Cylinder(), 5e-4),
     ],
 )
-def test_stated_errors_cover_what_finer_columns_say(profile: profiles.Profile, tilt: float) -> None:
+def test_errors_against_finer_columns(profile: profiles.Profile, tilt: float) -> None:
     roller = Roller(radius=5e-3, length=1.6e-3, profile=profile)
     case = Case(body=FiniteLengthSpace(length=2e-3, material=STEEL), roller=roller, max_pressure=1.5e9, tilt=tilt)
     coarse = solve(case, stresses=False, accuracy=0.01)
@@ -116,7 +114,7 @@ def test_stated_errors_cover_what_finer_columns_say(profile: profiles.Profile, t
 
 
 @pytest.mark.parametrize("crown_radius", [0.01, 0.04])
-def test_stated_errors_cover_hertz_ellipse_which_ends_inside_the_roller(crown_radius: float) -> None:
+def test_errors_against_hertz_ellipse(crown_radius: float) -> None:
     """Over the contact the load per length is that of p0 (1 - (x/b)**2)**0.5, beyond it 0: a step within a lamina."""
     roller = Roller(radius=5e-3, length=1e-3, profile=profiles.FullCrown(crown_radius))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=0.6e9)
@@ -134,7 +132,7 @@ def test_stated_errors_cover_hertz_ellipse_which_ends_inside_the_roller(crown_ra
         assert np.median(error) < 0.1 * exact.max()
 
 
-def test_laminae_that_the_slice_model_does_not_load_have_no_factor() -> None:
+def test_unloaded_laminae() -> None:
     roller = Roller(radius=5e-3, length=2e-3, profile=profiles.FullCrown(crown_radius=0.3))
     case = Case(body=HalfSpace(material=STEEL), roller=roller, load=60.0)
     found = lamina_factors(solve(case, stresses=False, accuracy=0.05))

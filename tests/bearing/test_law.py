@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, profiles, solve
 from contactstudy.bearing import ContactLaw, contact_law
-from contactstudy.bearing.nodes import Presser
+from contactstudy.bearing.tabulation import Presser
 
 STEEL = Material(210e9, 0.3)
 RADIUS = 5e-3
@@ -39,23 +39,21 @@ def test_hertz_ball_pressed_and_tilted(ball: ContactLaw, approach: float, tilt: 
     assert float(found.tilting_stiffness) == pytest.approx(load * RADIUS + slope * (RADIUS * tilt) ** 2, rel=0.03)
 
 
-def test_a_balls_load_follows_the_power_three_halves(ball: ContactLaw) -> None:
+def test_load_exponent_of_a_ball(ball: ContactLaw) -> None:
     loads = ball.at([1e-6, 2e-6]).normal_load.values
     assert np.log2(loads[1] / loads[0]) == pytest.approx(1.5, abs=0.01)
 
 
-@pytest.mark.parametrize(("load", "tilt"), [(45.0, 6e-4), (65.0, -1.3e-3), (90.0, 2e-4)])
-def test_direct_solutions_lie_within_the_stated_errors(
-    short_case: Case, short_law: ContactLaw, load: float, tilt: float
-) -> None:
+@pytest.mark.parametrize(("load", "tilt"), [(75.0, 6e-4), (95.0, -1.3e-3), (120.0, 2e-4)])
+def test_errors_against_direct_solutions(short_case: Case, short_law: ContactLaw, load: float, tilt: float) -> None:
     direct = solve(replace(short_case, load=load, tilt=tilt), stresses=False, accuracy=0.02)
     found = short_law.at(float(direct.approach), tilt)
-    moment = load * (float(direct.load_position) - 0.3e-3)
+    moment = load * (float(direct.load_position) - 0.25e-3)
     assert abs(float(found.normal_load) - load) < float(found.normal_load_error) < 0.02 * load
     assert abs(float(found.moment) - moment) < float(found.moment_error) < 0.02 * load * 0.5e-3
 
 
-def test_stiffness_against_finite_differences_of_direct_solutions(short_case: Case, short_law: ContactLaw) -> None:
+def test_stiffness_against_finite_differences(short_case: Case, short_law: ContactLaw) -> None:
     """The direct solutions know nothing of an energy: that their matrix is symmetric is a property of the bodies."""
     presser, delta, theta = Presser(short_case, 0.05, 1e-7), 1.6e-6, 6e-4
     load = float(short_law.at(delta, theta).normal_load)
@@ -83,19 +81,18 @@ def test_the_inverse_finds_what_was_pressed(short_law: ContactLaw) -> None:
     assert float(alone.tilt) == pytest.approx(0.7e-3, rel=1e-4)
 
 
-def test_half_of_a_symmetric_law_is_the_mirror_image(short_law: ContactLaw) -> None:
+def test_symmetric_law(short_law: ContactLaw) -> None:
     one, other = short_law.at([1.2e-6, 2.5e-6], 9e-4), short_law.at([1.2e-6, 2.5e-6], -9e-4)
     np.testing.assert_allclose(one.normal_load, other.normal_load, rtol=1e-9)
     np.testing.assert_allclose(one.moment, -other.moment, rtol=1e-9)
 
 
-def test_a_law_from_a_file_is_the_same(short_law: ContactLaw, tmp_path) -> None:
+def test_law_from_a_file(short_law: ContactLaw, tmp_path) -> None:
     short_law.table.to_netcdf(tmp_path / "law.nc")
     with xr.open_dataset(tmp_path / "law.nc") as table:
         again = ContactLaw(table.load())
     assert again.at(1.7e-6, 3e-4).equals(short_law.at(1.7e-6, 3e-4))
-    assert "10 lengths" not in table.approach.attrs["reference"]
-    assert "undeformed top" in table.approach.attrs["reference"]
+    assert "far away" in table.approach.attrs["reference"]
     assert repr(again) == repr(short_law)
     assert "mrad" in repr(again)
 
@@ -105,7 +102,7 @@ def test_every_number_has_its_unit(short_law: ContactLaw) -> None:
         assert all(variable.attrs["units"] for variable in found.variables.values())
 
 
-def test_default_approaches_are_those_of_the_cases_load(short_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_default_approaches(short_case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     seen = {}
 
     def solved(presser, approaches, tilts):
@@ -133,7 +130,7 @@ def test_default_approaches_are_those_of_the_cases_load(short_case: Case, monkey
         (lambda law: ContactLaw(law.table.isel(tilt=slice(3))), "5 or more along tilt"),
     ],
 )
-def test_what_is_not_in_the_table_is_named(short_law: ContactLaw, call, message: str) -> None:
+def test_values_outside_the_table(short_law: ContactLaw, call, message: str) -> None:
     with pytest.raises(InvalidInputError, match=message):
         call(short_law)
 
@@ -163,7 +160,7 @@ def test_no_load_is_refused_by_name(ball: ContactLaw) -> None:
         ball.under(0.0)
 
 
-def test_labelled_arguments_have_units_and_common_coordinates(ball: ContactLaw) -> None:
+def test_labelled_arguments(ball: ContactLaw) -> None:
     loads = xr.DataArray([0.03, 0.06], {"roller": [1, 2]}, "roller", attrs={"units": "kN"})
     found = ball.under(loads, xr.zeros_like(loads).assign_attrs(units="N m"))
     np.testing.assert_allclose(found.approach, ball.under([30.0, 60.0]).approach)
@@ -177,7 +174,7 @@ def test_labelled_arguments_have_units_and_common_coordinates(ball: ContactLaw) 
         ball.under(loads, xr.DataArray([0.0, 0.0, 0.0], dims="roller"))
 
 
-def test_errors_of_approach_and_tilt_are_what_errors_of_load_and_moment_make_of_them(ball: ContactLaw) -> None:
+def test_errors_of_approach_and_tilt(ball: ContactLaw) -> None:
     found = ball.under(60.0, 1e-4)
     load, moment = float(found.normal_load_error), float(found.moment_error)
     moved = [ball.under(60.0 + 1e-3 * a * load, 1e-4 + 1e-3 * b * moment) for a in (-1, 1) for b in (-1, 1)]
@@ -185,5 +182,5 @@ def test_errors_of_approach_and_tilt_are_what_errors_of_load_and_moment_make_of_
         farthest = max(abs(float(each[name] - found[name])) for each in moved)
         assert 1e-3 * float(found[f"{name}_error"]) == pytest.approx(farthest, rel=0.02)
         assert found[f"{name}_error"].attrs["units"] == ("m" if name == "approach" else "rad")
-    assert found.normal_stiffness.attrs["comment"] == "no error known"
+    assert found.normal_stiffness.attrs["error_kind"] == "not estimated"
     assert "comment" not in found.approach_error.attrs

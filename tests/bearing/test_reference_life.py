@@ -9,7 +9,6 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, InvalidInputError, Material, Roller, profiles
-from contactstudy.arrays.variables import UNBOUNDED
 from contactstudy.bearing import reference_life, roller_ratings
 
 ROLLER = Roller(radius=5e-3, length=0.5e-3, profile=profiles.Cylinder())
@@ -30,7 +29,7 @@ def several() -> xr.Dataset:
     return reference_life(cases, cases, RATINGS, rollers=7, accuracy=0.05)
 
 
-def test_equal_laminae_have_the_life_of_the_whole_contact(one: xr.Dataset) -> None:
+def test_life_of_equal_laminae(one: xr.Dataset) -> None:
     slices = one.sel(model="slices")
     lives = [(rating / 70.0) ** 4 for rating in RATINGS]
     both = sum(life ** (-9 / 8) for life in lives) ** (-8 / 9)
@@ -38,7 +37,7 @@ def test_equal_laminae_have_the_life_of_the_whole_contact(one: xr.Dataset) -> No
     assert float(slices["reference_life"]) == pytest.approx(1e6 * both, rel=1e-9)
 
 
-def test_free_ends_and_slices_agree_on_a_flush_straight_roller_and_the_half_space_does_not(one: xr.Dataset) -> None:
+def test_models_of_a_flush_straight_roller(one: xr.Dataset) -> None:
     life = one["reference_life"]
     assert float(life.sel(model="free ends")) == pytest.approx(float(life.sel(model="slices")), rel=0.25)
     assert float(life.sel(model="half-space")) == 0  # its pressure is singular at the sharp ends
@@ -49,26 +48,26 @@ def test_free_ends_and_slices_agree_on_a_flush_straight_roller_and_the_half_spac
 NUMBERS = ("reference_life", "raceway_life", "lamina_equivalent_load", "stress_riser")
 
 
-def test_models_of_slices_have_no_error_and_the_comment_says_so(one: xr.Dataset) -> None:
+def test_error_of_slice_models_is_nan(one: xr.Dataset) -> None:
     for name in NUMBERS:
         error = one[f"{name}_error"]
         assert np.isnan(error.sel(model=["slices", "slices with riser"])).all(), name
         assert not np.isnan(error.sel(model=["half-space", "free ends"])).any(), name
-        assert UNBOUNDED in error.attrs["comment"], name
         assert error.attrs["units"] == one[name].attrs["units"]
     ends = one.sel(model="half-space").isel(slice=[0, -1])
     assert np.isinf(ends["lamina_equivalent_load"]).all()
     assert np.isinf(ends["lamina_equivalent_load_error"]).all()
 
 
-def test_stated_errors_cover_what_finer_columns_say() -> None:
+@pytest.mark.slow
+def test_errors_against_finer_columns() -> None:
     crown = replace(ROLLER, length=1e-3, profile=profiles.FullCrown(crown_radius=0.04))
     body = FiniteLengthSpace(length=1.2e-3, material=Material(210e9, 0.3))
     tilted = Case(body=body, roller=replace(crown, profile=profiles.Lundberg(0.4e-6)), load=200.0, tilt=1e-3)
     crowned = Case(body=body, roller=crown, load=120.0)
     coarse, fine = (
         reference_life(crowned, tilted, RATINGS, accuracy=accuracy).sel(model=["half-space", "free ends"])
-        for accuracy in (0.01, 0.002)
+        for accuracy in (0.01, 0.004)
     )
     for name in NUMBERS:
         missed = abs(coarse[name] - fine[name])
@@ -76,7 +75,7 @@ def test_stated_errors_cover_what_finer_columns_say() -> None:
     assert (coarse["reference_life_error"] < 0.15 * coarse["reference_life"]).all()
 
 
-def test_rollers_are_averaged_with_the_power_of_their_raceway(several: xr.Dataset) -> None:
+def test_mean_over_rollers(several: xr.Dataset) -> None:
     loads = np.array(LOADS)
     turning = ((loads**4).sum() / 7) ** (1 / 4)
     standing = ((loads**4.5).sum() / 7) ** (1 / 4.5)
@@ -102,7 +101,7 @@ def line_integrals() -> tuple[float, float, float]:
     return whole[0], whole[1] ** (1 / 4), whole[2] ** (1 / 4.5)
 
 
-def test_ratings_are_those_that_give_back_the_bearings_rating() -> None:
+def test_ratings_against_the_bearing() -> None:
     """With half of the rollers loaded a bearing lives a million revolutions under C, but for the factor 0.83."""
     load, turning, standing = line_integrals()
     assert load / turning == pytest.approx(0.378, abs=0.002)
@@ -114,7 +113,7 @@ def test_ratings_are_those_that_give_back_the_bearings_rating() -> None:
     assert life == pytest.approx(0.83**-4, rel=0.02)
 
 
-def test_two_rows_carry_the_power_seven_ninths_of_one() -> None:
+def test_ratings_of_two_rows() -> None:
     one, two = roller_ratings(50e3, 14, 0.18), roller_ratings(50e3, 14, 0.18, rows=2)
     np.testing.assert_allclose(np.array(one) / two, 2 ** (7 / 9))
 

@@ -29,11 +29,6 @@ def test_structural_steel_has_the_shear_modulus_of_its_standard() -> None:
     assert 1e-6 * materials.STRUCTURAL_STEEL.shear_modulus == pytest.approx(80770, abs=5)
 
 
-def test_another_material_is_refused_with_those_there_are() -> None:
-    with pytest.raises(AttributeError, match=r"no material .STEEL.; there are BEARING_STEEL, .* Material\(young"):
-        vars(materials)["__getattr__"]("STEEL")
-
-
 def test_every_material_has_a_source_that_the_reference_shows() -> None:
     known = {name for name in materials.__all__ if isinstance(getattr(materials, name), Material)}
     assert set(materials.SOURCES) == known

@@ -10,18 +10,21 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from contactstudy import (
-    Body,
     Case,
     FiniteLengthSpace,
     Grid,
     HalfSpace,
     InvalidInputError,
     Material,
+    QuarterSpace,
     Roller,
     choose_grid,
     profiles,
+    solve,
 )
+from contactstudy.bodies import Body
 from contactstudy.bodies.models import EndedBody
+from contactstudy.report import assess
 
 STEEL = Material(young=210e9, poisson=0.3)
 ROLLER = Roller(radius=5e-3, length=10e-3, profile=profiles.Cylinder(fillet_radius=0.2e-3))
@@ -212,3 +215,25 @@ def test_both_ends_of_a_roller_are_under_it_whatever_rounding_says() -> None:
         gap = case.gap(grid)
         np.testing.assert_allclose(gap, gap[::-1])
         assert np.flatnonzero(np.isfinite(gap[:, 0]))[[0, -1]].tolist() == ends
+
+
+@pytest.mark.parametrize("body", [FiniteLengthSpace(length=10e-3, material=STEEL), QuarterSpace(material=STEEL)])
+@pytest.mark.parametrize("edge", [profiles.Cylinder(0.5e-3), profiles.Chamfer(width=0.5e-3, angle=0.2)])
+def test_body_edge_opens_the_gap_at_the_free_ends(body: Body, edge: profiles.Profile) -> None:
+    case = Case(body=body, roller=Roller(radius=5e-3, length=14e-3), load=1e3, end_distance=-2e-3, body_edge=edge)
+    distances = np.array([0.0, 0.1e-3, 0.4e-3, 5e-3])
+    expected = edge.drop(5e-3 - distances, 10e-3)
+    np.testing.assert_allclose(case.lowest(distances), expected, atol=1e-15)
+    beyond = expected if isinstance(body, FiniteLengthSpace) else 0.0
+    np.testing.assert_allclose(case.lowest(10e-3 - distances), beyond, atol=1e-15)
+
+
+def test_an_edge_radius_of_the_body_bounds_the_pressure_of_an_overhanging_roller() -> None:
+    body = FiniteLengthSpace(length=2e-3, material=STEEL)
+    roller = Roller(radius=5e-3, length=3e-3, material=STEEL)
+    case = Case(body=body, roller=roller, load=300.0, end_distance=-0.5e-3)
+    sharp = solve(case, accuracy=0.05, stresses=False)
+    rounded = solve(replace(case, body_edge=profiles.Cylinder(0.2e-3)), accuracy=0.05, stresses=False)
+    assert np.isinf(sharp.peak_pressure)
+    assert "body_edge" in str(assess(sharp))
+    assert np.isfinite(rounded.peak_pressure)

@@ -35,12 +35,13 @@ def case(friction: object, **named: object) -> Case:
 def test_a_roller_that_slides_both_ways() -> None:
     asked = case(BOTH_WAYS)
     grid = choose_grid(asked, cells_x=3, cells_y=8, window=1.5)
-    result = solve(asked, grid, z=[2e-5])
+    positions = {"x": LENGTH * np.array([0.1, 0.3, 0.7, 0.9]), "y": [0.0, 2e-5], "z": [2e-5]}
+    result = solve(asked, grid, **positions)
     along = 0.2 * (result.x / LENGTH) - 0.1
     assert np.allclose(result.traction_y, along * result.pressure)
     assert float(result.traction_y.sum()) == pytest.approx(0.0, abs=1e-6 * float(result.pressure.sum()))
     # About mid-length the traction is odd: so is the shear that it makes, and the pressure's part is even.
-    plain = solve(replace(asked, friction=0.0), grid, z=[2e-5])
+    plain = solve(replace(asked, friction=0.0), grid, **positions)
     change = (result.tau_yz - plain.tau_yz).values
     assert np.abs(change + change[::-1]).max() < 1e-6 * np.abs(change).max()
 
@@ -48,7 +49,7 @@ def test_a_roller_that_slides_both_ways() -> None:
 def test_equal_values_are_the_number() -> None:
     grid = choose_grid(case(0.1), cells_x=3, cells_y=8, window=1.5)
     numbers, values = (
-        solve(case(friction), grid, z=[2e-5])
+        solve(case(friction), grid, x=[0.0, 0.3 * LENGTH], y=[0.0, 2e-5], z=[2e-5])
         for friction in (0.1, xr.DataArray([0.1, 0.1], coords={"x": [0.0, LENGTH]}, dims="x"))
     )
     for name in ("traction_y", "von_mises"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from contactstudy import Case, HalfSpace, InvalidInputError, Material, Roller, Rolling, Shift, Sliding
-from contactstudy.case.motion import Motion
+from contactstudy.case.motion import Motion, SurfaceSpeeds
 
 STEEL = Material(210e9, 0.3)
 
@@ -58,3 +58,8 @@ def test_a_motion_and_its_friction() -> None:
     with pytest.raises(InvalidInputError, match=r"friction = -0.1.*not below zero"):
         case(Rolling(), -0.1)
     assert case(Sliding(), -0.1).friction == -0.1
+
+
+def test_entrainment_and_slide_roll_ratio():
+    speeds = SurfaceSpeeds(body=2.0, roller=3.0)
+    assert (speeds.entrainment, speeds.slide_roll_ratio) == (2.5, 0.4)

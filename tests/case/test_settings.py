@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 
 from contactstudy import solve
-from contactstudy.case.settings import ACCURACY, solver_settings
+from contactstudy.case.gridding import ACCURACY, solver_settings
 
 
 def test_defaults_are_those_of_the_solver() -> None:

@@ -12,7 +12,7 @@ from contactstudy import (
     choose_grid,
     solve,
 )
-from contactstudy.case.standing import check_balanced, check_on_its_length
+from contactstudy.case.magnitudes import check_balanced, check_on_its_length
 from tests.crowned_case import HALF_WIDTH, LENGTH, case_with
 
 

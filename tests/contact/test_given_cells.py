@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, solve, solve_contact
-from tests.contact.settled_cases import CASES, HALF, RADIUS, SHORT, SHORT_ELASTIC, A, finite
+from tests.contact.refinement.rollers import CASES, HALF, RADIUS, SHORT, SHORT_ELASTIC, A, finite
 
 
 @pytest.mark.parametrize("body", [HALF, finite(SHORT)], ids=["half", "finite"])
@@ -55,15 +55,3 @@ def test_cells_that_miss_an_end_of_an_elastic_roller_are_refused_with_its_place(
     edges = SHORT_ELASTIC * np.array([0.0, 0.1, 0.3, 0.6, 0.8, 1.0])
     with pytest.raises(InvalidInputError, match=r"without a border at x = "):
         solve(case, Grid.from_edges(edges, (-4 * A, 4 * A), 16), stresses=False)
-
-
-def test_error_estimate_on_given_graded_cells() -> None:
-    """Joined in twos these cells differ by more than given cells may."""
-    ratios = 3.9 ** np.array([0, 1, 2, 2, 2, 2, 2, 1, 1, 0, 0, 1, 2, 2, 1, 0.0])
-    edges = SHORT * np.append(0.0, np.cumsum(ratios)) / ratios.sum()
-    grid = Grid.from_edges(edges, (-3 * A, 3 * A), 32)
-    case = CASES["flush"]
-    result = solve(case, grid, stresses=False, error_estimate=True)
-    assert bool(result.converged)
-    assert result.sizes["x"] == 16
-    assert any(name.endswith("_error") and "pressure" in name for name in result.data_vars)

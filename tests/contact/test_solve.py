@@ -18,8 +18,9 @@ from contactstudy import (
     WindowError,
     solve_contact,
 )
+from contactstudy.contact import ContactSettings
 from contactstudy.verification import closed_forms as ref
-from contactstudy.verification.load_cases import LINE_LOAD
+from contactstudy.verification.problems import LINE_LOAD
 
 
 def sphere_gap(cells: int, window: float = 1.5) -> xr.DataArray:
@@ -107,7 +108,7 @@ def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_g
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
     plain = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4)
-    coupled = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4, coupled=True)
+    coupled = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
     assert np.allclose(plain["traction_y"], 0.4 * plain["pressure"])
 
     def centre(contact: xr.Dataset) -> float:
@@ -124,13 +125,13 @@ def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> Non
     body = HalfSpace(material=Material(0.75, 0.5))
     gap = sphere_gap(48)
     plain = solve_contact(body, gap, 4 / 3, friction=0.3)
-    coupled = solve_contact(body, gap, 4 / 3, friction=0.3, coupled=True)
+    coupled = solve_contact(body, gap, 4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
     assert np.abs(plain["pressure"] - coupled["pressure"]).max() < 1e-5
 
 
 def test_stopping_early_is_said_and_warned(half_space: HalfSpace) -> None:
     with pytest.warns(ConvergenceWarning, match="max_iterations"):
-        contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, max_iterations=2)
+        contact = solve_contact(half_space, sphere_gap(64), load=4 / 3, settings=ContactSettings(max_iterations=2))
     assert not bool(contact["converged"])
 
 
@@ -139,6 +140,12 @@ def test_flooded_window_is_an_error(half_space: HalfSpace, short_body: FiniteLen
         solve_contact(half_space, sphere_gap(32, window=0.8), load=4 / 3)
     with pytest.raises(WindowError, match="y_min"):
         solve_contact(short_body, cylinder_gap(8.0, (32, 32), window=0.9), load=8 * LINE_LOAD)
+
+
+def press(coupled: bool = False, tolerance: float = 1e-6, max_iterations: int = 500, **arguments: object) -> None:
+    """Contact with the settings among the arguments."""
+    settings = ContactSettings(coupled=coupled, tolerance=tolerance, max_iterations=max_iterations)
+    solve_contact(**arguments, settings=settings)  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
@@ -157,7 +164,7 @@ def test_flooded_window_is_an_error(half_space: HalfSpace, short_body: FiniteLen
 def test_bad_arguments_are_named(half_space: HalfSpace, change: dict[str, object], message: str) -> None:
     arguments = {"body": half_space, "gap": sphere_gap(16), "load": 1.0} | change
     with pytest.raises(InvalidInputError, match=message):
-        solve_contact(**arguments)  # type: ignore[arg-type]
+        press(**arguments)  # type: ignore[arg-type]
 
 
 def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
@@ -215,6 +222,8 @@ def test_too_many_cells_are_refused_before_any_memory_is_asked_for() -> None:
 @pytest.mark.parametrize("poisson", [0.0, 0.49])
 def test_strongly_coupled_contacts_keep_their_tolerance(poisson: float, cylinder_gap) -> None:
     body = FiniteLengthSpace(material=Material(1.0, poisson), length=8.0)
-    coupled = solve_contact(body, cylinder_gap(8.0, (32, 48)), 8 * LINE_LOAD, friction=1.0, coupled=True)
+    coupled = solve_contact(
+        body, cylinder_gap(8.0, (32, 48)), 8 * LINE_LOAD, friction=1.0, settings=ContactSettings(coupled=True)
+    )
     assert bool(coupled["converged"])
     assert float(coupled["penetration_error"]) <= 1e-6

@@ -25,7 +25,7 @@ def solves(monkeypatch: pytest.MonkeyPatch):
             result["peak_pressure"].attrs["units"] = "Pa"
             return result
 
-        monkeypatch.setattr("contactstudy.design.evaluations.solve", solve)
+        monkeypatch.setattr("contactstudy.design.search.solve", solve)
 
     return install
 
@@ -38,7 +38,7 @@ ONE = {"edge_drop": (1e-6, 1e-4)}
 BOTH = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
 
 
-def test_a_smooth_optimum_and_how_flat_it_is(solves) -> None:
+def test_smooth_optimum(solves) -> None:
     """Measure 1 + 4 s**2 in decades s: worse by two errors of 0.01 at s = 0.0707."""
     solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
     found = best_profile(CASE, made, ONE)
@@ -50,6 +50,16 @@ def test_a_smooth_optimum_and_how_flat_it_is(solves) -> None:
     assert found.measure.attrs["units"] == "Pa"
     assert found.sizes["evaluation"] < 30
     assert float(found.design_measure.min()) == float(found.measure)
+
+
+@pytest.mark.parametrize("most", [8, 9, 12, 16, 60])
+def test_the_number_of_designs_is_bounded(solves, most: int) -> None:
+    solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
+    assert best_profile(CASE, made, ONE, evaluations=most).sizes["evaluation"] <= most
+    solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
+    result = best_profile(CASE, made, BOTH, evaluations=most + 1)
+    assert result.sizes["evaluation"] <= most + 1
+    assert (result.flat_from <= result.optimum).all()
 
 
 def test_a_kink_between_two_cases(solves) -> None:
@@ -86,7 +96,7 @@ def test_brute_force_finds_nothing_better(solves) -> None:
     assert float(found.measure) == pytest.approx(scan, abs=ERROR)
 
 
-def test_infinite_measures_and_profiles_that_cannot_be_are_avoided(solves) -> None:
+def test_infinite_measures_and_impossible_profiles(solves) -> None:
     def singular(drop: float, k1: float, case: Case) -> float:
         if drop > 5e-5:
             raise InvalidInputError("profile", drop, "smaller")
@@ -99,7 +109,7 @@ def test_infinite_measures_and_profiles_that_cannot_be_are_avoided(solves) -> No
     assert np.isinf(found.design_measure).any()
 
 
-def test_an_optimum_on_a_bound_says_so(solves) -> None:
+def test_optimum_on_a_bound(solves) -> None:
     solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
     with pytest.warns(BoundWarning, match=r"the best edge_drop = 1e-06 lies at a bound \(1e-06 to 0.0001\)"):
         found = best_profile(CASE, made, ONE)
@@ -107,7 +117,7 @@ def test_an_optimum_on_a_bound_says_so(solves) -> None:
     assert found.at_bound.values.tolist() == [True]
 
 
-def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) -> None:
+def test_tilts_and_errors_of_functions(solves) -> None:
     solves(lambda drop, k1, case: 1.0 + abs(case.tilt))
     found = best_profile(
         CASE,
@@ -148,7 +158,7 @@ def test_tilts_go_with_every_load_and_functions_may_state_their_error(solves) ->
         ({"tilts": [1.0]}, "tilt = 1.0: must be a small angle"),
         ({"accuracy": 0.5}, "accuracy = 0.5"),
         ({"evaluations": 1}, "evaluations = 1"),
-        ({"measure": lambda result: np.inf}, "finite somewhere within them; .* is sharp: widen"),
+        ({"measure": lambda result: np.inf}, "finite somewhere"),
     ],
 )
 def test_bad_arguments_are_named(solves, arguments, message: str) -> None:
@@ -157,7 +167,7 @@ def test_bad_arguments_are_named(solves, arguments, message: str) -> None:
         best_profile(**({"case": CASE, "profile": made, "bounds": ONE} | arguments))
 
 
-def test_the_reason_is_told_when_no_profile_can_be(solves) -> None:
+def test_no_possible_profile(solves) -> None:
     solves(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match="edge_drop"):
         best_profile(CASE, made, {"edge_drop": (-2.0, -1.0)})

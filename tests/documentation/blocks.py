@@ -65,7 +65,11 @@ class PrintingEvaluator(PythonEvaluator):
 
     def __call__(self, example: Example) -> None:
         with contextlib.redirect_stdout(io.StringIO()) as printed:
-            super().__call__(example)
+            try:
+                super().__call__(example)
+            except Exception as error:
+                # Sybil cuts the traceback of every cause and raises IndexError for a short one.
+                raise error from None
         example.namespace["_printed"] = printed.getvalue()
 
 

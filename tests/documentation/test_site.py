@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import json
 import re
 import runpy
+import subprocess
+import sys
 from pathlib import Path
+
+import pytest
 
 from tests.measured import ROWS
 
 ROOT = Path(__file__).resolve().parents[2]
-
-
-def blocks(path: Path) -> list[str]:
-    return re.findall(r"^```python\n(.*?)^```", path.read_text(), re.DOTALL | re.MULTILINE)
 
 
 def test_the_accuracy_table_is_what_the_command_prints() -> None:
@@ -21,22 +22,43 @@ def test_the_accuracy_table_is_what_the_command_prints() -> None:
     assert printed[1 : 1 + len(ROWS)] == list(ROWS)
 
 
-def test_every_picture_is_in_the_gallery_with_its_command() -> None:
+def test_every_picture_is_in_the_gallery_with_its_code() -> None:
     gallery = (ROOT / "docs" / "gallery" / "index.md").read_text()
-    for path in (ROOT / "docs").rglob("*.png"):
-        assert f"({path.name})" in gallery, path.name
-    for row in re.findall(r"^\| !\[.*?\]\((?:study|verification)_\w+\.png\) \| (.*) \|$", gallery, re.MULTILINE):
-        assert "`" in row or row == "the same"
+    entry = re.compile(r'<div markdown="1" id="(\w+)">\n\n!\[[^]]*\]\((\w+)\.png\)\n\n(.*?)\n\n</div>', re.DOTALL)
+    entries = entry.findall(gallery)
+    assert sorted(name for name, _, _ in entries) == sorted(path.stem for path in (ROOT / "docs").rglob("*.png"))
+    for name, picture, text in entries:
+        assert name == picture
+        for script in re.findall(r"\]\((\S+\.py)\)", text):
+            assert (ROOT / "docs" / "gallery" / script).exists(), script
+        assert ".py)" in text or "`" in text or f"(../tutorial/{name}.md)" in text, name
 
 
-def test_pages_save_the_figures_that_the_script_takes_from_them() -> None:
-    script = runpy.run_path(str(ROOT / "docs" / "gallery" / "figures.py"))
-    for page, names in script["PAGES"].items():
-        code = "".join(blocks(ROOT / "docs" / page))
-        for name in names:
-            assert f'"{name}"' in code, page
-            assert (ROOT / "docs" / "gallery" / f"{name}.png").exists()
-            assert f"({'../' * page.count('/')}gallery/{name}.png)" in (ROOT / "docs" / page).read_text()
+def test_pages_show_pictures_with_links_to_their_scripts() -> None:
+    for page in (ROOT / "docs" / "how-to").glob("*.md"):
+        for name, target in re.findall(r"\[!\[.*?\]\(\.\./gallery/(\w+)\.png\)\]\((.*?)\)", page.read_text()):
+            assert target == f"../gallery/index.md#{name}"
+            assert (ROOT / "docs" / "gallery" / f"{name}.py").exists()
+
+
+def test_figures_are_as_new_as_their_code() -> None:
+    gallery = ROOT / "docs" / "gallery"
+    digests = runpy.run_path(str(gallery / "figures.py"))["digests"]()
+    stored = json.loads((gallery / "figures.json").read_text())
+    old = sorted(name for name, value in digests.items() if name in stored and stored[name] != value)
+    assert not old, f"python docs/gallery/figures.py {' '.join(old)}"
+    pages = {path.stem for path in gallery.glob("*.png")} - digests.keys()
+    assert all(name.startswith("verification_") or name in ("explore", "report") for name in pages), pages
+
+
+@pytest.mark.slow
+def test_scripts_draw_their_figures(tmp_path: Path) -> None:
+    scripts = sorted((ROOT / "docs" / "gallery").glob("*.py"))
+    for script in scripts:
+        text = script.read_text()
+        if f'savefig("{script.stem}.png"' in text and "studies/" not in text:
+            subprocess.run([sys.executable, script], cwd=tmp_path, check=True)
+            assert (tmp_path / f"{script.stem}.png").exists()
 
 
 def test_every_marked_table_is_known() -> None:

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.along import LayersAlong
 from contactstudy.eigenstrain.body import XX, XY, XZ, YY, YZ, ZZ
-from contactstudy.eigenstrain.influence import LayerInfluence
-from contactstudy.verification.closed_forms.eigenstrain import rectangle_in_half_plane
+from contactstudy.eigenstrain.layers import LayerInfluence, PeriodicLayers
+from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
 SOFT = Material(2.0, 0.3)
 EDGES = np.linspace(0.4, 1.2, 17)
@@ -25,7 +24,7 @@ def test_a_rectangle_in_a_half_plane() -> None:
     own = {YY: 1.0, XX: 0.5, ZZ: -0.3, YZ: 0.4}
     for component, value in own.items():
         strain[component, :, 0] = value * inside
-    found = LayersAlong(SOFT, EDGES, places, step).stresses(strain)[:, :, 0]
+    found = PeriodicLayers(SOFT, EDGES, places, step).stresses(strain)[:, :, 0]
     at = np.searchsorted(y, [-1.0 - 1e-9, -0.6 - 1e-9, 0.2 - 1e-9, 0.7 - 1e-9])
     # There the axis along which the rectangle does not end is y, here it is x.
     expected = rectangle_in_half_plane(
@@ -38,7 +37,7 @@ def test_a_rectangle_in_a_half_plane() -> None:
 
 def test_what_does_not_change_leaves_the_stress_of_layers() -> None:
     strain = np.zeros((6, 8, 2, 16)) + np.random.default_rng(3).normal(size=(6, 1, 2, 16))
-    found = LayersAlong(SOFT, EDGES, 8, 0.1).stresses(strain)
+    found = PeriodicLayers(SOFT, EDGES, 8, 0.1).stresses(strain)
     expected = LayerInfluence(SOFT.poisson, SOFT.young).stresses(strain.reshape(6, -1)).reshape(strain.shape)
     assert np.allclose(found, expected, atol=1e-12)
 
@@ -47,7 +46,7 @@ def test_short_waves_are_held_across_y_alone() -> None:
     """Between planes close together no traction on them is left, and strains in them are held."""
     strain = np.zeros((6, 64, 1, 16))
     strain[:, :, 0] = np.cos(np.pi / 4 * np.arange(64))[:, None]
-    found = LayersAlong(SOFT, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
+    found = PeriodicLayers(SOFT, 40 * EDGES, 64, 0.01).stresses(strain)[:, 0, 0, 8]
     modulus = SOFT.plane_strain_modulus
     held = -modulus * (1 + SOFT.poisson)
     expected = {XX: held, YY: 0.0, ZZ: held, XY: 0.0, XZ: -2 * SOFT.shear_modulus, YZ: 0.0}
@@ -59,8 +58,8 @@ def test_the_way_back() -> None:
     strain = np.random.default_rng(4).normal(size=(6, 16, 1, 16))
     mirrored = strain[:, ::-1].copy()
     mirrored[[XY, YZ]] *= -1
-    there, back = (LayersAlong(SOFT, EDGES, 16, 0.2).stresses(one) for one in (strain, mirrored))
+    there, back = (PeriodicLayers(SOFT, EDGES, 16, 0.2).stresses(one) for one in (strain, mirrored))
     back[[XY, YZ]] *= -1
     assert np.allclose(there, back[:, ::-1], atol=1e-9)
-    falling = LayersAlong(SOFT, EDGES, 16, -0.2).stresses(strain[:, ::-1])
+    falling = PeriodicLayers(SOFT, EDGES, 16, -0.2).stresses(strain[:, ::-1])
     assert np.allclose(there, falling[:, ::-1], atol=1e-9)

@@ -7,10 +7,10 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from benchmarks.finite_elements.eigenstrain import residual_stress
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody
-from contactstudy.verification.closed_forms.eigenstrain import rectangle_in_half_plane
-from tests.finite_elements.eigenstrain import residual_stress
+from contactstudy.eigenstrain.body import DEEP_LENGTHS, EigenstrainBody, grown, towards_face
+from contactstudy.verification.closed_forms import rectangle_in_half_plane
 
 WHOLE = (-np.inf, np.inf)
 ROUGH = Material(2.0, 0.3)
@@ -39,15 +39,6 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
         return EigenstrainBody(ROUGH, extent, *edges, **settings), strain
 
     return build
-
-
-def test_rectangle_in_half_plane(in_rectangle) -> None:
-    body, strain = in_rectangle(WHOLE, (-0.5, 0.7), (0.4, 1.1), splits=2, degree=5)
-    x, z = np.array([-1.5, -0.3, 0.1, 0.5, 1.2]), np.array([0.1, 0.25, 0.6, 0.8, 1.5])
-    found = body.solve(strain).stresses(x, z)[[0, 1, 2, 4]]
-    own = tuple(EVERY[[0, 1, 2, 4]])
-    expected = rectangle_in_half_plane(x[:, None], z, (-0.5, 0.7), (0.4, 1.1), own, ROUGH.young, ROUGH.poisson)
-    assert np.abs(found - expected).max() < 1e-4 * np.abs(expected).max()
 
 
 def test_closed_form_leaves_the_top_free() -> None:
@@ -205,3 +196,8 @@ def test_elements_reach_the_ends_and_deep_enough() -> None:
     assert z[0] == 0.0
     assert z[-1] == pytest.approx(0.4 + DEEP_LENGTHS * 3.0)
     assert {1.0, 1.5, 2.0} <= set(x)
+
+
+def test_graded_elements() -> None:
+    assert grown(0.0, 10.0, 1.0).round(2).tolist() == [0.76, 1.9, 3.6, 6.16, 10.0]
+    assert towards_face(0.0, 2.0, 0.3).round(2).tolist() == [0.21, 0.53, 1.0, 1.47, 1.79, 2.0]

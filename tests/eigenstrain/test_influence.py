@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from contactstudy.bodies.material import Material
-from contactstudy.eigenstrain.body import EigenstrainBody
-from contactstudy.eigenstrain.influence import Influence, LayerInfluence
+from contactstudy.eigenstrain.body import EigenstrainBody, Influence
+from contactstudy.eigenstrain.layers import LayerInfluence
 
 ROUGH = Material(2.0, 0.3)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import socket
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,13 @@ SWEEP = {
     "friction": [0.0, FAILS],
     "profile": ["cylinder", {"kind": "cylinder", "fillet_radius": 1e-4, "name": "rounded"}],
 }
+
+
+def free_port() -> int:
+    """Port that no server uses now."""
+    with socket.socket() as bound:
+        bound.bind(("127.0.0.1", 0))
+        return int(bound.getsockname()[1])
 
 
 @pytest.fixture(scope="session")

@@ -1,12 +1,16 @@
-"""The server listens before the study is read, fills the page when it is, and ends with the reason if it cannot be."""
+"""Server: imports, refused folders, access by host, origin and token."""
 
 from __future__ import annotations
 
 import gc
+import http.client
 import json
 import subprocess
 import sys
+from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -15,6 +19,7 @@ pytest.importorskip("panel")
 from contactstudy import ContactStudyError, InvalidInputError
 from contactstudy.explorer import serve
 from contactstudy.study import StudyFileError
+from tests.explorer.conftest import free_port
 
 WITHOUT = """
 import sys
@@ -26,9 +31,9 @@ assert slow <= {"numpy"}, slow
 WITHOUT_DASK = """
 import sys
 sys.modules["dask"] = None
-from contactstudy.explorer.cases import of_folder
+from contactstudy.explorer.cases import open_cases
 from contactstudy.explorer.page import Page
-page = Page(of_folder(sys.argv[1]))
+page = Page(open_cases(sys.argv[1]))
 page.choices[0]["max_pressure"].value = 2
 assert ">1.5 GPa<" in page.table.object
 page.view()
@@ -36,20 +41,19 @@ assert "distributed" not in sys.modules
 """
 
 
-def test_the_page_of_a_folder_does_without_dask(folder: Path) -> None:
+@pytest.mark.system
+def test_page_without_dask(folder: Path) -> None:
     subprocess.run([sys.executable, "-c", WITHOUT_DASK, str(folder)], check=True)
 
 
-def test_it_starts_without_what_takes_long_to_import() -> None:
+def test_light_imports() -> None:
     subprocess.run([sys.executable, "-c", WITHOUT], check=True)
 
 
-def test_a_folder_without_a_study_is_refused_before_anything_is_served(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    with pytest.raises(StudyFileError, match=r"holds no study\.json"):
+def test_folder_without_a_study(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(StudyFileError, match=r"study\.json"):
         serve(tmp_path, show=False)
-    with pytest.raises(StudyFileError, match="there is no such folder"):
+    with pytest.raises(StudyFileError, match="nowhere"):
         serve(tmp_path / "nowhere", show=False)
     with pytest.raises(InvalidInputError, match="folder"):
         serve(3, show=False)  # type: ignore[arg-type]
@@ -57,8 +61,73 @@ def test_a_folder_without_a_study_is_refused_before_anything_is_served(
 
 
 @pytest.mark.parametrize("content", ["{", json.dumps({"name": "wrong", "base": {"no_such_parameter": 1}})])
-def test_a_study_that_cannot_be_read_ends_the_server(tmp_path: Path, content: str) -> None:
+def test_unreadable_study(tmp_path: Path, content: str) -> None:
     (tmp_path / "study.json").write_text(content)
     with pytest.raises(ContactStudyError, match=r"study\.json"):
         serve(tmp_path, show=False)
     assert gc.isenabled()
+
+
+@pytest.fixture(scope="module")
+def served(folder: Path) -> Iterator[tuple[int, str]]:
+    """Port and token of a server."""
+    port = free_port()
+    command = [sys.executable, "-m", "contactstudy.cli", "explore", str(folder), "--no-browser"]
+    command += ["--port", str(port), "--host", "proxy.example"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as server:
+        try:
+            assert server.stdout is not None
+            address = urlsplit(server.stdout.readline().split()[0])
+            assert address.port == port
+            yield port, address.query.removeprefix("token=")
+        finally:
+            server.terminate()
+
+
+def request(port: int, path: str, **headers: str) -> http.client.HTTPResponse:
+    with closing(http.client.HTTPConnection("localhost", port, timeout=200)) as connection:
+        connection.request("GET", path, headers=headers)
+        response = connection.getresponse()
+        response.body = b"" if response.status == 101 else response.read()  # type: ignore[attr-defined]
+        return response
+
+
+SOCKET = {
+    "Upgrade": "websocket",
+    "Connection": "Upgrade",
+    "Sec-WebSocket-Version": "13",
+    "Sec-WebSocket-Key": "A" * 22 + "==",
+}
+
+
+@pytest.mark.system
+def test_hosts_and_tokens(served: tuple[int, str]) -> None:
+    port, token = served
+    cookie = {"Cookie": f"contactstudy-{port}={token}"}
+    allowed = (f"localhost:{port}", "localhost:9999", "127.0.0.1:1", "[::1]:5006", "LOCALHOST", "proxy.example")
+    for host in allowed:
+        assert request(port, "/", Host=host, **cookie).status == 200, host
+    for host in ("rebound.example", f"rebound.example:{port}", "localhost.example", "192.168.0.7", "", "[::1"):
+        for path in ("/", f"/?token={token}", "/ws"):
+            assert request(port, path, Host=host, **cookie).status == 403, (host, path)
+    for sent in ({}, {"Cookie": f"contactstudy-{port}=wrong"}, {"Cookie": "other=1"}):
+        for path in ("/", "/?token=wrong", "/ws", "/static/js/bokeh.min.js"):
+            assert request(port, path, Host=f"localhost:{port}", **sent).status == 403, (sent, path)
+    entered = request(port, f"/?token={token}", Host=f"localhost:{port}")
+    assert (entered.status, entered.headers["Location"]) == (302, "/")
+    assert entered.headers["Set-Cookie"].startswith(cookie["Cookie"])
+    assert "HttpOnly" in entered.headers["Set-Cookie"]
+
+
+@pytest.mark.system
+def test_origin_of_a_websocket(served: tuple[int, str]) -> None:
+    port, token = served
+    cookie = {"Cookie": f"contactstudy-{port}={token}"}
+    for host, origin in (("localhost:9999", "http://rebound.example"), ("rebound.example", "http://rebound.example")):
+        assert request(port, "/ws", Host=host, Origin=origin, **cookie, **SOCKET).status == 403
+    forwarded = {"Host": "localhost:9999", **cookie}
+    page = request(port, "/", **forwarded).body.decode()  # type: ignore[attr-defined]
+    session = page.partition('"token":"')[2].partition('"')[0]
+    protocol = {"Origin": "http://localhost:9999", "Sec-WebSocket-Protocol": f"bokeh, {session}"}
+    assert request(port, "/ws", **forwarded, **protocol, **SOCKET).status == 101
+    assert request(port, "/ws", Host="localhost:9999", **protocol, **SOCKET).status == 403

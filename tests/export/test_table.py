@@ -5,10 +5,13 @@ from __future__ import annotations
 import csv
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
+from matplotlib.figure import Figure
 
-from contactstudy import InvalidInputError, analysis, export
+from contactstudy import InvalidInputError, analysis, checks, export, plots, report
+from contactstudy.export.table import csv_text, headings
 
 
 def test_a_line_as_csv(solved: xr.Dataset, tmp_path) -> None:
@@ -30,11 +33,11 @@ def test_all_points_of_a_variable(solved: xr.Dataset) -> None:
 def test_what_the_analysis_returns(solved: xr.Dataset) -> None:
     table = export.to_table(analysis.slices(solved, 7))
     assert len(table) == 7
-    assert "half_width [m] (no error known)" in table
-    assert "axial_pressure [Pa] (no error known)" in table
+    assert "half_width [m] (error not estimated)" in table
+    assert "axial_pressure [Pa] (error not estimated)" in table
     assert table["axial_pressure_error [Pa]"].isnull().all()
     assert "width [m]" in table
-    assert "half_width [m] (no error known)" in export.to_table(analysis.axial_profiles(solved))
+    assert "half_width [m] (error not estimated)" in export.to_table(analysis.axial_profiles(solved))
     assert "von_mises" in export.to_table(analysis.normalized(solved), "von_mises")
 
 
@@ -68,8 +71,41 @@ def test_more_than_one_case(opened: xr.Dataset, tmp_path) -> None:
         export.to_csv(opened, None)  # type: ignore[arg-type]
 
 
-def test_a_file_that_cannot_be_written(solved: xr.Dataset, tmp_path) -> None:
+def test_unwritable_file(solved: xr.Dataset, tmp_path) -> None:
     with pytest.raises(InvalidInputError, match=r"path = .*can be written"):
         export.to_csv(solved, tmp_path / "nowhere" / "a.csv", "pressure")
     with pytest.raises(InvalidInputError, match=r"path = .*can be written"):
         export.to_vtk(solved, tmp_path / "nowhere" / "a.vtr", "pressure")
+
+
+@pytest.mark.parametrize("write", [export.to_csv, report.write, plots.save])
+def test_no_link_is_followed(solved: xr.Dataset, tmp_path, write) -> None:
+    suffix = {"to_csv": ".csv", "write": ".html", "save": ".png"}[write.__name__]
+    outside, link = tmp_path / "outside.txt", tmp_path / "folder" / f"result{suffix}"
+    outside.write_text("untouched")
+    link.parent.mkdir()
+    link.symlink_to(outside)
+    source = Figure() if write is plots.save else solved[["pressure"]]
+    write(source, link)
+    assert outside.read_text() == "untouched"
+    assert not link.is_symlink()
+    assert link.read_bytes()
+    assert {path.suffix for path in link.parent.iterdir()} <= {suffix, ".pdf"}
+
+
+def test_a_failed_write_keeps_the_previous_file(tmp_path) -> None:
+    path = tmp_path / "result.csv"
+    path.write_text("previous")
+    with pytest.raises(UnicodeEncodeError), checks.writing(path) as part:
+        part.write_text("half \ud800", encoding="utf-8")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["result.csv"]
+    assert path.read_text() == "previous"
+
+
+def test_headings_and_texts_of_a_spreadsheet() -> None:
+    marked = ((), 1e-4, {"error_kind": "not estimated"})
+    dataset = xr.Dataset({"peak_pressure": 1e9, "friction": 0.1, "half_width": marked})
+    expected = {"friction": "friction", "half_width": "half_width [m] (error not estimated)"}
+    assert headings(dataset, ["friction", "half_width"]) == expected
+    table = pd.DataFrame({"profile": ["=1+1", "sharp"], "load": [-1.0, 2.0]})
+    assert csv_text(table) == "profile,load\n'=1+1,-1.0\nsharp,2.0\n"

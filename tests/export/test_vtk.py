@@ -7,13 +7,14 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Case, FiniteLengthSpace, Grid, InvalidInputError, Material, Roller, export, solve, tresca
+from contactstudy import Case, FiniteLengthSpace, Grid, InvalidInputError, Material, Roller, export, solve
 from contactstudy.analysis import normalized
 from contactstudy.arrays.variables import STRESSES
+from contactstudy.stress import tresca
 from tests.export.vtk_reader import read
 
 
-def test_every_number_comes_back(solved: xr.Dataset, tmp_path) -> None:
+def test_round_trip(solved: xr.Dataset, tmp_path) -> None:
     path = export.to_vtk(solved, tmp_path / "case.vtr")
     coordinates, data = read(path)
     for values, name in zip(coordinates, ("x_field", "y_field", "z"), strict=True):
@@ -38,7 +39,7 @@ def test_surface_is_a_plane_at_zero(solved: xr.Dataset, tmp_path) -> None:
     assert "stress" not in data
 
 
-def test_size_that_fills_whole_blocks(tmp_path) -> None:
+def test_size_of_full_blocks(tmp_path) -> None:
     """64 x 64 numbers of 8 bytes: compressed files of the library that writes them are broken at this size."""
     values = np.random.default_rng(0).normal(size=(64, 64))
     surface = xr.DataArray(values, dims=("x", "y"), coords={"x": np.arange(64.0), "y": np.arange(64.0)})
@@ -46,7 +47,7 @@ def test_size_that_fills_whole_blocks(tmp_path) -> None:
     assert np.array_equal(data["pressure"][:, :, 0, 0], values)
 
 
-def test_positions_are_put_in_order(solved: xr.Dataset, tmp_path) -> None:
+def test_sorted_positions(solved: xr.Dataset, tmp_path) -> None:
     path = export.to_vtk(solved.isel(z=[2, 0, 1]), tmp_path / "case.vtr", "von_mises")
     coordinates, data = read(path)
     assert np.array_equal(coordinates[2], solved["z"][:3])
@@ -75,7 +76,7 @@ def test_bad_input(solved: xr.Dataset, opened: xr.Dataset, tmp_path) -> None:
     assert not list(tmp_path.iterdir())
 
 
-def test_a_mesh_has_the_body_between_its_points(solved: xr.Dataset, tmp_path) -> None:
+def test_mesh_of_a_body(solved: xr.Dataset, tmp_path) -> None:
     """Read by meshio, which knows nothing of rectilinear grids."""
     mesh = meshio.read(export.to_vtk(solved, tmp_path / "case.vtu"))
     shape = solved["von_mises"].shape
@@ -98,7 +99,7 @@ def test_a_mesh_has_the_body_between_its_points(solved: xr.Dataset, tmp_path) ->
     assert (np.sum(turn * (corners[:, 4] - corners[:, 0]), axis=1) > 0).all()
 
 
-def test_pressure_in_a_mesh_belongs_to_cells_of_their_own_width(tmp_path) -> None:
+def test_pressure_in_a_mesh(tmp_path) -> None:
     body = FiniteLengthSpace(length=4.0, material=Material(1.0, 0.3))
     grid = Grid.from_edges([0.0, 0.5, 1.0, 2.0, 3.0, 3.5, 4.0], (-2.0, 2.0), 12)
     case = Case(body=body, roller=Roller(radius=20.0, length=3.0), max_pressure=0.025)
@@ -116,7 +117,7 @@ def test_pressure_in_a_mesh_belongs_to_cells_of_their_own_width(tmp_path) -> Non
     assert float((areas * mesh.cell_data["pressure"][0]).sum()) == pytest.approx(case.normal_load)
 
 
-def test_a_plane_in_a_mesh_is_made_of_rectangles(solved: xr.Dataset, tmp_path) -> None:
+def test_plane_in_a_mesh(solved: xr.Dataset, tmp_path) -> None:
     plane = solved.isel(y_field=[8])
     mesh = meshio.read(export.to_vtk(plane, tmp_path / "plane.vtu", "von_mises"))
     assert [(block.type, len(block.data)) for block in mesh.cells] == [("quad", 12 * 5)]

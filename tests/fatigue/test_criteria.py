@@ -10,18 +10,18 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 from contactstudy import InvalidInputError, fatigue
-from contactstudy.arrays.variables import STRESSES, UNBOUNDED
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES
 from contactstudy.fatigue import FatigueLimits
-from contactstudy.fatigue.critical_plane import _damage, _turned, _worst_planes
+from contactstudy.fatigue.criteria import _damage, _turned, _worst_planes
 
 LIMITS = FatigueLimits(bending=1.0, torsion=0.65)
 CRITERIA = [fatigue.dang_van, fatigue.crossland, fatigue.findley]
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
-def test_values_at_points_say_that_they_have_no_error(cycle, wave, criterion) -> None:
+def test_error_kind_at_points(cycle, wave, criterion) -> None:
     found = criterion(cycle(tau_yz=wave), LIMITS)
-    assert all(UNBOUNDED in array.attrs["comment"] for array in found.values())
+    assert all(array.attrs[ERROR_KIND] == NOT_ESTIMATED for array in found.values())
 
 
 @pytest.mark.parametrize("criterion", CRITERIA)
@@ -38,7 +38,7 @@ def test_hydrostatic_tension_counts_with_its_slope(cycle, wave) -> None:
     assert float(fatigue.findley(swing, LIMITS)["findley"]) == pytest.approx(LIMITS.findley_slope)
 
 
-def test_shear_from_nothing_to_one_has_half_the_amplitude(cycle) -> None:
+def test_pulsating_shear(cycle) -> None:
     """The mean of a shear does no harm to Dang Van and Crossland."""
     pulse = cycle(tau_yz=np.sin(np.linspace(0, np.pi, 21)) ** 2)
     assert float(fatigue.dang_van(pulse, LIMITS)["dang_van"]) == pytest.approx(0.5)
@@ -52,7 +52,7 @@ def test_mean_shear_harms_findley(cycle) -> None:
     assert float(fatigue.findley(pulse, LIMITS)["findley"]) == pytest.approx(expected, rel=1e-6)
 
 
-def test_shear_that_turns_round_is_as_bad_as_its_circle(cycle) -> None:
+def test_rotating_shear(cycle) -> None:
     """The deviator runs round a circle: Crossland's amplitude is its radius, Dang Van's shear the same all the time."""
     angle = 2 * np.pi * np.arange(60) / 60
     turning = cycle(tau_xz=np.cos(angle), tau_yz=np.sin(angle))
@@ -120,7 +120,7 @@ def test_line_contact(strip_result) -> None:
     assert 0 < float(credited) < float(result["crossland_shear"].max())
 
 
-def test_size_and_load_change_nothing_but_the_scale(strip_result) -> None:
+def test_scale_of_size_and_load(strip_result) -> None:
     unit, other = (result.isel(x_field=[0]) for result in (strip_result(), strip_result(3e-4, 2e9)))
     for criterion in CRITERIA:
         name = criterion.__name__
@@ -154,7 +154,7 @@ def test_a_study_padded_and_lazy(criterion, solved: xr.Dataset) -> None:
         assert np.allclose(together.isel(case=number), alone, rtol=1e-9)
 
 
-def test_one_plane_along_y_is_no_history(opened: xr.Dataset) -> None:
+def test_one_position_along_y(opened: xr.Dataset) -> None:
     with pytest.raises(InvalidInputError, match="at least 3"):
         fatigue.crossland(opened, LIMITS)
 

@@ -21,7 +21,7 @@ def test_both_limits_are_on_the_limit(cycle, wave, criterion, ratio: float, bend
         assert float(criterion(0.5 * history, limits)["utilisation"]) == pytest.approx(0.5, rel=1e-6)
 
 
-def test_limits_that_von_mises_relates_leave_crossland_without_hydrostatic_stress() -> None:
+def test_crossland_of_von_mises_limits() -> None:
     assert FatigueLimits(bending=1.0, torsion=1 / np.sqrt(3)).crossland_slope == pytest.approx(0, abs=1e-12)
 
 

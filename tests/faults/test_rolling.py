@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.faults import rolling
+from benchmarks.faults import rolling
 
 
 def test_numbers_of_cases_are_what_is_asked_for() -> None:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 import xarray as xr
 
-from tests.faults import hosts, scenarios, studies
-from tests.faults.table import BEGIN, END, Row, write_table
+from benchmarks.faults import hosts, scenarios, studies
+from benchmarks.faults.table import BEGIN, END, Row, write_table
 from tests.study.conftest import ROOT
 
 PAGE = ROOT / "docs" / "explanation" / "reliability.md"

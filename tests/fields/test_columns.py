@@ -73,7 +73,7 @@ def largest(field: xr.Dataset) -> float:
 
 @pytest.mark.parametrize("body", BODIES)
 def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
-    graded, uniform = (stress_field(BODIES[body], load, FRICTION, x=X, y=Y, z=Z, smooth=False) for load in loads)
+    graded, uniform = (stress_field(BODIES[body], load, FRICTION, x=X, y=Y, z=Z) for load in loads)
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
@@ -83,7 +83,9 @@ def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: s
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
-    before, on, beyond, near = (stress_field(BODIES[body], load, FRICTION, x=x, **at) for x in places)
+    before, on, beyond, near = (
+        stress_field(BODIES[body], load, FRICTION, x=x, **at, inside_cells=load) for x in places
+    )
     for other in (before, beyond, near):
         for name in on.data_vars:
             assert np.abs(other[name].values - on[name].values).max() < 1e-3 * 1e9
@@ -92,16 +94,18 @@ def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: s
 @pytest.mark.parametrize("body", BODIES)
 def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
-    graded, uniform = (displacement_field(BODIES[body], load, FRICTION, **points, smooth=False) for load in loads)
+    graded, uniform = (displacement_field(BODIES[body], load, FRICTION, **points) for load in loads)
     assert largest(graded - uniform) < 1e-6 * largest(uniform)
 
 
 @pytest.mark.parametrize("body", BODIES)
 def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, smooth_loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
-    graded, uniform = (stress_field(BODIES[body], load, FRICTION, **points) for load in smooth_loads)
+    graded, uniform = (stress_field(BODIES[body], each, FRICTION, **points, inside_cells=each) for each in smooth_loads)
     assert largest(graded - uniform) < 1e-3 * 1e9
-    graded, uniform = (displacement_field(BODIES[body], load, FRICTION, **points) for load in smooth_loads)
+    graded, uniform = (
+        displacement_field(BODIES[body], load, FRICTION, **points, inside_cells=load) for load in smooth_loads
+    )
     assert largest(graded - uniform) < 5e-4 * largest(uniform)
 
 
@@ -153,8 +157,9 @@ def turned(load: xr.DataArray) -> xr.DataArray:
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
 def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
-    there = stress_field(BODIES[body], load, FRICTION, x=x, y=Y, z=Z)
-    back = stress_field(BODIES[body], turned(load), FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z).isel(
+    there = stress_field(BODIES[body], load, FRICTION, x=x, y=Y, z=Z, inside_cells=load)
+    reverse = turned(load)
+    back = stress_field(BODIES[body], reverse, FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse).isel(
         x=slice(None, None, -1)
     )
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "von_mises"):
@@ -166,5 +171,7 @@ def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
 @settings(max_examples=8)
 @given(load=graded_pressure(), factor=st.floats(0.1, 10.0))
 def test_stresses_scale_with_the_load(load: xr.DataArray, factor: float) -> None:
-    one, other = (stress_field(BODIES["half"], each, FRICTION, x=X, y=Y, z=Z) for each in (load, factor * load))
+    one, other = (
+        stress_field(BODIES["half"], each, FRICTION, x=X, y=Y, z=Z, inside_cells=each) for each in (load, factor * load)
+    )
     assert np.allclose(other["von_mises"], factor * one["von_mises"], rtol=1e-9)

@@ -5,9 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy import FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, QuarterSpace, equivalent_loads
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    Material,
+    QuarterSpace,
+    Roller,
+    equivalent_loads,
+    profiles,
+    solve,
+)
+from contactstudy.kernels.field import half_space_stress
 from contactstudy.kernels.load import Load
-from contactstudy.kernels.stress import half_space_stress
 from contactstudy.overlapping import problem
 from contactstudy.overlapping.lateral import POLES
 
@@ -32,13 +43,31 @@ def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
     assert float(np.abs(loads["P_v1"]).max()) > 0.5
 
 
-def test_quarter_space_has_one_end_and_a_half_space_none(half_space: HalfSpace, strip_pressure) -> None:
+def test_quarter_space_has_one_face_load_and_half_space_none(half_space: HalfSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
     loads = equivalent_loads(QuarterSpace(material=half_space.material), pressure, z=[0.5])
     assert "P_v2" not in loads
     assert loads["P_h1"].attrs["long_name"].endswith("P_h1")
-    with pytest.raises(InvalidInputError, match="a body with a free end"):
-        equivalent_loads(half_space, pressure)
+    loads = equivalent_loads(half_space, pressure)
+    assert set(loads.data_vars) == {"P_h1"}
+    np.testing.assert_array_equal(loads["P_h1"], pressure)
+
+
+@pytest.mark.parametrize("kind", ["exact", "mirror", "single-mirror", "quarter", "half"])
+@pytest.mark.parametrize("inside", [0.0, 0.1e-3])
+def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
+    steel = Material(206e9, 0.3)
+    bodies = {"quarter": QuarterSpace(material=steel), "half": HalfSpace(material=steel)}
+    body = bodies.get(kind) or FiniteLengthSpace(length=1e-3, material=steel, model=kind)
+    roller = Roller(radius=6e-3, length=1e-3 - 2 * inside, profile=profiles.Lundberg(amplitude=0.2e-6))
+    result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False)
+    freed = kind not in ("mirror", "half")
+    for depths in ([0.0], [1e-5, 1e-4]):
+        loads = equivalent_loads(body, result.pressure, 0.2, z=depths)
+        assert ("P_v1" in loads) is freed
+        assert all(np.isfinite(loads[name]).all() for name in loads.data_vars)
+        exceeds = float(loads["P_h1"].max()) > float(result.pressure.max())
+        assert exceeds is freed
 
 
 def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(

@@ -7,12 +7,13 @@ import pytest
 import xarray as xr
 
 from contactstudy import Case, FiniteLengthSpace, Grid, HalfSpace, Material, Roller, profiles, solve, stress_field
-from contactstudy.arrays.invariants import von_mises_of
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.positions import field_positions
 from contactstudy.fields.stress import ContactStresses, contact_stresses
+from contactstudy.stress import von_mises_of
 from contactstudy.verification import closed_forms as ref
+from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 
 STEEL = Material(210e9, 0.3)
 RADIUS, PRESSURE = 5e-3, 2e9
@@ -30,7 +31,7 @@ def under(grid: Grid, pressure: FloatArray, friction: float) -> ContactStresses:
     """Stresses of a half-space, at one point far from the largest."""
     body = HalfSpace(material=Material(1.0, 0.3))
     positions = field_positions(body, grid, [1.2], [1.2], [2.0])
-    return contact_stresses(body, sliding(pressure, friction), grid, positions, NOWHERE, NOWHERE)
+    return contact_stresses(body, sliding(pressure, friction), grid, lambda _: positions, (NOWHERE, NOWHERE))
 
 
 def test_below_a_circle_it_is_the_closed_form() -> None:
@@ -41,22 +42,22 @@ def test_below_a_circle_it_is_the_closed_form() -> None:
     known = np.abs(axial - radial)
     assert found.value == pytest.approx(known.max(), rel=2e-3)
     assert abs(found.value - known.max()) <= found.error + 2e-3 * found.value
-    assert found.place[2] == pytest.approx(z[known.argmax()], abs=0.03)
-    assert found.place[:2] == pytest.approx((0.0, 0.0), abs=0.1)
+    assert found.position[2] == pytest.approx(z[known.argmax()], abs=0.03)
+    assert found.position[:2] == pytest.approx((0.0, 0.0), abs=0.1)
 
 
 def test_with_much_friction_it_is_on_the_top_inside_the_circle() -> None:
     grid, pressure = circle()
     found = under(grid, pressure, 0.5).largest
     y = np.linspace(-0.95, 0.95, 381)
-    radial, hoop = ref.hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
+    radial, hoop = hertz_circle_surface(np.abs(y), 1.0, 1.0, 0.3)
     pressed, zero = np.sqrt(1 - y**2), np.zeros_like(y)
-    traction = ref.sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
+    traction = sliding_circle_surface(zero, y, 1.0, 0.5, 0.3)
     components = (hoop + traction["sigma_xx"], radial + traction["sigma_yy"], -pressed, zero, zero, 0.5 * pressed)
     known = von_mises_of(*components)
-    assert found.place[2] == 0.0
+    assert found.position[2] == 0.0
     assert abs(found.value - known.max()) <= found.error == 0.02 * found.value
-    assert abs(found.place[1]) < 1
+    assert abs(found.position[1]) < 1
 
 
 def test_points_in_any_order_and_nearly_the_same_ones_change_nothing() -> None:
@@ -65,7 +66,7 @@ def test_points_in_any_order_and_nearly_the_same_ones_change_nothing() -> None:
     body = HalfSpace(material=Material(1.0, 0.3))
     x = np.array([0.4, -0.4, np.nextafter(0.4, 1.0), 0.1, 0.1 + 1e-12])
     positions = field_positions(body, grid, x, [0.2, -0.2, 0.2 + 1e-15], [0.5, 0.3, 0.5 + 1e-15])
-    found = contact_stresses(body, sliding(pressure, 0.0), grid, positions, NOWHERE, NOWHERE).largest
+    found = contact_stresses(body, sliding(pressure, 0.0), grid, lambda _: positions, (NOWHERE, NOWHERE)).largest
     assert found.value == pytest.approx(under(grid, pressure, 0.0).largest.value, rel=1e-3)
     for end in (5.0, 1.0):
         # Positions from both ends of the contact meet at its middle, but for rounding.
@@ -78,7 +79,7 @@ def test_no_pressure_has_none() -> None:
     grid, pressure = circle()
     found = under(grid, 0 * pressure, 0.0).largest
     assert (found.value, found.error) == (0.0, 0.0)
-    assert np.isnan(found.place).all()
+    assert np.isnan(found.position).all()
 
 
 def sharp(friction: float = 0.0, distance: float = 0.5, tilt: float = 0.0) -> Case:
@@ -102,18 +103,20 @@ def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones(friction: f
     x, y, z = at(far)
     step = 0.01 * A
     axes = [place + step * np.arange(-4.0, 5.0) for place in (x, y)]
-    beside = stress_field(case.body, far.pressure, friction, *axes, z=z + 0.2 * step * np.arange(-9.0, 10.0))
+    depths = z + 0.2 * step * np.arange(-9.0, 10.0)
+    beside = stress_field(case.body, far.pressure, friction, *axes, z=depths, inside_cells=far.pressure)
     assert float(beside.von_mises.max()) == pytest.approx(value, rel=3e-3)
     assert value / float(far.von_mises.max()) > 1.4
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1, 0.4])
+@pytest.mark.parametrize("friction", [0.0, 0.4])
 def test_its_error_covers_that_on_finer_cells(friction: float) -> None:
     coarse, fine = (solve(sharp(friction), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
 
+@pytest.mark.slow
 def test_a_tilted_roller_has_it_at_the_other_end_when_tilted_back() -> None:
     there, back = (solve(sharp(tilt=tilt), accuracy=0.02, x=[0.0], y=[0.0], z=[A]) for tilt in (1e-3, -1e-3))
     assert float(there.peak_von_mises) == pytest.approx(float(back.peak_von_mises), rel=1e-3)
@@ -132,7 +135,7 @@ def test_near_a_free_end_less_pressure_does_more() -> None:
     case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
     found = solve(case, accuracy=0.02, x=[0.5 * length], y=[0.0], z=[half_width])
     x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
-    near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z)
+    near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z, inside_cells=found.pressure)
     line = found.pressure.max("y")
     assert float(line.sel(x=half_width, method="nearest")) < 0.97 * float(line.max())
     assert float(found.peak_von_mises) == pytest.approx(float(near.von_mises.max()), rel=3e-3)
@@ -158,7 +161,13 @@ FREE_ENDS = {
 """Length, pressure, friction and profile of rollers that are flush with the body."""
 
 
-@pytest.mark.parametrize(("length", "pressure", "friction", "profile"), FREE_ENDS.values(), ids=FREE_ENDS)
+@pytest.mark.parametrize(
+    ("length", "pressure", "friction", "profile"),
+    [
+        pytest.param(*values, id=name, marks=() if name == "sharp" else pytest.mark.slow)
+        for name, values in FREE_ENDS.items()
+    ],
+)
 def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     length: float, pressure: float, friction: float, profile: profiles.Profile | None
 ) -> None:
@@ -170,7 +179,7 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     far = solve(case, x=[0.5 * length], y=[0.0], z=[a])
     columns = (far.x.values > 0.05 * a) & (far.x.values < a)
     x, z = far.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
-    dense = stress_field(body, far.pressure, friction, x=x, y=far.y.values, z=z)
+    dense = stress_field(body, far.pressure, friction, x=x, y=far.y.values, z=z, inside_cells=far.pressure)
     inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
     largest = float(dense.von_mises.where(inside).max())
     assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
@@ -179,6 +188,7 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     assert float(far.peak_von_mises_error) < 0.04 * float(far.peak_von_mises)
 
 
+@pytest.mark.slow
 def test_points_asked_for_do_not_worsen_the_error() -> None:
     length = 1.2e-3
     body = FiniteLengthSpace(length=length, material=Material(208e9, 0.3))
@@ -207,6 +217,7 @@ def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
     assert second / first == pytest.approx(5 / 3, rel=0.05)
 
 
+@pytest.mark.slow
 def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
     """At this accuracy they said 1.094 GPa beside their last points, where the body has 1.067."""
     profile = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=STEEL.plane_strain_modulus)
@@ -214,7 +225,7 @@ def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
     found = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
     x, y, z = (float(found[f"peak_von_mises_{axis}"]) for axis in "xyz")
-    there = float(solve(case, accuracy=0.005, x=[x], y=[y], z=[z])["von_mises"].squeeze())
+    there = stress_field(body, found.pressure, 0.1, [x], [y], [z], inside_cells=found.pressure).von_mises.item()
     assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
-    fine = solve(case, accuracy=0.001, y=[0.0], z=[1e-5])
+    fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
     assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from contactstudy import Grid
+from contactstudy import FiniteLengthSpace, Grid, Material
+from contactstudy.fields.largest import RIM, place_search
 from contactstudy.fields.loads import TopLoad, sliding
-from contactstudy.fields.search import RIM, search_under
 from contactstudy.kernels.load import Load
+
+BODY = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
 
 
 def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -> None:
@@ -16,11 +18,11 @@ def test_points_around_two_peaks_and_around_one_where_the_other_is_its_image() -
     ends[:, [0, -1]] = 0.0
     uneven = np.where(grid.x[:, None] > 5, 0.9, 1.0) * ends
     low = np.where(grid.x[:, None] > 5, 0.3, 1.0) * ends
-    counts = [len(search_under(sliding(each, 0.0), grid, (0.0, 10.0)).places) for each in (ends, uneven, low)]
+    counts = [len(place_search(BODY, sliding(each, 0.0), grid).samples) for each in (ends, uneven, low)]
     assert counts == [2, 3, 2]
-    for place in search_under(sliding(uneven, 0.0), grid, (0.0, 10.0)).places:
-        assert place.x.min() >= 0.0
-        assert place.x.max() <= 10.0
+    for points in place_search(BODY, sliding(uneven, 0.0), grid).samples:
+        assert points.x.min() >= 0.0
+        assert points.x.max() <= 10.0
 
 
 def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
@@ -28,20 +30,20 @@ def test_on_the_top_cells_off_the_rim_of_the_contact_only() -> None:
     pressure = np.ones((100, 20))
     pressure[:, [0, -1]] = 0.0
     pressure[70:] = 0.0
-    search = search_under(sliding(pressure, 0.0), grid, (0.0, 10.0))
+    search = place_search(BODY, sliding(pressure, 0.0), grid)
     # The body ends with the cells: there is no rim at its end.
     assert search.off_rim[: 70 - RIM, 1 + RIM : 19 - RIM].all()
     assert search.off_rim.sum() == (70 - RIM) * (18 - 2 * RIM)
-    for place in search.places:
-        assert place.z[0] == 0.0
-        assert search.off_rim_at(place).any()
-        assert set(place.x) <= set(grid.x)
-        assert set(place.y) <= set(grid.y)
+    for points in search.samples:
+        assert points.z[0] == 0.0
+        assert search.off_rim_at(points).any()
+        assert set(points.x) <= set(grid.x)
+        assert set(points.y) <= set(grid.y)
 
 
 def test_nothing_is_looked_at_without_pressure() -> None:
     grid = Grid((0.0, 1.0), (-1.0, 1.0), 10, 10)
-    assert not search_under(sliding(np.zeros((10, 10)), 0.0), grid, (0.0, 1.0)).places
+    assert not place_search(BODY, sliding(np.zeros((10, 10)), 0.0), grid).samples
 
 
 def test_a_traction_along_the_axis_is_mirrored_only_if_it_turns_round() -> None:
@@ -51,5 +53,5 @@ def test_a_traction_along_the_axis_is_mirrored_only_if_it_turns_round() -> None:
     normal = TopLoad(pressure)
     for traction, alike in ((pressure, False), (pressure * np.sign(grid.x - 5.0)[:, None], True)):
         loads = {Load.NORMAL: normal, Load.ALONG_X: TopLoad(traction)}
-        far = max(place.x.max() for place in search_under(loads, grid, (0.0, 10.0)).places)
+        far = max(points.x.max() for points in place_search(BODY, loads, grid).samples)
         assert (far < 9.5) == alike

@@ -10,8 +10,9 @@ from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Materi
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
-from contactstudy.fields.stress import stress_under
-from contactstudy.verification import closed_forms as ref
+from contactstudy.fields.stress import stresses_at
+from contactstudy.overlapping.field import Points
+from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
 
@@ -25,8 +26,8 @@ def test_surface_of_a_sliding_circle(circle: xr.DataArray, half_space: HalfSpace
     stress = stress_field(half_space, circle, 0.3, z=[0.0]).isel(z=0).sel(x=0.0, method="nearest")
     inside = np.abs(stress["y"].values) < 0.95
     x = np.full(int(inside.sum()), float(stress["x"]))
-    traction = ref.sliding_circle_surface(x, stress["y"].values[inside], 1.0, 0.3, 0.3)
-    radial, hoop = ref.hertz_circle_surface(np.hypot(x, stress["y"].values[inside]), 1.0, 1.0, 0.3)
+    traction = sliding_circle_surface(x, stress["y"].values[inside], 1.0, 0.3, 0.3)
+    radial, hoop = hertz_circle_surface(np.hypot(x, stress["y"].values[inside]), 1.0, 1.0, 0.3)
     assert np.abs(stress["sigma_yy"].values[inside] - radial - traction["sigma_yy"]).max() < 2e-2
     assert np.abs(stress["sigma_xx"].values[inside] - hoop - traction["sigma_xx"]).max() < 2e-2
 
@@ -38,7 +39,7 @@ def test_stress_is_in_equilibrium_inside(short_body: FiniteLengthSpace, strip_pr
     for centre in ([0.3, 0.4, 0.5], [4.0, -0.6, 1.0], [7.9, 0.2, 0.3]):
         axes = [np.array([c - step, c, c + step]) for c in centre]
         grid = Grid.from_centres(pressure.x.values, pressure.y.values)
-        s = stress_under(short_body, sliding(pressure.values, friction), grid, *axes)
+        (s,) = stresses_at(short_body, sliding(pressure.values, friction), grid, [Points(*axes)], pressure.values)
         xx, yy, zz, xy, xz, yz = s
 
         def slope(values: np.ndarray, axis: int) -> float:

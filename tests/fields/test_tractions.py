@@ -20,7 +20,7 @@ from contactstudy import (
 )
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.checks import FloatArray
-from contactstudy.contact.pair import PairOperator
+from contactstudy.contact.normal.pair import PairOperator
 from contactstudy.fields.surface import OperatorRequest, surface_operator
 from contactstudy.kernels.load import Load
 
@@ -79,7 +79,7 @@ def test_top_moves_as_the_field_inside_says(body: Body, load: Load) -> None:
     """Reciprocity on the ends, against the harmonics of both auxiliary bodies at the depth 0."""
     loads = acting(load, traction())
     top = surface_displacement(body, **loads, components="xyz")
-    inside = displacement_field(body, **loads, smooth=False)
+    inside = displacement_field(body, **loads)
     largest = max(float(np.ptp(top[name].values)) for name in top)
     # Columns at a loaded end are averaged: their displacement has a logarithm's slope there under a traction along x.
     inner = slice(0.3, LENGTH - 0.3) if load is Load.ALONG_X else slice(None)

@@ -7,10 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from contactstudy.verification.load_cases import PASSES_CASES, PassesCase
-from contactstudy.verification.stored import load_passes
-from tests.finite_elements.passes import YOUNG, PlasticStrip, Strip
-from tests.finite_elements.passes_file import PRODUCTION, solved
+from benchmarks.finite_elements.passes import YOUNG, PlasticStrip, Strip
+from benchmarks.finite_elements.passes_file import PRODUCTION, solved
+from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
 COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.25)
 
@@ -22,7 +21,7 @@ def test_nothing_flows_below_first_yield() -> None:
     assert np.abs(stresses).max() < 1e-12
 
 
-def test_what_is_left_is_the_stress_of_layers() -> None:
+def test_stress_of_layers() -> None:
     """Far behind the contact plastic strain is uniform along y, its stress Hooke's with xx and yy held."""
     strip = PlasticStrip(PASSES_CASES["settling"], COARSE)
     strains, stresses, spread = strip.rolled()
@@ -57,8 +56,8 @@ def test_radial_return_has_its_own_tangent() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", PASSES_CASES)
-def test_a_coarse_mesh_comes_near_to_what_is_stored(name: str) -> None:
-    left = load_passes(name).left
+def test_coarse_mesh(name: str) -> None:
+    left = load_reference(PASSES_FILE, name)
     found = solved(PASSES_CASES[name], replace(PRODUCTION, width=1.0, step=1 / 8))
     size = float(np.abs(left["sigma_xx"]).max())
     assert np.abs(found["sigma_xx"].values - left["sigma_xx"].values).max() < 0.15 * size

@@ -5,20 +5,20 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.finite_elements.rolling import flexibility, roll
+from benchmarks.finite_elements.superpose import PANELS, Resolution
 from contactstudy import FiniteLengthSpace, Material, Rolling
 from contactstudy.bodies import Counterbody
-from contactstudy.contact import leading_edge
+from contactstudy.contact.rolling import leading_edge
 from contactstudy.contact.solve import solve_contact
 from contactstudy.verification.problems import on_cells
-from tests.finite_elements.rolling import flexibility, roll
-from tests.finite_elements.superpose import PANELS, Resolution
 
 LENGTH, COLUMNS, STRIPS, WINDOW, POISSON, FRICTION, PART = 8.0, 8, 26, 1.3, 0.3, 0.3, 0.64
 LOAD = 0.25 * np.pi * 0.5 * LENGTH  # half-width 1 of a pair with the modulus 1/2
 
 
 @pytest.mark.slow
-def test_rolling_between_free_ends_is_that_of_finite_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     """A short body under longitudinal creepage, with the transverse traction that its ends make.
 
     Slip is taken between neighbours here as there: both then have the same error of first order.

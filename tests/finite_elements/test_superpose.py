@@ -7,9 +7,9 @@ from functools import partial
 import numpy as np
 import pytest
 
+from benchmarks.finite_elements import contact, superpose
 from contactstudy.verification import closed_forms as ref
-from contactstudy.verification import load_cases as fe
-from tests.finite_elements import contact, superpose
+from contactstudy.verification import problems as fe
 
 COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
 BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
@@ -73,7 +73,7 @@ def test_a_long_body_loaded_in_the_middle_is_a_half_space() -> None:
 
 
 @pytest.mark.slow
-def test_contact_of_a_body_without_lateral_contraction_is_the_line_contact() -> None:
+def test_contact_without_lateral_contraction() -> None:
     """Poisson's ratio 0: plane strain at any length, so Hertz' pressure all along."""
     case = fe.ContactCase(2.0, 0.0, poisson=0.0)
     flexible = contact.flexibility(case, COARSE(order=3, panels=BELOW_50))

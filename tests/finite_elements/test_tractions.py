@@ -5,16 +5,16 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from benchmarks.finite_elements.harmonics import HarmonicBody, Line
+from benchmarks.finite_elements.superpose import Resolution as MeshResolution
 from contactstudy import Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import axial_modes
-from contactstudy.overlapping.end_kernel import EndRequest, Waves, sampled_kernel
 from contactstudy.overlapping.quadrature import Resolution, panel_nodes
-from contactstudy.verification.load_cases import Bump
-from tests.finite_elements.harmonics import HarmonicBody, Line
-from tests.finite_elements.superpose import Resolution as MeshResolution
+from contactstudy.overlapping.surface import EndRequest, Waves, sampled_kernel
+from contactstudy.verification.problems import Bump
 
 LENGTH, POISSON, FINEST = 4.0, 0.3, 0.02
 P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
@@ -66,7 +66,7 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", [0.05, 0.5, 3.0])
 @pytest.mark.parametrize("bump", [Bump(1.0, 1.0), Bump(2.0, 1.5)], ids=["to the end", "centred"])
-def test_displacements_of_the_top_are_those_of_finite_elements(bump: Bump, lateral: float) -> None:
+def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     mesh = MeshResolution(growth=2.0, smallest=0.02)
     depth = mesh.mesh_z()
     deep_enough = int(np.searchsorted(depth, 40 / lateral)) + 1

@@ -8,9 +8,8 @@ import pytest
 from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, Shift, profiles, solve, stress_field
 
 
-@pytest.mark.parametrize("cells", [130, 128])
-def test_a_short_elastic_roller_converges_whatever_the_number_of_cells(cells: int) -> None:
-    """With 130 cells along x its coupled contact did not, with 128 it did."""
+@pytest.mark.slow
+def test_coupled_contact_of_a_short_elastic_roller() -> None:
     body = FiniteLengthSpace(material=Material(82323447553.80612, 0.5), length=2.1301408010505498e-07)
     roller = Roller(
         radius=0.0029670151688925748,
@@ -27,7 +26,7 @@ def test_a_short_elastic_roller_converges_whatever_the_number_of_cells(cells: in
         coupled=True,
     )
     window = (-1.09849551913929e-05, 1.09849551913929e-05)
-    result = solve(case, Grid((0.0, body.length), window, cells, 34), stresses=False)
+    result = solve(case, Grid((0.0, body.length), window, 130, 34), stresses=False)
     assert bool(result["converged"])
     assert float(result["penetration_error"]) < 1e-6
 
@@ -46,7 +45,7 @@ def test_stresses_below_a_contact_one_cell_wide() -> None:
 @pytest.mark.parametrize(
     "motion", [Shift(x=3.6e-11, y=-1.1e-11), Shift(force_x=-2e-10), Shift(force_y=3e-10, x=1e-11)], ids=str
 )
-def test_a_small_shift_of_a_contact_that_slips_by_pressure_converges(motion: Shift) -> None:
+def test_small_shift(motion: Shift) -> None:
     """Newton's method went round in circles: the pressure alone displaces the surfaces by more than the shift."""
     material = Material(4.625e9, 0.3)
     case = Case(

@@ -8,11 +8,11 @@ from random import Random
 
 import pytest
 
+from benchmarks.fuzz import __main__ as long_run
+from benchmarks.fuzz import outcome, properties
+from benchmarks.fuzz.outcome import Outcome, outcome_of
+from benchmarks.fuzz.solved import ViolationError
 from contactstudy import InvalidInputError
-from tests.fuzz import __main__ as long_run
-from tests.fuzz import outcome, properties
-from tests.fuzz.outcome import Outcome, outcome_of
-from tests.fuzz.solved import ViolationError
 
 
 @pytest.fixture
@@ -35,7 +35,7 @@ def run(monkeypatch, tmp_path):
     return command
 
 
-def test_a_run_goes_on_with_the_seeds_that_are_left(run, tmp_path, capsys) -> None:
+def test_resumed_run(run, tmp_path, capsys) -> None:
     assert run("--cases", "3")[1] == [0, 1, 2]
     with (tmp_path / "notes").open("a") as file:
         file.write('{"seed": 3, "ki')  # ended while it was writing
@@ -51,7 +51,7 @@ def test_a_run_goes_on_with_the_seeds_that_are_left(run, tmp_path, capsys) -> No
     assert json.loads(lines[-1])["seed"] == 7
 
 
-def test_errors_that_are_not_the_packages_own_are_violations(monkeypatch) -> None:
+def test_foreign_errors_are_violations(monkeypatch) -> None:
     def fails(error: Exception):
         def raising(*arguments: object, **options: object) -> None:
             raise error

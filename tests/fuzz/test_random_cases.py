@@ -1,4 +1,4 @@
-"""A short run of random cases: `pytest -m fuzz`; `python -m tests.fuzz` makes long ones."""
+"""A short run of random cases: `pytest -m fuzz`; `python -m benchmarks.fuzz` makes long ones."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, event, given, settings
 from hypothesis import strategies as st
 
-from tests.fuzz.outcome import outcome_of
+from benchmarks.fuzz.outcome import outcome_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.data_too_large]
 
@@ -17,7 +17,7 @@ def look_at(chance: Random, *, refined: bool) -> None:
     """Run a case and count what became of it."""
     found = outcome_of(chance, refined=refined)
     event(found.kind)
-    assert found.kind != "violation", found.said
+    assert found.kind != "violation", found.message
 
 
 @pytest.mark.fuzz
@@ -36,6 +36,6 @@ def test_cases_on_refined_cells(chance: Random) -> None:
 
 def test_a_seed_is_one_case() -> None:
     first, second = (outcome_of(Random(3)) for _ in range(2))
-    assert (first.kind, first.said, first.checked) == (second.kind, second.said, second.checked)
+    assert (first.kind, first.message, first.checked) == (second.kind, second.message, second.checked)
     assert first.kind == "converged"
     assert len(first.checked) >= 5

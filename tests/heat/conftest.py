@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Case, FiniteLengthSpace, Material, Roller, ThermalProperties
+from contactstudy import Case, FiniteLengthSpace, Material, Roller
 from contactstudy.arrays.grid import Grid
+from contactstudy.heat import ThermalProperties
 
 STEEL = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
 UNIT = ThermalProperties(conductivity=1.0, density=1.0, specific_heat=1.0)

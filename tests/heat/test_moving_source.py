@@ -3,10 +3,9 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.arrays.grid import Grid
-from contactstudy.heat.moving_source import MovingBody, SourceOperator
-from contactstudy.heat.spreading import Ends
+from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator
 from contactstudy.verification import closed_forms
-from contactstudy.verification.heat import heat_carried_away
+from contactstudy.verification.tribology import heat_carried_away
 
 EVERYWHERE = Ends(-np.inf, np.inf)
 

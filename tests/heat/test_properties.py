@@ -1,6 +1,7 @@
 import pytest
 
-from contactstudy import InvalidInputError, ThermalProperties
+from contactstudy import InvalidInputError
+from contactstudy.heat import ThermalProperties
 
 
 def test_diffusivity_is_conductivity_over_capacity():

@@ -1,24 +1,178 @@
-"""A field at positions along x that lie in many different ways, which is interpolated, as at each of them alone."""
+"""Fields under uniform cells: corner sums against convolution, centres of cells, additivity, switches."""
 
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from contactstudy import Grid
-from contactstudy.kernels import stress
-from contactstudy.kernels.field import half_space_field
-from contactstudy.kernels.influence import Influence
+from contactstudy.checks import FloatArray
+from contactstudy.kernels import field
+from contactstudy.kernels.convolution import centred_field
+from contactstudy.kernels.field import STRESS_PARITIES, displacement_influence, half_space_field, half_space_stress
+from contactstudy.kernels.fine_cells import REACH
+from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
 
+EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geomspace(0.04, 0.4, 23)])}
+INFLUENCE = Influence.of(STRESS_CORNERS[Load.NORMAL], 0.3, Load.NORMAL, STRESS_PARITIES)
 
-def test_interpolated_positions_have_the_field_of_each_alone() -> None:
-    """Under a load without steps along x; two cell centres fewer around each position leave twenty times as much."""
+
+def test_unaligned_positions_have_the_field_of_each_alone() -> None:
     grid = Grid((0.0, 8.0), (-2.0, 2.0), 80, 16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
-    influence = Influence.of(STRESS_CORNERS[Load.NORMAL], 0.3, Load.NORMAL, stress.UNDER_PRESSURE)
     together, *alone = (
-        half_space_field(load, influence, grid, each, grid.y[::4], z, extent=(0.0, 8.0)) for each in (x, *x[:, None])
+        half_space_field(load, INFLUENCE, grid, each, grid.y[::4], z, extent=(0.0, 8.0)) for each in (x, *x[:, None])
     )
-    np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=0, atol=2e-8 * np.abs(together).max())
+    # Far columns are taken together.
+    np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
+
+
+def pressure(grid: Grid) -> FloatArray:
+    """Pressure that falls to zero inside its last cells along x and y."""
+    along = ((grid.x[:, None] - 2.0) / 1.7) ** 8
+    return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - along, 0.0)))
+
+
+@pytest.mark.parametrize("kind", EDGES)
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, 4.0)], ids=["no end", "two ends"])
+@pytest.mark.parametrize("shaped", [True, False])
+@pytest.mark.parametrize("aligned", [True, False])
+def test_field_is_linear_in_the_load(kind: str, extent: tuple[float, float], *, shaped: bool, aligned: bool) -> None:
+    edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
+    grid = Grid.between(edges, (-1.2, 1.2), 24)
+    shape = pressure(grid) if shaped else None
+    random = np.random.default_rng(2)
+    first, second = pressure(grid) * random.random(grid.shape), random.random(grid.shape) * (np.abs(grid.y) < 0.5)
+    x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
+    z = np.array([0.0, 0.05, 0.3, 1.5])
+    one, other, both = (
+        half_space_field(load, INFLUENCE, grid, x, y, z, extent=extent, shape=shape)
+        for load in (first, second, first + 2 * second)
+    )
+    # The images' sums amplify rounding.
+    assert np.abs(one + 2 * other - both).max() < (1e-10 if np.isfinite(extent).all() else 1e-12)
+
+
+@pytest.mark.parametrize("kind", EDGES)
+@pytest.mark.parametrize("aligned", [True, False])
+def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -> None:
+    edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
+    grid = Grid.between(edges, (-1.2, 1.2), 24)
+    load = pressure(grid)
+    x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
+    for size in (grid.dy, grid.dx):
+        z = REACH * size * np.array([1 - 1e-9, 1 + 1e-9])
+        above, below = np.moveaxis(
+            half_space_field(load, INFLUENCE, grid, x, y, z, extent=(0.0, 4.0), shape=load), 3, 0
+        )
+        assert np.abs(above - below).max() < 1e-5
+
+
+GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
+Z = np.array([0.0, 0.05, 0.4])
+
+
+def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    """Stresses under steps of a load in each direction."""
+    influences = [Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES) for each in Load]
+    return np.stack([half_space_field(load, each, GRID, x, y, Z, extent=extent) for each in influences])
+
+
+def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
+    """Displacements likewise."""
+    length = extent[1] - extent[0]
+    fields = []
+    for each in Load:
+        influence = displacement_influence(each, 0.3, length, 20.0)
+        fields.append(half_space_field(load, influence, GRID, x, y, Z, extent=extent))
+    return np.stack(fields)
+
+
+@pytest.fixture
+def load() -> np.ndarray:
+    load = np.random.default_rng(0).random(GRID.shape)
+    load[:, :3] = 0.0
+    return load
+
+
+@pytest.mark.parametrize("compute", [stresses, displacements])
+@pytest.mark.parametrize(
+    ("extent", "cells_x"),
+    [
+        ((-np.inf, np.inf), range(-3, 25)),
+        ((-np.inf, np.inf), range(-7, 2)),
+        ((0.0, np.inf), range(25)),
+        ((0.0, np.inf), range(30)),
+        ((0.0, 2.0), range(20)),
+    ],
+)
+@pytest.mark.parametrize("cells_y", [range(-2, 20), range(-7, 3)])
+def test_symmetry_changes_nothing(
+    monkeypatch, compute, load: np.ndarray, extent: tuple[float, float], cells_x: range, cells_y: range
+):
+    x, y = GRID.x[0] + GRID.dx * np.array(cells_x), GRID.y[0] + GRID.dy * np.array(cells_y)
+    calls = []
+    real = centred_field
+    monkeypatch.setattr(field, "centred_field", lambda *a, **k: calls.append(1) or real(*a, **k))
+    by_symmetry = compute(load, x, y, extent)
+    # One more position along y that lies otherwise: all are convolved with the whole kernel.
+    whole = compute(load, x, np.append(y, y[0] + 0.3 * GRID.dy), extent)[:, :, :, :-1]
+    # Mirrored tractions along x take the general way.
+    assert len(calls) == (3 if np.isinf(extent[0]) else 2)
+    # Images are interpolated over another span along y.
+    tolerance = 1e-13 if np.isinf(extent[1]) else 2e-8
+    np.testing.assert_allclose(by_symmetry, whole, atol=tolerance * np.abs(whole).max())
+
+
+@pytest.mark.parametrize("each", [Load.NORMAL, Load.ALONG_Y])
+@pytest.mark.parametrize("cells_x", [20, 21])
+@pytest.mark.parametrize("rows", [slice(None), [1, 4, 12], [17]])
+@pytest.mark.parametrize("other_half", [1.0, 1 + 1e-6, -1.0])
+def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
+    each: Load, cells_x: int, rows: slice | list[int], other_half: float
+) -> None:
+    """Of the halves alone no wavenumber is zero."""
+    grid = Grid((0.0, 2.0), (-1.0, 1.0), cells_x, 16)
+    half = np.random.default_rng(0).random(grid.shape)
+    half[(cells_x + 1) // 2 :] = 0.0
+    x = np.atleast_1d(grid.x[rows])
+    influence = Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES)
+    parts = (half, other_half * half[::-1], half + other_half * half[::-1])
+    one, other, both = (half_space_field(cells, influence, grid, x, grid.y, Z, extent=(0.0, 2.0)) for cells in parts)
+    np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
+
+
+@pytest.mark.parametrize("unit", [1e-20, 1e20])
+def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit: float) -> None:
+    """A field is that of the load in any unit."""
+    found, plain = (stresses(each, GRID.x, GRID.y, (0.0, 2.0)) for each in (unit * load, load))
+    np.testing.assert_allclose(found / unit, plain, atol=1e-12 * np.abs(plain).max())
+
+
+def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
+    y, extent = GRID.y, (0.0, 2.0)
+    first = stresses(load, GRID.x, y, extent)
+    softer = half_space_stress(Load.NORMAL, load, 0.1, GRID, GRID.x, y, Z, extent=extent)
+    assert np.abs(softer - first[0]).max() > 1e-2
+    displacements(load, GRID.x, y, extent)
+    np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
+
+
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (0.0, 2.0)])
+@pytest.mark.parametrize("loaded", [(5, slice(None)), (slice(None), 5), (slice(None), slice(None)), (5, 5)])
+@pytest.mark.parametrize("whole", [False, True])
+def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: tuple, whole: bool) -> None:
+    """At periods of a fast length the farthest cells were left out of components odd in y.
+
+    Where a contact is one cell wide, and looked at there, a transform of no points was asked for.
+    """
+    load = np.zeros(GRID.shape)
+    load[loaded] = 1.0
+    x, y = (GRID.x, GRID.y) if whole else (np.atleast_1d(GRID.x[loaded[0]]), np.atleast_1d(GRID.y[loaded[1]]))
+    # With a position that lies otherwise beside each, nothing is taken by symmetry.
+    beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
+    apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
+    np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)

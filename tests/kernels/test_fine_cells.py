@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.fine_cells import PARTS_Y, REACH, WIDE, FineCells, ends_in_steps, seen_apart
+from contactstudy.kernels.fine_cells import PARTS_X, PARTS_Y, REACH, WIDE, FineCells, coarsened, resolved_columns
 from contactstudy.kernels.smooth_load import SmoothLoad
 
 EDGES = np.array([0.0, 0.2, 0.5, 0.9, 1.5, 2.3, 2.9, 3.3, 3.6, 3.8])
@@ -35,7 +35,7 @@ def fine(
     grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
     cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
-    return FineCells(cells, grid, extent, image)
+    return FineCells(cells, cells, grid, extent, image)
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
@@ -46,36 +46,45 @@ def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: F
     for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
         other = fine(edges=edges, image=image, ends=ends, place=place, unit=unit, pressure=pressure)
         assert other.split.tolist() == plain.split.tolist()
-        assert other.parts == plain.parts
         for name in ("x_edges", "edges", "steps"):
             assert getattr(other, name) / unit - place == pytest.approx(getattr(plain, name), abs=1e-9), name
         for found, expected in (
-            (other.gathered, plain.gathered),
-            (other.far(), plain.far()),
+            (other.far_load, plain.far_load),
             (other.cells, plain.cells),
         ):
             assert found / pressure == pytest.approx(expected, abs=1e-9)
-        z = np.array([0.0, 0.1, 0.5, 0.59, 0.61, 1.2, 1.3, 2.0])
-        assert other.near(unit * z).tolist() == plain.near(z).tolist()
-        for (found, grid), (expected, own) in zip(
-            (other.for_ends(), other.near_top(0.03 * unit, split=True)),
-            (plain.for_ends(), plain.near_top(0.03, split=True)),
-            strict=True,
-        ):
+        z = np.array([0.0, 0.1, 0.5, 1.19, 1.21, 2.5, 2.6, 4.0])
+        assert other.fine_depths(unit * z).tolist() == plain.fine_depths(z).tolist()
+        refined = [
+            [
+                cells.end_load(),
+                cells.fine_load(0.03 * size),
+                *([cells.coarse_load(fine_x=False)] if edges is UNIFORM else []),
+            ]
+            for cells, size in ((other, unit), (plain, 1.0))
+        ]
+        for (found, grid), (expected, own) in zip(*refined, strict=True):
             assert found / pressure == pytest.approx(expected, abs=1e-9)
             assert grid.x_edges / unit - place == pytest.approx(own.x_edges, abs=1e-9)
             assert np.array(grid.y_range) / unit == pytest.approx(own.y_range)
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
-def test_cells_are_refined_down_to_three_of_them(edges: FloatArray) -> None:
+def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
     own = fine(edges=edges)
     assert own.split.any()
-    size = max(own.grid.dy, own.grid.dx) if own.grid.uniform else own.grid.dy
-    assert own.near(size * REACH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [True, True, False, False]
-    even = FineCells(np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape), own.grid)
+    assert own.fine_depths(own.grid.dy * REACH * np.array([0.0, 0.99, 1.01, 3.0])).tolist() == [
+        True,
+        True,
+        False,
+        False,
+    ]
+    load = np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape)
+    even = FineCells(load, load, own.grid)
     assert not even.split.any()
-    assert even.near(own.grid.dy * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert not even.fine_depths_x(np.zeros(1)).any()
+    assert own.fine_depths_x(own.grid.dx * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
+    assert even.fine_depths(own.grid.dy * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
 
 
 @pytest.mark.parametrize("image", [1, -1])
@@ -83,7 +92,7 @@ def test_images_carry_the_mirrored_load(image: int) -> None:
     """On cells, on columns between any edges, and where a load is gathered with its moments."""
     own = fine(image=image)
     cells = own.grid.cells_x
-    before, between, behind = own.gathered[:cells], own.gathered[cells : 2 * cells], own.gathered[2 * cells :]
+    before, between, behind = own.far_load[:cells], own.far_load[cells : 2 * cells], own.far_load[2 * cells :]
     # The outermost images have no neighbour to send half of their moment to.
     assert before[2:] == pytest.approx(image * between[::-1][2:])
     assert behind[:-2] == pytest.approx(image * between[::-1][:-2])
@@ -101,31 +110,29 @@ def test_images_carry_the_mirrored_load(image: int) -> None:
 def test_gathered_columns_keep_force_and_moment(ends: int) -> None:
     """Of the smooth load, with that of its images; a cell at the border keeps its moment if there is none."""
     own = fine(ends=ends)
-    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges)
-    forces, middles = own.gathered * np.diff(own.edges)[:, None], 0.5 * (own.edges[1:] + own.edges[:-1])
+    smooth = SmoothLoad.of(own.cells.T, own.grid.x_edges).shaped(own.cells.T)
+    forces, middles = own.far_load * np.diff(own.edges)[:, None], 0.5 * (own.edges[1:] + own.edges[:-1])
     count = 1 + (ends > 0) + (ends > 1)
     whole = (own.cells * own.grid.widths[:, None]).sum(axis=0)
     assert forces.sum(axis=0) == pytest.approx(count * whole)
     if not ends:
-        _, moment = smooth.integrals(own.grid.x_edges[-1:])
-        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(moment[:, 0])
+        about_middles = smooth.moments + own.grid.x * smooth.cell_means * own.grid.widths
+        assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(about_middles.sum(axis=1))
     elif ends == 1:  # about the end the images' moments are opposite
         assert (forces * middles[:, None]).sum(axis=0) == pytest.approx(np.zeros(whole.size), abs=1e-9)
 
 
 @pytest.mark.parametrize("offset", [0.0, 0.03, -0.03, 0.07, -0.1, 0.1])
-@pytest.mark.parametrize("split", [True, False])
-def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float, *, split: bool) -> None:
+def test_points_are_in_the_middle_of_fine_cells_that_carry_all(offset: float) -> None:
     own = fine(edges=UNIFORM, ends=1)
-    cells, grid = own.near_top(offset, split=split)
+    cells, grid = own.fine_load(offset)
     step = own.grid.dy / PARTS_Y
     assert grid.dy == pytest.approx(step)
     place = (own.grid.y + offset - grid.y_range[0]) / step - 0.5
     assert place == pytest.approx(np.round(place), abs=1e-9)
-    assert (np.round(place) >= 0).all()
-    assert grid.y_range[0] <= own.grid.y_range[0] + 1e-12
-    assert grid.y_range[1] >= own.grid.y_range[1] - 1e-12
-    assert grid.cells_y - PARTS_Y * own.grid.cells_y == (abs(offset) in (0.03, 0.07, 0.1))
+    assert grid.y_range[0] <= own.y_edges[0] + 1e-12
+    assert grid.y_range[1] >= own.y_edges[-1] - 1e-12
+    assert grid.cells_y - PARTS_Y * own.count == (abs(offset) in (0.03, 0.07, 0.1))
     force = cells.sum(axis=1) * step * grid.widths
     expected = own.cells.sum(axis=1) * own.grid.dy * own.grid.widths
     assert force.sum() == pytest.approx(expected.sum())
@@ -142,7 +149,7 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
         edges = 5.0 + np.cumsum(np.cumprod(random.uniform(0.4, 2.5, 12)))
         x = float(random.uniform(edges[0], edges[-1]))
         widths, distance = np.diff(edges), np.abs(0.5 * (edges[1:] + edges[:-1]) - x)
-        low, high = seen_apart(edges, x, narrow)
+        low, high = resolved_columns(edges, x, narrow)
         first = last = int(distance.argmin())
         while first > 0 and widths[first - 1] > WIDE * distance[first - 1]:
             first -= 1
@@ -152,20 +159,39 @@ def test_columns_that_are_seen_apart_are_wide_against_their_distance(narrow: flo
         assert (low, high) == ((own[0], own[-1] + 1) if own else (low, low))
 
 
-@pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
-def test_a_load_that_ends_in_a_step_counts_as_uniform_in_each_cell(unit: float) -> None:
-    """If the step is not small against the largest load; from either side, and at the grid's edge too."""
-    for cells, stepped in (
-        ([0.0, 1.0, 1.0, 0.0], True),
-        ([0.0, 1.0, 0.85, 0.0], True),
-        ([0.0, 0.5, 1.0, 0.7, 0.0], False),
-        ([0.0, 0.5, 1.0, 0.9], True),
-        ([0.9, 1.0, 0.5, 0.0], True),
-        ([0.0, 0.2, 0.2, 1.0, 0.5, 0.0], False),
-        ([0.0, 0.4, 0.4, 1.0, 0.5, 0.0], True),
-        ([-0.9, -1.0, -0.5, 0.0], True),
-    ):
-        assert ends_in_steps(unit * np.array([cells])) == stepped
+@pytest.mark.parametrize("parts", [PARTS_X, PARTS_Y])
+def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
+    fine_loads = np.random.default_rng(0).random((4 * parts, 2))
+    loads = coarsened(fine_loads, parts)
+
+    def moments(values: FloatArray, edges: FloatArray) -> FloatArray:
+        powers = [np.diff(edges ** (order + 1)) / (order + 1) for order in range(7)]
+        return np.asarray(powers @ values)
+
+    expected = moments(fine_loads, np.linspace(0.0, 4.0, 4 * parts + 1))
+    assert moments(loads, np.arange(-3.0, 8.0)) == pytest.approx(expected, rel=1e-9)
+
+
+@pytest.mark.parametrize("ends", [0, 1, 2])
+@pytest.mark.parametrize("image", [1, -1])
+def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
+    """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
+    own = fine(edges=UNIFORM, ends=ends, image=image)
+    random = np.random.default_rng(1)
+    first, second = random.random(own.grid.shape), random.random(own.grid.shape) * (own.load > 0)
+
+    def evaluated(load: FloatArray) -> list[FloatArray]:
+        cells = FineCells(load, own.shape, own.grid, own.extent, image)
+        columns = cells.columns([np.linspace(0.1, 3.7, 30)])
+        whole = cells.coarse_load(fine_x=False)[0]
+        return [cells.fine_load(0.03)[0], whole, cells.end_load()[0], columns]
+
+    # The cells along y span load and shape.
+    second[:, [0, -1]] = first[:, [0, -1]] = 1.0
+    for one, other, both in zip(evaluated(first), evaluated(second), evaluated(first + 2 * second), strict=True):
+        assert both == pytest.approx(one + 2 * other, abs=1e-12)
+    for one, half in zip(evaluated(own.load), evaluated(0.5 * own.load), strict=True):
+        assert np.array_equal(one, 2 * half)
 
 
 @pytest.mark.parametrize("unit", [1e-9, 1.0, 1e9])
@@ -173,7 +199,8 @@ def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
     """By more than 0.3 % of the largest load, whatever its unit."""
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
-    split = FineCells(unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2), grid).split
+    load = unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
+    split = FineCells(load, load, grid).split
     assert not split[:4].any()
     assert split[-3:].all()
 
@@ -184,5 +211,5 @@ def test_fine_cells_carry_a_load_up_to_the_border(offset: float) -> None:
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()
-    found, own = FineCells(cells, grid).near_top(offset, split=False)
+    found, own = FineCells(cells, cells, grid).fine_load(offset)
     assert found.sum() * own.cell_area == pytest.approx(cells.sum() * grid.cell_area)

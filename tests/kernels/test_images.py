@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import FloatArray
-from contactstudy.kernels.images import cell_kernel, few_points, image_kernel, mirrored_kernel
+from contactstudy.kernels.images import cell_kernel, image_kernel, interpolation_points, mirrored_kernel
 
 
 def corner_at(depth: float):  # type: ignore[no-untyped-def]
@@ -43,14 +43,14 @@ def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
 @pytest.mark.parametrize("middle", [0.0, 7.0, -7.0])
 def test_few_points_tell_what_loads_far_away_do(unit: float, middle: float) -> None:
     at = unit * (middle + np.linspace(-2.0, 2.0, 200))
-    points, matrix = few_points(at, 2.0 * unit, 1e-6)
+    points, matrix = interpolation_points(at, 2.0 * unit, 1e-6)
     assert matrix is not None
     assert points.size < 20
     assert points.min() >= at.min()
     assert points.max() <= at.max()
     for load in (middle - 4.0, middle + 4.0):
         assert matrix @ (1 / np.abs(points / unit - load)) == pytest.approx(1 / np.abs(at / unit - load), abs=1e-6)
-    few, same = few_points(at[:4], 2.0 * unit, 1e-12)
+    few, same = interpolation_points(at[:4], 2.0 * unit, 1e-12)
     assert same is None
     assert few is not None
     assert np.array_equal(few, at[:4])

@@ -1,4 +1,4 @@
-"""Closed forms of the loaded rectangle, and the sum over its mirror images."""
+"""Closed forms of the loaded rectangle: stresses, displacements, and the sum over mirror images."""
 
 from __future__ import annotations
 
@@ -9,7 +9,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from contactstudy import Grid, Material
+from contactstudy.checks import FloatArray
 from contactstudy.kernels import images, patch
+from contactstudy.kernels.field import half_space_displacement
+from contactstudy.kernels.load import Load, Response
+from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, normal_displacement_inside, tangential_displacement_inside
+from contactstudy.kernels.strips import corner_function, strips_of
 from contactstudy.verification import closed_forms as ref
 
 CORNERS = {"normal": patch.normal_corner, "tangential": patch.tangential_corner}
@@ -88,16 +94,106 @@ def test_all_images_are_summed(
 @pytest.mark.parametrize("span", [0.3, 1.0, 4.0])
 def test_few_points_stand_for_many_a_length_away(span: float) -> None:
     length, values = 1.0, np.linspace(2.0, 2.0 + span, 200)
-    points, matrix = images.few_points(values, length)
+    points, matrix = images.interpolation_points(values, length)
     assert matrix is not None
     assert points.size < 120
     for away in (1.0 - length, 2.0 + span + length):
         expected = 1 / (values - away)
-        assert np.abs(matrix @ (1 / (points - away)) - expected).max() < 2 * images.LEFT * np.abs(expected).max()
+        assert (
+            np.abs(matrix @ (1 / (points - away)) - expected).max()
+            < 2 * images.INTERPOLATION_ERROR * np.abs(expected).max()
+        )
 
 
 def test_points_at_one_place_are_one() -> None:
-    points, matrix = images.few_points(np.full(3, 0.7), 1.0)
+    points, matrix = images.interpolation_points(np.full(3, 0.7), 1.0)
     assert points.tolist() == [0.7]
     assert np.array_equal(np.ones((3, 1)), matrix)
-    assert images.few_points(np.array([0.7]), 1.0)[1] is None
+    assert images.interpolation_points(np.array([0.7]), 1.0)[1] is None
+
+
+NU = 0.3
+
+
+def on_rectangle(corner, x, y, z, size=(1e-3, 1e-3)):
+    edges_x, edges_y = (at + 0.5 * length * np.array([-1, 1]) for at, length in zip((x, y), size, strict=True))
+    corners = corner(edges_x[:, None], edges_y[None, :], z, NU)
+    return np.diff(np.diff(corners, axis=1), axis=2)[:, 0, 0] / (size[0] * size[1])
+
+
+@pytest.mark.parametrize("point", [(0.7, -0.4, 0.5), (-0.2, 0.3, 0.05), (1.0, 2.0, 0.0)])
+def test_small_rectangle_is_boussinesqs_and_cerrutis_point_load(point):
+    x, y, z = point
+    r = np.sqrt(x * x + y * y + z * z)
+    free = 1 - 2 * NU
+    inward = z / r**3 - free / (r * (r + z))
+    np.testing.assert_allclose(
+        on_rectangle(normal_displacement_inside, *point),
+        [x * inward, y * inward, 2 * (1 - NU) / r + z * z / r**3],
+        rtol=1e-4,
+        atol=1e-6,
+    )
+    along = 1 / r + y * y / r**3 + free * (1 / (r + z) - y * y / (r * (r + z) ** 2))
+    across = x * y * (1 / r**3 - free / (r * (r + z) ** 2))
+    np.testing.assert_allclose(
+        on_rectangle(tangential_displacement_inside, *point),
+        [across, along, y * (z / r**3 + free / (r * (r + z)))],
+        rtol=1e-4,
+        atol=1e-6,
+    )
+
+
+@pytest.mark.parametrize("load", list(Load))
+def test_on_the_surface_they_are_the_surfaces_functions(load: Load):
+    x, y = np.meshgrid([-0.7, 0.0, 0.2, 1.1], [-0.3, 0.0, 0.4, 0.9], indexing="ij")
+
+    def mixed_difference(values):
+        return np.diff(np.diff(values, axis=0), axis=1)
+
+    inside = DISPLACEMENT_CORNERS[load](x, y, 0.0, NU)
+    for direction, expected in zip((Load.ALONG_X, Load.ALONG_Y, Load.NORMAL), inside, strict=True):
+        found = mixed_difference(corner_function(strips_of(Response(direction, load), NU))(x, y))
+        np.testing.assert_allclose(found, mixed_difference(expected), rtol=1e-12, atol=1e-15)
+
+
+@pytest.mark.parametrize("load", list(Load))
+@pytest.mark.parametrize("at", [(0.5, 0.0), (0.0, -0.5), (0.0, 0.0)])
+def test_on_the_lines_through_a_corner_they_are_continuous(load: Load, at: tuple[float, float]):
+    corner, (x, y) = DISPLACEMENT_CORNERS[load], at
+    found = corner(np.array([x]), np.array([y]), 0.0, NU)
+    beside = corner(np.array([x + 1e-9]), np.array([y + 1e-9]), 0.0, NU)
+    np.testing.assert_allclose(found, beside, atol=1e-7)
+
+
+EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.2, 0.5, 1.0, 1.6, 2.3, 3.0])}
+
+
+def displaced(
+    load: Load, edges: FloatArray, *, place: float = 0.0, unit: float = 1.0, smooth: bool = True
+) -> FloatArray:
+    grid = Grid.between(unit * (edges + place), (-unit, unit), 8)
+    pressure = np.sqrt(np.maximum(1 - (grid.y / unit / 0.8) ** 2, 0.0)) * (1 + 0.3 * (grid.x[:, None] / unit - place))
+    extent = (unit * place, unit * (place + 3.0))
+    x, y, z = unit * (np.array([0.0, 0.7, 2.2]) + place), unit * np.array([-0.1, 0.4]), unit * np.array([0.05, 0.6])
+    shape = pressure if smooth else None
+    return half_space_displacement(
+        load, pressure, Material(1.0, 0.3), grid, x, y, z, extent=extent, reference=30.0 * unit, shape=shape
+    )
+
+
+@pytest.mark.parametrize("name", EDGES)
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("smooth", [True, False])
+def test_neither_unit_nor_place_decides_anything(load: Load, name: str, *, smooth: bool) -> None:
+    plain = displaced(load, EDGES[name], smooth=smooth)
+    # Uniform cells of a body with ends begin at 0.
+    for place, unit in ((0.0, 2.0**-17), *(() if name == "uniform" else ((8.0, 1.0), (-32.0, 1.0)))):
+        other = displaced(load, EDGES[name], place=place, unit=unit, smooth=smooth)
+        assert other / unit == pytest.approx(plain, abs=1e-7 * np.abs(plain).max())
+
+
+def test_unit_traction_on_the_top() -> None:
+    edge = np.array([-1.0, 1.0])
+    for corner, component in ((patch.tangential_corner, 5), (patch.axial_corner, 4)):
+        values = corner(edge[:, None], edge[None, :], 0.0, 0.3)
+        assert np.diff(np.diff(values, axis=1), axis=2)[component, 0, 0] == pytest.approx(-1.0)

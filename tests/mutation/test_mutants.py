@@ -6,8 +6,8 @@ import ast
 
 import pytest
 
-from tests.mutation.equivalent import EQUIVALENT
-from tests.mutation.mutants import PACKAGES, Mutant, all_mutants, mutants_of
+from benchmarks.mutation.equivalent import EQUIVALENT
+from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants, mutants_of
 
 SOURCE = '''"""A module: 1.5 + 2.5."""
 LIMIT = 2.5
@@ -21,7 +21,7 @@ def function(x: float | None = -1.5) -> float:
 
 
 def test_what_is_changed() -> None:
-    found = [(mutant.shown, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
+    found = [(mutant.description, len(mutant.lines)) for mutant in mutants_of("a.py", SOURCE)]
     assert sorted(found) == [
         ("* (2.0 - x))  ->  * (2.0 + x))", 2),
         ("* (2.0 - x))  ->  * (2.2 - x))", 2),

@@ -9,9 +9,8 @@ from contactstudy import Grid, Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load, Response
-from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.surface import EndCorrection
+from contactstudy.overlapping.surface import EndCorrection, EndRequest, end_kernel
 
 MATERIAL = Material(1.0, 0.3)
 EDGES = np.array([0.0, 0.2, 0.5, 1.0, 1.7, 2.1, 2.4])

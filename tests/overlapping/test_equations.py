@@ -10,15 +10,14 @@ from scipy import integrate
 
 from contactstudy import Grid, Material
 from contactstudy.bodies.models import FreedEnds
-from contactstudy.kernels.load import SINKS, Load
-from contactstudy.overlapping.axial import axial_modes
-from contactstudy.overlapping.end_kernel import EndRequest, end_kernel
+from contactstudy.kernels.load import NORMAL_RESPONSE, Load
+from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_square
-from contactstudy.overlapping.field import Place
+from contactstudy.overlapping.field import Points
+from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.single_mirror import SingleMirrorModes, modes_between_ends
-from contactstudy.overlapping.stress import end_stress
+from contactstudy.overlapping.surface import EndRequest, end_kernel
 
 
 @pytest.mark.parametrize(("lateral", "parity"), [(0.3, 0), (0.3, 1), (2.0, 1), (20.0, 0)])
@@ -42,8 +41,8 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 def test_correction_is_symmetric(length: float) -> None:
     grid = Grid((0.0, length), (-2.0, 2.0), 24, 16)
     freed = FreedEnds(length)
-    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (SINKS,), 80.0, Resolution())
-    for kernel in end_kernel(request).samples[SINKS]:
+    request = EndRequest.of(freed, Material(1.0, 0.3), grid, (NORMAL_RESPONSE,), 80.0, Resolution())
+    for kernel in end_kernel(request).samples[NORMAL_RESPONSE]:
         assert np.abs(kernel - kernel.transpose(0, 2, 1)).max() < 1e-12 * np.abs(kernel).max()
 
 
@@ -54,7 +53,7 @@ def test_no_internal_setting_matters() -> None:
 
     def stress(resolution: Resolution) -> np.ndarray:
         both = (Load.NORMAL, Load.ALONG_Y)
-        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), [Place(*points)])[0]
+        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), [Points(*points)])[0]
         return np.stack([fields[load] for load in both])
 
     usual = stress(Resolution())

@@ -6,13 +6,22 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.kernels.field import half_space_stress
 from contactstudy.kernels.load import Load
-from contactstudy.kernels.stress import half_space_stress
-from contactstudy.overlapping.equivalent import equivalent_loads_of
+from contactstudy.overlapping.operators import OverlappingOperators, Positions
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
 GRID = Grid((0.0, 2.4), (-1.0, 1.0), 8, 8)
+
+
+def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
+    operators = OverlappingOperators.of(problem, Positions(x, y, z), reference=24.0).equivalent(Load.NORMAL)
+    cells = problem.cells.ravel()
+    return (operators.added @ cells).reshape(x.size, y.size), np.array(
+        [(face @ cells).reshape(y.size, z.size) for face in operators.faces]
+    )
 
 
 @pytest.mark.parametrize("mirrored_once", [False, True])
@@ -22,13 +31,13 @@ def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> N
     offset = problem.corner_offset
     x = np.array([0.0, 0.5 * offset, offset, 0.3, 1.2, 2.1, 2.4 - offset, 2.4 - 0.5 * offset, 2.4])
     y, z = np.array([0.0, 0.6]), np.array([0.0, 0.5 * offset, offset, 0.4])
-    found = equivalent_loads_of(problem, x, y, z, reference=24.0)[Load.NORMAL]
-    assert found.added == pytest.approx(found.added[::-1], abs=1e-6)
-    assert found.first == pytest.approx(found.second, abs=1e-6)
+    added, (first, second) = pressed(problem, x, y, z)
+    assert added == pytest.approx(added[::-1], abs=1e-6)
+    assert first == pytest.approx(second, abs=1e-6)
     # Nearer to a corner than a part of a cell it is that at this distance.
-    assert found.added[:3] == pytest.approx(np.stack([found.added[2]] * 3))
-    assert found.first[:, :3] == pytest.approx(np.stack([found.first[:, 2]] * 3, axis=1))
-    assert np.abs(found.added[3] - found.added[2]).max() > 0.05 * np.abs(found.added).max()
+    assert added[:3] == pytest.approx(np.stack([added[2]] * 3))
+    assert first[:, :3] == pytest.approx(np.stack([first[:, 2]] * 3, axis=1))
+    assert np.abs(added[3] - added[2]).max() > 0.05 * np.abs(added).max()
 
 
 def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
@@ -37,10 +46,10 @@ def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
     problem = EndProblem(2.4, 0.3, cells, (Load.NORMAL,), GRID, Resolution())
     offset = problem.corner_offset
     x = np.array([0.0, offset, 2.4 - offset, 2.4])
-    found = equivalent_loads_of(problem, x, np.array([0.0]), np.array([0.4]), reference=24.0)[Load.NORMAL]
-    first, near_first, near_second, second = found.added[:, 0]
-    assert (first, second) == pytest.approx((near_first, near_second))
-    assert first != pytest.approx(second, rel=0.1)
+    added, _ = pressed(problem, x, np.array([0.0]), np.array([0.4]))
+    corner, near_corner, near_second, second_corner = added[:, 0]
+    assert (corner, second_corner) == pytest.approx((near_corner, near_second))
+    assert corner != pytest.approx(second_corner, rel=0.1)
 
 
 def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_too() -> None:
@@ -48,11 +57,11 @@ def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_
     length, top, face = 2.4, Grid((0.0, 2.4), (-4.0, 4.0), 12, 32), Grid((0.0, 6.0), (-4.0, 4.0), 24, 32)
     cells = np.maximum(1 - top.y**2, 0.0) ** 2 * np.ones(top.shape)
     problem = EndProblem(length, 0.3, cells, (Load.NORMAL,), top, Resolution(), mirrored_once=True)
-    found = equivalent_loads_of(problem, top.x, top.y, face.x, reference=24.0)[Load.NORMAL]
+    added, (first, second) = pressed(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
-    copies, three = np.concatenate([cells + found.added] * 3), Grid((-2.4, 4.8), (-4.0, 4.0), 36, 32)
+    copies, three = np.concatenate([cells + added] * 3), Grid((-2.4, 4.8), (-4.0, 4.0), 36, 32)
     left = half_space_stress(Load.NORMAL, copies, 0.3, three, np.zeros(1), y, z, extent=(-np.inf, np.inf))[0, 0]
     behind = np.array([length])
-    opposite = half_space_stress(Load.NORMAL, found.second.T, 0.3, face, z, y, behind, extent=(0.0, np.inf))[2, :, :, 0]
-    assert found.first[16:24:3, 2:20:4] == pytest.approx(left + opposite.T, abs=1e-2)
+    opposite = half_space_stress(Load.NORMAL, second.T, 0.3, face, z, y, behind, extent=(0.0, np.inf))[2, :, :, 0]
+    assert first[16:24:3, 2:20:4] == pytest.approx(left + opposite.T, abs=1e-2)
     assert np.abs(opposite).max() > 0.05

@@ -12,15 +12,15 @@ from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import field
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Place, end_fields
+from contactstudy.overlapping.field import Points, end_fields
+from contactstudy.overlapping.harmonics import STRESS, end_displacement, end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import STRESS, end_stress
 
 PLACES = (
-    Place(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
-    Place(np.array([0.0, 8.0]), np.array([-0.3, 0.1, 0.9]), np.array([0.1, 0.2])),
-    Place(np.array([7.5]), np.array([0.2]), np.array([0.4])),
+    Points(np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0])),
+    Points(np.array([0.0, 8.0]), np.array([-0.3, 0.1, 0.9]), np.array([0.1, 0.2])),
+    Points(np.array([7.5]), np.array([0.2]), np.array([0.4])),
 )
 
 
@@ -34,14 +34,14 @@ def test_a_place_has_the_same_field_alone_and_among_others(
     problem = EndProblem(length, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, Resolution())
     places = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
     alone = [end_stress(problem, [place])[0] for place in places]
-    monkeypatch.setattr(field, "TOGETHER", points)
+    monkeypatch.setattr(field, "JOINT_POINTS", points)
     for found, expected in zip(end_stress(problem, places), alone, strict=True):
         for load in problem.loads:
             # Panels along y are those for the points that are farthest and nearest of all.
             assert np.abs(found[load] - expected[load]).max() < 2e-5, load
 
 
-def evaluated(places: list[Place]) -> tuple[int, int]:
+def evaluated(places: list[Points]) -> tuple[int, int]:
     """How often a field is evaluated, and at how many points in all."""
     grid = Grid((0.0, 8.0), (-1.0, 1.0), 4, 4)
     sizes = []
@@ -50,10 +50,10 @@ def evaluated(places: list[Place]) -> tuple[int, int]:
         system: EquationSet, depth: ComplexArray, loads: ComplexArray, x: FloatArray, z: FloatArray
     ) -> FloatArray:
         sizes.append(x.size * z.size)
-        return STRESS.beside_face_load(system, depth, loads, x, z)
+        return STRESS.of_face_load(system, depth, loads, x, z)
 
     problem = EndProblem(8.0, 0.3, np.ones(grid.shape), (Load.NORMAL,), grid, Resolution())
-    end_fields(problem, replace(STRESS, beside_face_load=beside), places)
+    end_fields(problem, replace(STRESS, of_face_load=beside), places)
     return len(sizes), sum(sizes)
 
 
@@ -61,10 +61,33 @@ def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> No
     """A line along the top and one into the depth: together they are as many points as their rectangle has."""
     for count, together in ((5, True), (60, False)):
         across, x, z = np.zeros(1), np.linspace(0.1, 1.0, count), np.linspace(0.1, 1.0, count)
-        lines = [Place(x, across, z[:1]), Place(x[:1], across, z)]
+        lines = [Points(x, across, z[:1]), Points(x[:1], across, z)]
         alone = [evaluated([line]) for line in lines]
         times, points = evaluated(lines)
         if together:
             assert times == max(alone)[0]
         else:
             assert points < 1.5 * sum(own for _, own in alone)
+
+
+@pytest.mark.parametrize("length", [8.0, np.inf])
+@pytest.mark.parametrize("loads", [(Load.NORMAL, Load.ALONG_Y), (Load.ALONG_X,)])
+def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
+    """The quadratures depend on body, grid and positions, not on the load."""
+    grid = Grid((0.0, 8.0), (-1.5, 1.5), 16, 16)
+    hertz = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.ones((16, 1))
+    tilted = hertz * np.linspace(0.5, 1.5, 16)[:, None]
+    rough = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
+    spot = np.zeros(grid.shape)
+    spot[2:5, 7:9] = 1.0
+    place = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
+
+    def fields(cells: FloatArray) -> list[FloatArray]:
+        problem = EndProblem(length, 0.3, cells, loads, grid, Resolution())
+        (stress,) = end_stress(problem, [place], 80.0)
+        displacement = end_displacement(problem, *place, reference=10 * length)
+        return [field[load] for field in (stress, displacement) for load in loads]
+
+    parts = [fields(cells) for cells in (hertz, tilted, rough, spot)]
+    for *terms, total in zip(*parts, fields(hertz + tilted + rough + spot), strict=True):
+        assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.overlapping import displacement, stress
-from contactstudy.overlapping.axial import AxialModes
+from contactstudy.overlapping import harmonics
+from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes
 from contactstudy.overlapping.equations import EquationSet, coupling_core, inverse_square
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.single_mirror import SingleMirrorModes
 
 LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3
 RAY = np.exp(0.4j) * np.array([0.3, 1.1, 2.6])
@@ -57,10 +56,10 @@ def along(field: Field, axis: int) -> FloatArray:
     return np.asarray((ahead - back) / (2 * STEP))
 
 
-FIELDS = (stress._beside_face_load, displacement._beside_face_load)
+FIELDS = (harmonics._stress_of_face_load, harmonics._displacement_of_face_load)
 BODIES = {
-    "below": (below, displacement._below_equivalent_load, stress._below_equivalent_load),
-    "beside": (beside, displacement._beside_face_load, stress._beside_face_load),
+    "below": (below, harmonics._displacement_of_equivalent_load, harmonics._stress_of_equivalent_load),
+    "beside": (beside, harmonics._displacement_of_face_load, harmonics._stress_of_face_load),
 }
 
 
@@ -85,7 +84,7 @@ def test_stresses_are_hookes_of_the_displacements_and_in_balance(body: str, name
 @pytest.mark.parametrize("name", MODES)
 def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
     modes = MODES[name]
-    found = below(modes, stress._below_equivalent_load)(X, np.zeros(1))[:, :, 0]
+    found = below(modes, harmonics._stress_of_equivalent_load)(X, np.zeros(1))[:, :, 0]
     load = np.real(modes.cosine(X).T @ WEIGHTS[: modes.wavenumbers.size])
     assert found[2] == pytest.approx(-load)
     assert np.abs(found[4:]).max() < 1e-12 * np.abs(found).max()
@@ -95,14 +94,14 @@ def test_the_top_of_h_carries_the_equivalent_load_alone(name: str) -> None:
 def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_stress(name: str) -> None:
     modes = MODES[name]
     faces = np.array([0.0, modes.length]) if modes.parity else np.zeros(1)
-    found = beside(modes, stress._beside_face_load)(faces, Z)
+    found = beside(modes, harmonics._stress_of_face_load)(faces, Z)
     kappa = np.sqrt(RAY[:2] ** 2 + LATERAL**2)
     freed = np.real(np.exp(1j * np.outer(Z, RAY[:2])) @ WEIGHTS[:2])
     if isinstance(modes, SingleMirrorModes):
         # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.applied(kappa)[:, None] * WEIGHTS[:2])
         alone = SingleMirrorModes(1e3, 1, np.zeros(0), RAY, modes.weights)
-        assert beside(alone, stress._beside_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
+        assert beside(alone, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
     else:
         assert np.abs(found[3:5]).max() < 1e-12 * np.abs(found).max()
@@ -133,12 +132,12 @@ def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
     factor = np.real(modes.face_factor(kappa))
     inverse = inverse_square(modes.wavenumbers, depth, LATERAL)
     core = coupling_core(inverse, modes.wavenumbers, depth, LATERAL, POISSON)
-    found = modes.left_on_top(core, depth, LATERAL, POISSON)
+    found = modes.load_on_top(core, depth, LATERAL, POISSON)
     for number in range(2):
         one, own = np.ones((1, 1), np.complex128), depth[number : number + 1] + 0j
 
         def load(x: FloatArray, own: ComplexArray = own, one: ComplexArray = one) -> FloatArray:
-            return np.asarray(stress._beside_face_load(system, own, one, x, np.zeros(1))[2, :, 0, 0])
+            return np.asarray(harmonics._stress_of_face_load(system, own, one, x, np.zeros(1))[2, :, 0, 0])
 
         expected = weighted(modes, load) * kappa[number] / factor[number]
         assert found[: modes.discrete.size, number] == pytest.approx(expected[: modes.discrete.size])

@@ -29,34 +29,33 @@ GRID = Grid((0.0, 4.0), (-1.0, 1.0), 12, 40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 
-def answered(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
-    """Sums over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
+def integrated(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
+    """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
     total = np.zeros((2, 2, len(parts), GRID.cells_x, Y.size))
-    loads = lateral_columns(panel, parts, GRID, Y)
-    assert loads is not None
-    for batch in loads.batches():
-        for place, parity in enumerate(parts):
-            own = batch.along_x[..., batch.parities == parity] * np.exp(-0.3 * batch.nodes)[:, None]
-            flat = own.reshape(GRID.cells_x, -1)
-            for number, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
-                for kind, synthesis in enumerate(batch.synthesis(load, parity)):
-                    total[number, kind, place] += flat @ synthesis
+    columns = lateral_columns(panel, parts, GRID, Y)
+    assert columns is not None
+    for index, parity in enumerate(parts):
+        amplitudes = columns.along_x[..., columns.parities == parity] * np.exp(-0.3 * columns.nodes)[:, None]
+        flat = amplitudes.reshape(GRID.cells_x, -1)
+        for number, load in enumerate((Load.NORMAL, Load.ALONG_Y)):
+            for kind, synthesis in enumerate(columns.synthesis(load, parity)):
+                total[number, kind, index] += flat @ synthesis
     return total
 
 
 @given(seed=st.integers(0, 10**6), rank=st.sampled_from([1, 2, 40]), split=st.booleans())
-def test_few_columns_say_what_every_wavenumber_says(seed: int, rank: int, split: bool):
+def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split: bool):
     rng = np.random.default_rng(seed)
     pressure = rng.random((GRID.cells_x, rank)) @ rng.random((rank, GRID.cells_y))
     mirrored = pressure[::-1]
     parts = {1: pressure + mirrored, -1: pressure - mirrored} if split else {0: pressure}
-    # With so many nodes the answer is interpolated exactly, but for rounding: what is left is the load's columns.
+    # With 20 nodes the amplitudes are interpolated to rounding.
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         direct = replace(panel, nodes=panel.fine, interpolation=None)
-        np.testing.assert_allclose(answered(panel, parts), answered(direct, parts), atol=1e-8 * rank)
+        np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
 
 
-def test_a_product_of_x_and_y_is_asked_for_at_few_wavenumbers():
+def test_product_of_x_and_y_has_one_column_per_node():
     pressure = np.outer(np.arange(1.0, 13.0), (1 - GRID.y**2) * (2 + GRID.y))
     panels = lateral_panels(0.05, 2.5, 60.0, Resolution())
     loads = [lateral_columns(panel, {0: pressure}, GRID, Y) for panel in panels]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from contactstudy.overlapping.panels import cell_moments, graded_interpolation, graded_positions
+from contactstudy.overlapping.quadrature import cell_moments, graded_interpolation, graded_positions
 
 
 @pytest.mark.parametrize("finite", [True, False])

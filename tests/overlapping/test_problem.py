@@ -37,15 +37,15 @@ def asked(
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])
 @pytest.mark.parametrize("reference", [None, 24.0])
 @pytest.mark.parametrize("length", [2.4, np.inf])
-def test_wavenumbers_along_y_follow_the_load_and_the_points(load: Load, reference: float | None, length: float) -> None:
-    """From a part of the body's length, or of what is loaded and looked at, up to half a cell."""
+def test_wavenumbers_along_y_depend_on_window_and_positions(load: Load, reference: float | None, length: float) -> None:
+    """From a part of the smallest length of body, window and positions, up to half a cell."""
     y, poles = np.array([-0.4, 1.5]), BENDING_POLES if load is Load.ALONG_X else POLES
     alone = FIRST if reference is None else ALONE[poles]
     for shortest, finest in ((1e-3, 0.125), (0.2, 0.2)):
-        # Loaded up to 0.75, looked at up to 1.5.
-        first = alone / min(length, 4 * max(2.4, 0.75 + 1.5))
+        # The window ends at 1.0, the positions at 1.5.
+        first = alone / min(length, 4 * max(2.4, 1.0 + 1.5))
         last = Resolution().lateral_reach / finest
-        expected = lateral_panels(first, 0.75 + 1.5, last, Resolution(), reference, poles)
+        expected = lateral_panels(first, 1.0 + 1.5, last, Resolution(), reference, poles)
         for unit in (1.0, UNIT):
             found = asked(unit=unit, load=load, length=length).panels(
                 unit * y, unit * shortest, None if reference is None else unit * reference
@@ -59,7 +59,7 @@ def test_wavenumbers_along_y_follow_the_load_and_the_points(load: Load, referenc
 
 def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> None:
     far = asked(length=1e4).panels(np.array([0.0, 20.0]), 0.2)
-    assert far[0].nodes.max() < FIRST / (4 * 20.75) < far[1].nodes.max()
+    assert far[0].nodes.max() < FIRST / (4 * 21.0) < far[1].nodes.max()
 
 
 def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
@@ -93,8 +93,8 @@ def test_parts_of_a_load_are_even_and_odd_and_sum_up(sign_x: int, unit: float) -
         assert part[::-1] == pytest.approx(sign_x * parity * part)
     even = cells + cells[::-1]
     assert set(parity_parts(even, sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-9 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
-    assert set(parity_parts(even * (1 + 1e-5 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
+    assert set(parity_parts(even * (1 + 1e-15 * np.arange(6.0))[:, None], sign_x)) == {sign_x}
+    assert set(parity_parts(even * (1 + 1e-11 * np.arange(6.0))[:, None], sign_x)) == {1, -1}
 
 
 def test_a_body_too_thin_for_the_width_of_the_load_is_refused() -> None:

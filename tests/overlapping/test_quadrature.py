@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError
-from contactstudy.overlapping.quadrature import Resolution, growing_edges, lagrange, panel_nodes
+from contactstudy.overlapping.quadrature import Resolution, growing_edges, lagrange, panel_nodes, scale_nodes
 
 
 @pytest.mark.parametrize(
@@ -44,3 +44,8 @@ def test_edges_grow_by_the_ratio_until_the_last_is_reached(ratio: float):
     np.testing.assert_allclose(edges[2:] / edges[1:-1], ratio)
     assert edges[-2] < 700.0 <= edges[-1]
     assert growing_edges(3.0, 1.0, ratio).tolist() == [0.0, 3.0]
+
+
+def test_scale_nodes_integrate_an_algebraic_decay() -> None:
+    nodes, weights = scale_nodes(1.0, 1e6, 0.25)
+    assert weights @ (1 + nodes) ** -2.0 == pytest.approx(1.0, abs=3e-6)

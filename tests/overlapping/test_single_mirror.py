@@ -21,13 +21,13 @@ from contactstudy import (
 )
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
-from contactstudy.fields.stress import end_traction_residual, stress_under
+from contactstudy.fields.stress import end_traction_residual, stresses_at
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Place
+from contactstudy.overlapping.field import Points
+from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
-from contactstudy.overlapping.stress import end_stress
-from contactstudy.verification.load_cases import LINE_LOAD
+from contactstudy.verification.problems import LINE_LOAD
 
 FRICTION = 0.3
 DEPTHS = np.array([0.02, 0.1, 0.3, 1.0, 3.0])
@@ -51,7 +51,8 @@ def test_ends_are_free_of_normal_stress_and_carry_some_shear(
 ) -> None:
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     body = single_mirror(4.0, unit_material)
-    stress = stress_under(body, sliding(eccentric.values, friction), grid, np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    place = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
+    (stress,) = stresses_at(body, sliding(eccentric.values, friction), grid, [place], eccentric.values)
     assert np.abs(stress[0]).max() < 6e-5
     assert np.abs(stress[4]).max() > 3e-3
 
@@ -61,7 +62,7 @@ def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     both = (Load.NORMAL, Load.ALONG_Y)
     problem = EndProblem(4.0, 0.3, eccentric.values, both, grid, Resolution(), mirrored_once=True)
-    fields = end_stress(problem, [Place(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[0]
+    fields = end_stress(problem, [Points(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[0]
     added = np.stack([fields[load] for load in both])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
     assert np.abs(added[:, 0]).max() > 0.03

@@ -39,7 +39,7 @@ def test_the_mark_of_an_end_beyond_the_axes_takes_no_room(sharp):
 
 
 def test_the_colours_of_the_map_stop_before_a_singular_end(sharp):
-    (mesh,) = plots.plot_pressure_map(sharp).collections
+    mesh, *_ = plots.plot_pressure_map(sharp).collections
     assert mesh.get_clim()[1] < 0.5 * float(sharp["pressure"].max() / sharp["hertz_max_pressure"])
 
 
@@ -49,7 +49,7 @@ def study(values):
 
 
 def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clipped):
-    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), "e_over_a", "friction")
+    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [np.inf, 1.2e9]]), x="e_over_a", hue="friction")
     first, marks, _ = figure.axes[0].lines
     assert np.isnan(first.get_ydata()[1])
     assert list(marks.get_xdata()) == [1.0]
@@ -59,7 +59,7 @@ def test_a_line_through_singular_cases_has_marks_and_a_limit(assert_nothing_clip
 
 
 def test_without_singular_cases_there_is_no_mark():
-    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), "e_over_a", "friction")
+    figure = plots.plot_study_lines(study([[1e9, 1.1e9], [1.3e9, 1.2e9]]), x="e_over_a", hue="friction")
     assert len(figure.axes[0].lines) == 2
     assert not any("singular" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
@@ -72,11 +72,11 @@ def test_a_map_says_where_there_is_no_limit():
 def test_a_largest_value_at_the_edge_of_the_points_has_an_open_marker(lines_of):
     one = study([[1e9, 1.1e9], [1.3e9, 1.2e9]]).rename(peak_pressure="peak_von_mises")
     one["peak_von_mises_error"] = one["peak_von_mises"] * [[0.01, np.inf], [0.01, 0.01]]
-    figure = plots.plot_study_lines(one, "e_over_a", "friction", variables=["peak_von_mises"])
+    figure = plots.plot_study_lines(one, ["peak_von_mises"], x="e_over_a", hue="friction")
     _, line, marks = lines_of(figure.axes[0])
     assert np.isfinite(marks.get_ydata()).tolist() == [True, False]
     assert line.get_ydata()[0] == marks.get_ydata()[0] == pytest.approx(1.1)
-    assert any("no error known" in text.get_text() for legend in figure.legends for text in legend.get_texts())
+    assert any("error not estimated" in text.get_text() for legend in figure.legends for text in legend.get_texts())
 
 
 def test_colours_stop_at_the_stress_away_from_a_singular_end():
@@ -91,4 +91,4 @@ def test_colours_stop_at_the_stress_away_from_a_singular_end():
         :1
     ]
     assert filled.norm.vmax < 0.5 * float(one["von_mises"].max()) / 1.5e9
-    assert "more beside the singular end" in ax.figure.axes[-1].get_ylabel().replace("\n", " ")
+    assert "unbounded at the singular end" in ax.figure.axes[-1].get_ylabel().replace("\n", " ")

@@ -7,7 +7,7 @@ from contactstudy.errors import InvalidInputError
 
 
 def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_nothing_clipped, lines_of):
-    figure = plots.plot_study_lines(opened, "e_over_a", "body", selection={"friction": 0.1})
+    figure = plots.plot_study_lines(opened, x="e_over_a", hue="body", selection={"friction": 0.1})
     assert len(figure.axes) == 3
     assert all(len(lines_of(ax)) == 2 for ax in figure.axes)
     expected = opened["peak_von_mises"].sel(friction=0.1, body="finite-length").values / 1e9
@@ -17,7 +17,7 @@ def test_a_panel_for_each_quantity_and_a_line_for_each_value(opened, assert_noth
 
 
 def test_names_are_spread_evenly(opened):
-    figure = plots.plot_study_lines(opened, "body", variables=["peak_pressure"], selection={"friction": 0.1})
+    figure = plots.plot_study_lines(opened, ["peak_pressure"], x="body", selection={"friction": 0.1})
     assert [tick.get_text() for tick in figure.axes[0].get_xticklabels()] == ["finite-length", "half-space"]
 
 
@@ -27,24 +27,24 @@ def test_figures_that_suit_a_study(opened):
     assert plots.study_figures(opened[["status"]]) == {}
 
 
-@pytest.mark.parametrize("arguments", [("gamma",), ("e_over_a", "gamma")])
+@pytest.mark.parametrize("arguments", [{"x": "gamma"}, {"x": "e_over_a", "hue": "gamma"}])
 def test_parameters_must_be_swept(opened, arguments):
     with pytest.raises(InvalidInputError, match="swept"):
-        plots.plot_study_lines(opened, *arguments)
+        plots.plot_study_lines(opened, **arguments)
 
 
 def test_quantities_must_be_there(opened):
     with pytest.raises(InvalidInputError, match="no_such_thing"):
-        plots.plot_study_lines(opened, "e_over_a", variables=["no_such_thing"])
+        plots.plot_study_lines(opened, ["no_such_thing"], x="e_over_a")
 
 
 def test_the_first_solved_cases_are_drawn_and_named(opened):
     failed_first = opened.isel(friction=[1, 0])
-    figure = plots.plot_study_lines(failed_first, "e_over_a", "body")
-    assert figure.get_suptitle() == "friction = 0.1 (1 of 2)"
+    figure = plots.plot_study_lines(failed_first, x="e_over_a", hue="body")
+    assert figure.get_suptitle() == "friction = 0.1, one of 2 values"
     assert np.isfinite(figure.axes[0].lines[0].get_ydata()).all()
     assert list(plots.study_figures(failed_first)) == ["edge_effect", "study"]
-    only_failed = plots.plot_study_lines(opened.isel(friction=[1]), "e_over_a", "body")
+    only_failed = plots.plot_study_lines(opened.isel(friction=[1]), x="e_over_a", hue="body")
     assert not np.isfinite(only_failed.axes[0].lines[0].get_ydata()).any()
 
 
@@ -52,13 +52,13 @@ def test_what_is_held_is_named_with_its_unit(opened):
     load = xr.DataArray([200.0, 300.0], dims="load", attrs={"units": "N"})
     loaded = opened.isel(friction=0, drop=True).expand_dims(load=load)
     loaded["load"].attrs["units"] = "N"
-    assert plots.plot_study_lines(loaded, "e_over_a", "body").get_suptitle() == "load = 200 N (1 of 2)"
+    assert plots.plot_study_lines(loaded, x="e_over_a", hue="body").get_suptitle() == "load = 200 N, one of 2 values"
 
 
 def test_the_legend_has_the_unit_of_its_title(opened):
     by_pressure = opened.sel(friction=0.1, body="finite-length").expand_dims(max_pressure=[1e9, 2e9])
     by_pressure["max_pressure"].attrs["units"] = "Pa"
-    legend, *_ = plots.plot_study_lines(by_pressure, "e_over_a", "max_pressure").legends
+    legend, *_ = plots.plot_study_lines(by_pressure, x="e_over_a", hue="max_pressure").legends
     assert "GPa" in legend.get_title().get_text()
     assert [text.get_text() for text in legend.get_texts()] == ["1", "2"]
 
@@ -69,7 +69,7 @@ def test_parameters_that_change_together_are_named_together(opened):
         body=("body_and_model", ["finite-length", "half-space"]), model=("body_and_model", ["mirror", "exact"])
     )
     together["body_and_model"] = [0, 1]
-    legend, *_ = plots.plot_study_lines(together, "e_over_a", "body_and_model").legends
+    legend, *_ = plots.plot_study_lines(together, x="e_over_a", hue="body_and_model").legends
     assert legend.get_title().get_text() == "body and model"
     assert [text.get_text() for text in legend.get_texts()] == ["finite-length, mirror", "half-space, exact"]
 
@@ -78,11 +78,11 @@ def test_stated_errors_are_bars_and_infinite_ones_are_none() -> None:
     steps = {"e_over_a": [0.0, 1.0, 2.0]}
     peaks = xr.DataArray([1e9, 2e9, 3e9], steps, "e_over_a", attrs={"units": "Pa"})
     errors = peaks.copy(data=[1e8, np.inf, 2e8])
-    figure = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks, "peak_pressure_error": errors}), "e_over_a")
+    figure = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks, "peak_pressure_error": errors}), x="e_over_a")
     (bars,) = figure.axes[0].collections
     ends = [segment[:, 1].tolist() for segment in bars.get_segments() if len(segment) and np.isfinite(segment).all()]
     assert ends == [pytest.approx([0.9, 1.1]), pytest.approx([2.8, 3.2])]
-    without = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), "e_over_a")
+    without = plots.plot_study_lines(xr.Dataset({"peak_pressure": peaks}), x="e_over_a")
     assert not without.axes[0].collections
 
 
@@ -91,11 +91,11 @@ def test_a_place_without_an_error_has_open_markers_and_a_given_number_none(lines
     peaks = xr.DataArray([1e9, 2e9], steps, "e_over_a", attrs={"units": "Pa"})
     known = {"peak_von_mises": peaks, "peak_von_mises_error": 0.1 * peaks, "peak_von_mises_z": 1e-14 * peaks}
     names = ["peak_von_mises", "peak_von_mises_z", "normal_load"]
-    figure = plots.plot_study_lines(xr.Dataset(known | {"normal_load": peaks}), "e_over_a", variables=names)
+    figure = plots.plot_study_lines(xr.Dataset(known | {"normal_load": peaks}), names, x="e_over_a")
     faces = [line.get_markerfacecolor() for ax in figure.axes for line in lines_of(ax)]
     assert [isinstance(face, str) and face == "white" for face in faces] == [False, True, False]
     (legend,) = figure.legends
-    assert [text.get_text() for text in legend.get_texts()] == ["no error known"]
+    assert [text.get_text() for text in legend.get_texts()] == ["error not estimated"]
 
 
 def test_a_selection_chooses_what_figures_show(opened) -> None:
@@ -103,7 +103,7 @@ def test_a_selection_chooses_what_figures_show(opened) -> None:
         [figure.get_suptitle() for figure in plots.study_figures(opened, selection=selection).values()]
         for selection in ({}, {"friction": "0.10"})
     )
-    assert "friction = 0.1 (1 of 2)" in edge
+    assert "friction = 0.1, one of 2 values" in edge
     assert "friction = 0.1" in chosen
     assert "of 2" not in chosen
     assert plots.study_figures(opened, selection={"body": "half-space"})["study"].get_suptitle() == "body = half-space"
@@ -111,3 +111,32 @@ def test_a_selection_chooses_what_figures_show(opened) -> None:
         plots.study_figures(opened, selection={"speed": 1.0})
     with pytest.raises(InvalidInputError, match="one of"):
         plots.study_figures(opened, selection={"friction": 0.7})
+
+
+def creepage_study() -> xr.Dataset:
+    """Forces over a creepage and a distance."""
+    swept = {"longitudinal_creepage": [0.0, 1e-3, 2e-3], "e_over_a": [0.0, 2.0]}
+    force = xr.DataArray([[0.0, 0.0], [0.05, 0.06], [0.09, np.nan]], coords=swept, dims=tuple(swept))
+    return xr.Dataset({"force_y": force, "force_x": force, "normal_load": xr.ones_like(force)}, {"friction": 0.1})
+
+
+def test_curve_is_over_full_sliding(assert_nothing_clipped) -> None:
+    ax = plots.plot_traction_curve(creepage_study(), "e_over_a")
+    first, second, full = ax.lines
+    assert first.get_ydata() == pytest.approx([0.0, 0.5, 0.9])
+    assert second.get_ydata() == pytest.approx([0.0, 0.6])
+    assert list(full.get_ydata()) == [1.0, 1.0]
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["0", "2"]
+    assert_nothing_clipped(ax.figure)
+    assert len(plots.plot_traction_curve(creepage_study(), selection={"e_over_a": 2.0}).lines) == 2
+
+
+def test_bad_traction_curve_input() -> None:
+    with pytest.raises(InvalidInputError, match="selection"):
+        plots.plot_traction_curve(creepage_study())
+    with pytest.raises(InvalidInputError, match="hue = 'friction'"):
+        plots.plot_traction_curve(creepage_study(), "friction")
+    with pytest.raises(InvalidInputError, match="over lateral_creepage"):
+        plots.plot_traction_curve(creepage_study(), creepage="lateral_creepage")
+    with pytest.raises(InvalidInputError, match="creepage = 'spin'"):
+        plots.plot_traction_curve(creepage_study(), creepage="spin")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError
-from contactstudy.profiles.ridge import ridge
+from contactstudy.profiles.measured import ridge
 
 X, Y = np.linspace(0.0, 10e-3, 201), np.linspace(0.0, 0.6e-3, 61)
 CROWN = -((X - 5e-3) ** 2) / 2.5

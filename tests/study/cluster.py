@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from contactstudy.study.executor import WORKER_ENVIRONMENT
+from contactstudy.study.engine import WORKER_ENVIRONMENT
 from tests.study.conftest import ROOT
 
 ENVIRONMENT = WORKER_ENVIRONMENT | {"DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
@@ -41,12 +42,13 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
             stderr=subprocess.DEVNULL,
             cwd=folder,
             env=os.environ | ENVIRONMENT | {"PYTHONPATH": str(path)},  # workers import the tests' stand-in solver
+            start_new_session=True,
         )
 
     processes = [start(SCHEDULER, ROOT), *(start(WORKER, ROOT) for _ in range(workers))]
     processes += [start(WORKER, folder / "lame") for _ in range(lame)]
     try:
-        file, end = folder / "scheduler.json", time.monotonic() + 150
+        file, end = folder / "scheduler.json", time.monotonic() + 300
         while not file.exists():
             assert time.monotonic() < end, "the scheduler did not start"
             time.sleep(0.05)
@@ -57,4 +59,9 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
         for process in processes:
             process.terminate()
         for process in processes:
-            process.wait(timeout=100)
+            # A nanny that is restarting its worker ignores SIGTERM: its whole group ends.
+            with contextlib.suppress(subprocess.TimeoutExpired):
+                process.wait(timeout=20)
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()

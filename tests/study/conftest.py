@@ -11,6 +11,8 @@ from pathlib import Path
 import pytest
 
 from contactstudy.study import Study
+from contactstudy.study.batches import batch_paths, damage
+from contactstudy.study.folder import Folder
 from tests.small_study import as_toml, small_study
 from tests.stand_in_solver import HELD, give_tickets
 
@@ -39,6 +41,17 @@ def start_run(study: Path, folder: Path, *more: str, tickets: int, within: Seque
         stderr=subprocess.PIPE,
         env=os.environ | {HELD: str(held)},
     )
+
+
+def finished(folder: Path) -> int:
+    """Number of cases in the batches of a folder that are written now."""
+    results = Folder(folder).results()
+    return len(results.locations)
+
+
+def intact(folder: Path) -> bool:
+    """Whether every batch of a folder has its checksum."""
+    return not any(damage(path) for path in batch_paths(folder / "batches"))
 
 
 @pytest.fixture

@@ -1,15 +1,19 @@
 """Runs on a scheduler and workers that are processes of their own, and the same bits wherever cases are solved."""
 
 import socket
+import time
 from pathlib import Path
 
 import pytest
 
-from contactstudy.study import StudyFileError, open_study, run_study
+from contactstudy.errors import InvalidInputError
+from contactstudy.study import StudyFileError, engine, load_case, open_study, run_study
 from contactstudy.study.folder import Folder
-from tests.small_study import identity, small_study
-from tests.stand_in_solver import DIES, solve_fake
+from contactstudy.study.settings import RunSettings
+from tests.small_study import as_toml, identity, small_study
+from tests.stand_in_solver import DIES, HELD, solve_fake
 from tests.study.cluster import ENVIRONMENT, SCHEDULER, WORKER, cluster
+from tests.study.conftest import start_run, tickets_of
 
 LARGE = {"e_over_a": [0.0, 0.5, 1.0, 1.5, 2.0], "friction": [0.0, 0.05, 0.1, 0.2]}
 
@@ -31,7 +35,7 @@ def test_the_documentation_names_these_commands():
 
 
 def test_a_run_says_that_it_seeks_the_scheduler_before_it_gives_up(tmp_path, monkeypatch):
-    monkeypatch.setattr("contactstudy.study.executor.START_SECONDS", 0.2)
+    monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.2))
     with pytest.raises(StudyFileError, match="no dask scheduler answers"):
         run_study(small_study(), tmp_path, scheduler="tcp://127.0.0.1:1", solver=solve_fake)
     assert "connecting to the dask scheduler at tcp://127.0.0.1:1" in (tmp_path / "run.log").read_text()
@@ -39,8 +43,7 @@ def test_a_run_says_that_it_seeks_the_scheduler_before_it_gives_up(tmp_path, mon
 
 def test_what_listens_and_does_not_answer_is_no_scheduler(tmp_path, monkeypatch):
     """Dask alone would wait without end for the rest of a greeting."""
-    for name in ("START_SECONDS", "CLOSE_SECONDS"):
-        monkeypatch.setattr(f"contactstudy.study.executor.{name}", 0.3)
+    monkeypatch.setattr(engine, "RUN", RunSettings(start_seconds=0.3, close_seconds=0.3))
     with socket.create_server(("127.0.0.1", 0)) as listening:
         address = f"tcp://127.0.0.1:{listening.getsockname()[1]}"
         with pytest.raises(StudyFileError, match="no dask scheduler"):
@@ -48,13 +51,18 @@ def test_what_listens_and_does_not_answer_is_no_scheduler(tmp_path, monkeypatch)
 
 
 @pytest.mark.system
-def test_a_cluster_of_separate_processes(tmp_path):
+def test_cluster_of_separate_processes(tmp_path):
+    """By the scheduler's address, and by a client, which the run leaves open."""
+    from distributed import Client
+
     study = small_study("large", sweep=LARGE)
-    with cluster(tmp_path) as address:
-        report = run_study(study, tmp_path / "cluster", scheduler=address, solver=solve_fake)
-    assert report.counts == {"ok": 20}
     run_study(study, tmp_path / "calm", workers=0, solver=solve_fake)
-    assert opened(tmp_path / "cluster").identical(opened(tmp_path / "calm"))
+    with cluster(tmp_path) as address, Client(str(address)) as client:
+        for scheduler in (address, client):
+            folder = tmp_path / type(scheduler).__name__
+            assert run_study(study, folder, scheduler=scheduler, solver=solve_fake).counts == {"ok": 20}
+            assert opened(folder).identical(opened(tmp_path / "calm"))
+        assert client.status == "running"
 
 
 @pytest.mark.system
@@ -62,10 +70,57 @@ def test_a_worker_of_a_cluster_that_dies_costs_its_case_only(tmp_path):
     study = small_study(
         sweep={"e_over_a": [0, 1, 2], "friction": [0, DIES]}, exclude=[{"e_over_a": 0, "friction": DIES}]
     )
-    with cluster(tmp_path) as address:
+    with cluster(tmp_path, workers=5) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 3, "failed": 2}
-    assert all(entry.reason.startswith("WorkerDied") for _, entry in report.failures)
+    assert all(reason.startswith("WorkerDied") for _, reason in report.failures)
+
+
+@pytest.mark.parametrize("scheduler", [3, ["tcp://127.0.0.1:1"]])
+def test_a_wrong_scheduler(tmp_path, scheduler):
+    with pytest.raises(InvalidInputError, match="scheduler"):
+        run_study(small_study(), tmp_path, scheduler=scheduler, solver=solve_fake)
+
+
+@pytest.mark.slow
+def test_no_worker_at_all(study, tmp_path):
+    with cluster(tmp_path, workers=0) as address, pytest.raises(StudyFileError, match="no worker is connected"):
+        run_study(study, tmp_path / "out", scheduler=address, wait=1.0, solver=solve_fake)
+    assert not Folder(tmp_path / "out").holders
+
+
+@pytest.mark.slow
+def test_a_worker_without_the_package(study, tmp_path):
+    unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it cannot import")
+    with cluster(tmp_path, workers=0, lame=1) as address, unfit:
+        run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
+
+
+@pytest.mark.slow
+def test_a_fit_worker_beside_an_unfit_one(study, tmp_path):
+    with cluster(tmp_path, workers=1, lame=1) as address:
+        report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
+    assert report.counts == {"ok": 4}
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed(tmp_path, monkeypatch):
+    monkeypatch.setenv(HELD, str(tickets_of(tmp_path / "out")))  # the workers are started here, and hold cases too
+    file = tmp_path / "long.toml"
+    file.write_text(as_toml(small_study("long", sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1, 0.2, 0.3]})))
+    with cluster(tmp_path, workers=1) as address:
+        process = start_run(file, tmp_path / "out", "--scheduler", address, tickets=2)
+        end = time.monotonic() + 200
+        while not list((tmp_path / "out").glob("batches/*.nc")):
+            assert time.monotonic() < end
+            assert process.poll() is None, process.communicate()
+            time.sleep(0.1)
+        address.processes[0].kill()
+        output, errors = process.communicate(timeout=150)
+    assert process.returncode == 2, output + errors
+    assert "scheduler has gone away" in errors
+    assert "Traceback" not in errors
+    assert not Folder(tmp_path / "out").holders
 
 
 @pytest.mark.system
@@ -88,10 +143,8 @@ def test_a_case_solved_alone_is_the_same_as_in_a_study(tmp_path):
     run_study(small_study(), tmp_path / "all", workers=1)
     alone = small_study(sweep={"e_over_a": [1.0], "friction": [0.1]})
     run_study(alone, tmp_path / "alone", workers=1)
-    from contactstudy.study.store import load_case
-
     both = [
-        load_case(Folder(tmp_path / name).case_path(identity(e_over_a=1.0, friction=0.1))).drop_vars("seconds")
+        load_case(tmp_path / name, identity(e_over_a=1.0, friction=0.1)).drop_vars("seconds")
         for name in ("all", "alone")
     ]
     assert both[0].equals(both[1])

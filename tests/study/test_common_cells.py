@@ -8,8 +8,21 @@ from hypothesis import strategies as st
 from contactstudy import open_study
 from contactstudy.analysis import load_between, single_case
 from contactstudy.study import run_study
-from contactstudy.study.common_cells import LEAST_WIDTH, OntoCommon, common_columns, common_rows, resampled
+from contactstudy.study.common_cells import (
+    LEAST_WIDTH,
+    Resampling,
+    centred_cells,
+    centres,
+    common_columns,
+    common_rows,
+    resampled,
+    split_cells,
+)
 from tests.small_study import small_study
+
+
+def cells_map(source, borders, outside):
+    return Resampling(source=source, axis=centres(borders), borders=borders, outside=outside)
 
 
 @st.composite
@@ -33,7 +46,7 @@ def test_averages_keep_the_load(cases, seed):
     common = common_columns(cases)
     for own in cases:
         values = np.random.default_rng(seed).uniform(0.0, 1.0, own.size - 1)
-        found = resampled("pressure", values, [OntoCommon(own, common, 0.0)])
+        found = resampled("pressure", values, [cells_map(own, common, 0.0)])
         assert found @ np.diff(common) == pytest.approx(values @ np.diff(own), rel=1e-9)
 
 
@@ -41,7 +54,7 @@ def test_averages_keep_the_load(cases, seed):
 def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
     centres = 0.5 * (own[1:] + own[:-1])
     common = np.linspace(own[0], own[-1], 30)
-    found = resampled("gap", offset + slope * centres, [OntoCommon(own, common, np.nan)])
+    found = resampled("gap", offset + slope * centres, [cells_map(own, common, np.nan)])
     at = 0.5 * (common[1:] + common[:-1])
     np.testing.assert_allclose(found, offset + slope * np.clip(at, centres[0], centres[-1]), atol=1e-12)
 
@@ -49,7 +62,7 @@ def test_a_straight_line_stays_one_between_the_centres(own, slope, offset):
 def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window():
     common = np.array([0.0, 1.0, 2.0, 3.0])
     own = np.array([0.0, 1.0, 2.0])
-    along_x, along_y = OntoCommon(own, common, np.nan), OntoCommon(own, common, 0.0)
+    along_x, along_y = cells_map(own, common, np.nan), cells_map(own, common, 0.0)
     pressure = resampled("pressure", np.ones((2, 2)), [along_x, along_y])
     np.testing.assert_array_equal(pressure[:2], [[1, 1, 0], [1, 1, 0]])
     assert np.isnan(pressure[2]).all()
@@ -59,7 +72,7 @@ def test_beyond_the_own_cells_there_is_no_body_and_no_pressure_beside_the_window
 
 def test_an_infinite_gap_stays_where_it_is():
     own = np.array([0.0, 1.0, 2.0, 3.0])
-    found = resampled("initial_gap", np.array([1.0, np.inf, np.inf]), [OntoCommon(own, own, np.nan)])
+    found = resampled("initial_gap", np.array([1.0, np.inf, np.inf]), [cells_map(own, own, np.nan)])
     np.testing.assert_array_equal(found, [1.0, np.inf, np.inf])
 
 
@@ -83,7 +96,7 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
     sweep = {"max_pressure": [1.0e9, 1.5e9], "e_over_a": [0.0, 2.0]}
     study = small_study(base=base, sweep=sweep, level="surface")
     assert run_study(study, tmp_path, workers=0, progress=False).counts == {"ok": 4}
-    common, own = open_study(tmp_path), open_study(tmp_path, cells="own")
+    common, own = open_study(tmp_path), open_study(tmp_path, cells="original")
     assert common["pressure"].dims == ("max_pressure", "e_over_a", "x_over_a", "y_over_a")
     assert own["pressure"].dims == ("max_pressure", "e_over_a", "x_index", "y_over_a")
     assert "averaged" in common["pressure"].attrs["comment"]
@@ -107,3 +120,23 @@ def test_cases_on_their_own_columns_lie_on_one_axis(tmp_path):
     )
     assert float(common["friction"]) == 0.1
     assert common["profile"].item().startswith("cylinder")
+
+
+@given(edges(), st.lists(st.floats(0.0, 3.0), min_size=1, max_size=6, unique=True))
+def test_stress_points_of_a_study_are_centres_of_cells(source, points):
+    points = np.unique(np.round(points, 3))
+    cells = centred_cells(source, points)
+    assert np.diff(cells).min() > 0
+    assert cells[[0, -1]].tolist() == source[[0, -1]].tolist()
+    for point in points[(points > source[0]) & (points < source[-1])]:
+        assert np.abs(centres(cells) - point).min() < 1e-9
+
+
+def test_cells_between_stress_points():
+    cells = split_cells(np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.5, 2.0]))
+    assert cells.tolist() == [0.0, 1e-06, 0.25, 1.0, 3.0]
+
+
+def test_edges_that_resolve_the_cells_of_two_cases():
+    first, second = np.array([0.0, 1.0, 2.0, 4.0]), np.array([0.0, 0.9, 4.0, 5.0])
+    assert common_columns([first, second]).tolist() == [0.0, 0.9, 2.0, 4.0, 5.0]

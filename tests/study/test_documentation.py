@@ -20,7 +20,7 @@ def test_the_example_is_a_study():
     first, single, _ = (tomllib.loads(block) for block in blocks(TEXT, "toml"))
     assert {*first, *single} == set(KEYS)
     plan = Study.from_mapping(first).plan()
-    assert (plan.cube.dims, len(plan.cases), plan.skipped) == (("friction", "profile", "max_pressure"), 6, ())
+    assert (plan.cube.dims, len(plan), plan.skipped) == (("friction", "profile", "max_pressure"), 6, [])
     assert len(Study.from_mapping(first | single).plan().unique) == 7
 
 
@@ -34,7 +34,7 @@ def test_the_tutorial_shows_one_study_as_file_and_in_python():
     source = blocks(TUTORIAL, "python")[0]
     exec(source[: source.index("report =")], names)
     from_file = Study.from_mapping(tomllib.loads(blocks(TUTORIAL, "toml")[0]))
-    assert [case.id for case in from_file.plan().cases] == [case.id for case in names["study"].plan().cases]
+    assert [case.id for case in from_file.plan()] == [case.id for case in names["study"].plan()]
 
 
 def test_named_files_exist():

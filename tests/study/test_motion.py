@@ -9,13 +9,12 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError, Rolling, Shift, Sliding, solve
-from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.common_cells import OntoCommon, resampled
-from contactstudy.study.folder import Folder
-from contactstudy.study.identity import case_id
+from contactstudy.study import Study, load_case, open_study, run_study
+from contactstudy.study.common_cells import resampled
+from contactstudy.study.parameters import case_id
 from contactstudy.study.setup import build_setup
-from contactstudy.study.store import load_case
 from tests.small_study import BASE, small_study
+from tests.study.test_common_cells import cells_map
 
 ROLLS: dict[str, Any] = {
     "young": 210e9,
@@ -79,7 +78,7 @@ def test_what_a_motion_does_not_have_is_refused(given: dict[str, Any], message: 
 
 def test_a_study_lists_impossible_motions_as_skipped() -> None:
     study = small_study(sweep={"e_over_a": [0.0], "motion": ["sliding", "rolling"], "spin": [1.0]})
-    assert [bool(case.reason) for case in study.plan().cases] == [True, False]
+    assert [bool(case.reason) for case in study.plan()] == [True, False]
 
 
 def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
@@ -99,10 +98,10 @@ def rolled(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> None:
     study = rolling_study()
     opened = open_study(rolled)
-    for case in study.plan().cases:
+    for case in study.plan():
         setup = build_setup(case.parameters)
         alone = solve(setup.case, setup.grid, **setup.options)
-        stored = load_case(Folder(rolled).case_path(case.id))
+        stored = load_case(rolled, case.id)
         for name in ("pressure", "traction_x", "traction_y", "slip_x", "slip_y", "stick"):
             np.testing.assert_array_equal(stored[name], alone[name])
         here = opened.isel(dict(zip(study.plan().cube.dims, case.position, strict=True)))
@@ -116,7 +115,7 @@ def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> No
     assert bool((opened["force_y"].diff("longitudinal_creepage") > 0).all())
     assert bool((opened["sticking_part"].diff("longitudinal_creepage") < 0).all())
     assert np.isin(opened["stick"].values, (0, 1)).all()
-    assert "own cell which holds" in opened["stick"].attrs["comment"]
+    assert "cell at the centre" in opened["stick"].attrs["comment"]
     assert "averaged" in opened["traction_x"].attrs["comment"]
     assert opened["longitudinal_creepage"].attrs["units"] == "1"
 
@@ -124,16 +123,14 @@ def test_results_are_those_of_the_solver_and_lie_on_one_axis(rolled: Path) -> No
 def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) -> None:
     first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
     run_study(first, tmp_path / "parts", workers=0, progress=False)
-    (begun,) = (Folder(tmp_path / "parts").case_path(case.id) for case in first.plan().cases)
-    stamp = begun.stat().st_mtime_ns
-    assert run_study(study, tmp_path / "parts", workers=2, progress=False).counts == {"ok": 6}
-    assert begun.stat().st_mtime_ns == stamp
-    for case in study.plan().cases:
-        one, other = (load_case(Folder(folder).case_path(case.id)) for folder in (tmp_path / "parts", rolled))
+    report = run_study(study, tmp_path / "parts", workers=0, progress=False)
+    assert (report.solved, report.counts) == (5, {"ok": 6})
+    for case in study.plan():
+        one, other = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolled))
         assert one.drop_vars("seconds").identical(other.drop_vars("seconds").assign_attrs(one.attrs))
 
 
 def test_flags_come_onto_common_cells_whole() -> None:
-    own, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
-    found = resampled("stick", np.array([True, False]), [OntoCommon(own, common, np.nan)])
-    assert found.tolist() == [1, 1, 0, 0, 0]
+    cells, common = np.array([0.0, 1.0, 3.0]), np.array([0.0, 0.4, 0.9, 1.2, 3.0, 4.0])
+    stick = resampled("stick", np.array([True, False]), [cells_map(cells, common, np.nan)])
+    assert stick.tolist() == [1, 1, 0, 0, 0]

@@ -2,9 +2,7 @@ import dask
 import numpy as np
 import pytest
 
-from contactstudy.study import StudyFileError, collect, open_study, run_study
-from contactstudy.study.folder import Folder
-from contactstudy.study.store import load_case
+from contactstudy.study import StudyFileError, collect, load_case, open_study, run_study
 from tests.small_study import BASE, identity, small_study
 from tests.stand_in_solver import FAILS, solve_fake
 
@@ -37,14 +35,14 @@ def test_the_state_of_every_case_is_data(opened):
     assert np.isnan(opened["peak_pressure"].sel(e_over_a=-9)).all()
 
 
-def test_fields_are_lazy_with_one_chunk_per_case(opened, tmp_path):
+def test_fields_are_lazy(opened, tmp_path):
     for name in ("pressure", "von_mises"):
-        assert dask.is_dask_collection(opened[name].data)
-        assert opened[name].data.numblocks[:3] == (3, 2, 2)
-        assert set(opened[name].data.numblocks[3:]) == {1}
-    assert not dask.is_dask_collection(opened["peak_pressure"].data)
-    stored = load_case(Folder(tmp_path).case_path(identity(e_over_a=1)))
-    one = open_study(tmp_path, cells="own").sel(e_over_a=1, friction=0, profile="sharp")
+        assert not opened[name].variable._in_memory
+    chunked = open_study(tmp_path, chunks={})
+    assert dask.is_dask_collection(chunked["pressure"].data)
+    assert float(chunked["pressure"].max()) == float(opened["pressure"].max()) > 0
+    stored = load_case(tmp_path, identity(e_over_a=1))
+    one = open_study(tmp_path, cells="original").sel(e_over_a=1, friction=0, profile="sharp")
     size = stored.sizes["x"]
     np.testing.assert_array_equal(one["pressure"].values[:size], stored["pressure"])
     assert np.isnan(one["pressure"].values[size:]).all()
@@ -52,11 +50,26 @@ def test_fields_are_lazy_with_one_chunk_per_case(opened, tmp_path):
     np.testing.assert_allclose(one["x_over_a"] * one["hertz_half_width"], one["x"])
 
 
-def test_common_positions_are_plain_coordinates(opened):
-    assert opened["y"].dims == ("y",)
-    assert opened["x"].dims == ("e_over_a", "friction", "profile", "x_over_a")
-    assert opened["x_field_over_a"].dims == ("x_field",)
-    np.testing.assert_allclose(opened["x_field_over_a"], [0, 1, 2], atol=1e-12)
+def test_stresses_at_different_points_lie_on_a_common_axis(tmp_path):
+    base = {name: value for name, value in BASE.items() if name != "field_x_over_a"}
+    cases = [{"e_over_a": e, "field_x_over_a": [0.0, 0.5 + e, 2.0, 4.0]} for e in (0.0, 1.0)]
+    run_study(small_study(base=base, sweep={}, cases=cases), tmp_path, workers=0, solver=solve_fake)
+    opened = open_study(tmp_path)
+    assert opened["von_mises"].dims[-3:] == ("x_over_a", "y_field", "z")
+    assert opened["pressure"].dims[-2] == "x_over_a"
+    for point in (0.0, 0.5, 1.5, 2.0, 4.0):
+        assert float(np.abs(opened["x_over_a"] - point).min()) < (1e-12 if point else 1e-6)
+    for number, e_over_a in enumerate((0.0, 1.0)):
+        stored = load_case(tmp_path, str(opened["case_id"].values.ravel()[number]))
+        one = opened["von_mises"].isel(dict.fromkeys(opened["status"].dims, number))
+        at_points = one.sel(x_over_a=[0.0, 0.5 + e_over_a, 2.0, 4.0], method="nearest")
+        np.testing.assert_allclose(at_points, stored["von_mises"], rtol=1e-6)
+        load = (opened["pressure"] * opened["x_width"]).isel(dict.fromkeys(opened["status"].dims, number))
+        exact = (stored["pressure"].sum("x") * np.diff(stored["x"])[0]).sum()
+        assert float(load.sum()) == pytest.approx(float(exact), rel=1e-9)
+    drawn = one.plot(x="x_over_a", y="z_over_a")
+    assert drawn.get_array().size
+    assert "x_field_index" in open_study(tmp_path, cells="original").dims
 
 
 def test_positions_over_a_are_common_where_metres_differ(tmp_path):
@@ -82,35 +95,32 @@ def test_a_swept_load_is_not_doubled(tmp_path):
     assert opened["load"].values.tolist() == [50, 100]
 
 
-def test_files_of_before_have_the_names_of_today(tmp_path):
-    run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
-    for path in (tmp_path / "cases").glob("*.nc"):
-        case = load_case(path)
-        path.unlink()
-        old = case.rename(normal_load="load").assign(shear_traction=0.1 * case["pressure"])
-        old.to_netcdf(path, engine="netcdf4")
-    opened = open_study(tmp_path)
-    assert (opened["status"] == "ok").all()
-    assert {"normal_load", "traction_y"} <= set(opened.data_vars)
-    assert float(opened["traction_y"].max()) > 0
-    assert not {"load", "shear_traction"} & set(opened.data_vars)
-
-
 def test_an_unfinished_study_opens(tmp_path):
-    run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
-    Folder(tmp_path).case_path(identity(e_over_a=0.0)).unlink()
+    run_study(small_study(), tmp_path, workers=0, solver=solve_fake, sample=3)
     opened = open_study(tmp_path)
-    assert opened["status"].values.tolist() == [["missing", "ok"], ["ok", "ok"]]
-    for path in (tmp_path / "cases").glob("*.nc"):
+    assert opened["status"].values.tolist() == [["ok", "ok"], ["missing", "ok"]]
+    for path in (tmp_path / "batches").glob("*.nc"):
         path.unlink()
     assert (open_study(tmp_path)["status"] == "missing").all()
 
 
 def test_opening_writes_nothing(tmp_path):
     run_study(small_study(), tmp_path, workers=0, solver=solve_fake)
-    (tmp_path / "manifest.jsonl").unlink()
-    open_study(tmp_path)
-    assert not (tmp_path / "manifest.jsonl").exists()
+    before = sorted(tmp_path.rglob("*"))
+    open_study(tmp_path)["pressure"].load()
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_units_with_exponents_that_differ(tmp_path):
+    sweep = {"roller_body": ["rigid", "finite-length"]}
+    base = BASE | {"e_over_a": 3.0, "stresses": False, "accuracy": 0.1, "cells_x": None, "cells_y": None}
+    base = {name: value for name, value in base.items() if value is not None and not name.startswith("field_")}
+    study = small_study(base=base, sweep=sweep, level="summary")
+    assert run_study(study, tmp_path, workers=0).counts == {"ok": 2}
+    opened = open_study(tmp_path)
+    assert opened["end_exponent"].values[0] != opened["end_exponent"].values[1]
+    assert "units" not in opened["end_intensity"].attrs
+    assert "end_exponent" in opened["end_intensity"].attrs["comment"]
 
 
 def test_collect_keeps_summaries_only(opened, tmp_path):

@@ -12,9 +12,8 @@ import pytest
 from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.identity import case_id
-from contactstudy.study.profile_kinds import PROFILES, profile_table
-from contactstudy.study.profile_words import profile_label
+from contactstudy.study.parameters import case_id
+from contactstudy.study.profile_tables import PROFILES, profile_label, profile_table
 from contactstudy.study.setup import build_setup
 from tests.small_study import BASE, as_toml, small_study
 from tests.stand_in_solver import solve_fake
@@ -33,6 +32,7 @@ EXAMPLES = {
     "partial-crown": profiles.PartialCrown(1e-4, 0.5, 5e-5, 0.1),
     "ellipsoid": profiles.Ellipsoid(0.5),
     "sphere": profiles.Sphere(BASE["radius"]),
+    "chamfer": profiles.Chamfer(width=2e-5, angle=0.05),
     "measured": profiles.Measured([round(5e-5 * k, 6) for k in range(11)], [4e-7] + 9 * [1e-7] + [0.0], 1e-6, 3e-4),
     "halves": profiles.Halves(left=profiles.Cylinder(), right=profiles.FullCrown(0.5)),
     "effective-length": profiles.EffectiveLength(profiles.FullCrown(0.5), 4.5e-4),
@@ -78,7 +78,7 @@ def test_the_documented_profiles_can_be_solved(tmp_path: Path) -> None:
     file = tmp_path / "documented.toml"
     file.write_text(as_toml(small_study(sweep={"e_over_a": [1.0]})) + block)
     plan = Study.from_toml(file).plan()
-    assert (len(plan.cases), plan.skipped) == (2, ())
+    assert (len(plan), plan.skipped) == (2, [])
 
 
 def test_identity_of_profiles_never_changes() -> None:

@@ -4,9 +4,10 @@ import sys
 
 import pytest
 
+from contactstudy.study import StoreError
 from contactstudy.study import progress as module
 from contactstudy.study.progress import Progress
-from contactstudy.study.work import Job, Record
+from contactstudy.study.worker import Outcome
 
 
 class Terminal(io.StringIO):
@@ -22,60 +23,58 @@ def watch(monkeypatch):
     return screen
 
 
-def jobs(*costs):
-    return [Job(f"{number:016x}", f"case {number}", {}, "", "summary", cost=cost) for number, cost in enumerate(costs)]
+def ok(number):
+    return Outcome(f"{number:016x}", "ok", 1.0)
 
 
-def ok(job):
-    return Record(job.id, "ok", 1.0)
-
-
-def test_the_time_left_counts_effort_and_not_cases(tmp_path, monkeypatch):
+def test_the_time_left_follows_from_the_finished_cases(tmp_path, monkeypatch):
     now = [100.0]
     monkeypatch.setattr(module.time, "monotonic", lambda: now[0])
-    cheap, dear, last = jobs(1.0, 9.0, 10.0)
     with Progress(tmp_path / "run.log") as progress:
-        progress.begin([cheap, dear, last], total=3)
-        for job, until in ((cheap, 101.0), (dear, 110.0), (last, 120.0)):
-            now[0] = until
-            progress.finished(job, ok(job))
+        progress.begin(4, total=4)
+        for count, time in ((1, 110.0), (3, 120.0)):
+            now[0] = time
+            for number in range(count):
+                progress.finished(f"case {number}", ok(number))
+            progress.show()
     lines = (tmp_path / "run.log").read_text().splitlines()
-    assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == [
-        "19 s left",
-        "10 s left",
-        "all done",
-    ]
+    assert [re.search(r"(\d+ s left|all done)", line).group() for line in lines[1:]] == ["30 s left", "all done"]
 
 
 def test_a_bar_on_a_terminal(tmp_path, monkeypatch):
     terminal = watch(monkeypatch)
-    pair = jobs(1.0, 1.0)
     with Progress(tmp_path / "run.log") as progress:
-        progress.begin(pair, total=2)
-        progress.finished(pair[0], ok(pair[0]))
-        progress.finished(pair[1], Record(pair[1].id, "failed", 1.0, error="WindowError", message="too small"))
+        progress.begin(2, total=2)
+        progress.finished("case 0", ok(0))
+        progress.finished("case 1", Outcome("1" * 16, "failed", 1.0, "WindowError: too small"))
+        progress.show()
     assert "2/2 cases" in terminal.getvalue()
     assert "failed: case 1: WindowError: too small" in terminal.getvalue()
+    assert "WindowError: too small" in (tmp_path / "run.log").read_text()
 
 
 @pytest.mark.parametrize("quiet", ["CI", "no terminal", "not wanted"])
-def test_no_bar_where_no_one_watches(tmp_path, monkeypatch, quiet):
+def test_no_bar_without_a_terminal(tmp_path, monkeypatch, quiet):
     terminal = watch(monkeypatch)
     if quiet == "CI":
         monkeypatch.setenv("CI", "true")
     elif quiet == "no terminal":
         monkeypatch.setattr(Terminal, "isatty", lambda self: False)
-    (job,) = jobs(1.0)
     with Progress(tmp_path / "run.log", shown=quiet != "not wanted") as progress:
-        progress.begin([job], total=1)
-        progress.finished(job, ok(job))
+        progress.begin(1, total=1)
+        progress.finished("case 0", ok(0))
+        progress.show()
     assert terminal.getvalue() == ""
 
 
-def test_another_process_can_read_the_log_at_once(tmp_path):
-    pair = jobs(1.0, 1.0)
+def test_another_process_reads_the_log_at_once(tmp_path):
     with Progress(tmp_path / "run.log") as progress:
-        progress.begin(pair, total=5)
+        progress.begin(2, total=5)
         assert "2 of 5 cases to solve" in (tmp_path / "run.log").read_text()
-        progress.finished(pair[0], ok(pair[0]))
-        assert (tmp_path / "run.log").read_text().count("\n") == 2
+
+
+def test_a_link_is_not_followed(tmp_path):
+    (tmp_path / "run.log").symlink_to(tmp_path / "target")
+    with pytest.raises(StoreError, match=r"run\.log"), Progress(tmp_path / "run.log"):
+        pass
+    assert not (tmp_path / "target").exists()

@@ -1,5 +1,4 @@
 import contextlib
-import json
 import os
 import shutil
 import signal
@@ -8,16 +7,17 @@ import tempfile
 import traceback
 from pathlib import Path
 
-import numpy as np
 import pytest
 
-from contactstudy.errors import Terminated
-from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study
+from contactstudy.errors import InvalidInputError, Terminated
+from contactstudy.study import StoreError, StudyFileError, open_study, rerun_study, run_study, worker
+from contactstudy.study.batches import batch_paths
 from contactstudy.study.folder import Folder
 from contactstudy.study.progress import Progress
-from contactstudy.study.store import load_case, read_header
-from tests.small_study import identity, small_study
+from contactstudy.study.settings import RunSettings
+from tests.small_study import small_study
 from tests.stand_in_solver import DIES, FAILS, IS_LARGE, IS_WRONG, solve_fake
+from tests.study.conftest import finished, intact
 
 NOBODY = 65534
 
@@ -38,20 +38,11 @@ def test_growing_a_study_solves_only_the_new_cases(study, tmp_path):
     assert repr(report) == f"RunReport(6 cases: 6 ok; 2 solved now; folder={str(report.folder)!r})"
 
 
-def test_without_the_manifest_nothing_is_lost(study, tmp_path):
-    run(study, tmp_path)
-    for content in (None, "{", json.dumps({"schema": 99, "files": []})):
-        (tmp_path / "manifest.jsonl").unlink()
-        if content is not None:
-            (tmp_path / "manifest.jsonl").write_text(content)
-        assert run(study, tmp_path).solved == 0
-
-
 def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     report = run(study, tmp_path)
     assert report.counts == {"failed": 2, "ok": 2}
-    assert report.failures[0][1].reason == "WindowError: this friction fails in tests"
+    assert report.failures[0][1] == "WindowError: this friction fails in tests"
     assert run(study, tmp_path).solved == 0
     assert "this friction fails" in (tmp_path / "run.log").read_text()
     assert rerun_study(tmp_path, workers=0, solver=solve_fake).solved == 2
@@ -60,7 +51,7 @@ def test_a_failed_case_is_recorded_and_the_rest_goes_on(tmp_path):
 def test_a_case_larger_than_the_memory_fails_alone(tmp_path):
     report = run(small_study(sweep={"e_over_a": [0], "friction": [IS_LARGE, 0.1]}), tmp_path)
     assert report.counts == {"failed": 1, "ok": 1}
-    assert report.failures[0][1].reason == "MemoryError: Unable to allocate 7 EiB"
+    assert report.failures[0][1] == "MemoryError: Unable to allocate 7 EiB"
 
 
 def repaired(case, grid, **settings):
@@ -74,7 +65,7 @@ def test_rerun_repairs(tmp_path):
     study = small_study(sweep={"e_over_a": [0, 1], "friction": [FAILS, 0.1]})
     run(study, tmp_path)
     assert rerun_study(tmp_path, workers=0, solver=repaired).counts == {"ok": 4}
-    assert not list((tmp_path / "cases").glob("*.failed"))
+    assert "failed" not in open_study(tmp_path)["status"]
 
 
 @pytest.mark.parametrize(("number", "kind"), [(signal.SIGINT, KeyboardInterrupt), (signal.SIGTERM, Terminated)])
@@ -104,40 +95,66 @@ def test_an_error_of_the_program_stops_the_run(tmp_path, workers):
     with pytest.raises(ZeroDivisionError) as caught:
         run(study, tmp_path, workers=workers)
     assert "friction=0.88" in caught.value.__notes__[0]
-    assert not (tmp_path / "run.lock").exists()
-    assert len(list((tmp_path / "cases").glob("*.nc"))) >= 1
+    assert not Folder(tmp_path).holders
+    assert finished(tmp_path) >= 1
     assert "ZeroDivisionError" in (tmp_path / "run.log").read_text()
 
 
+def part(**changes):
+    """One half of the small study, whose cases lie in a batch alone."""
+    return small_study(sweep={"e_over_a": [changes["e_over_a"]], "friction": [0.0, 0.1]})
+
+
+@pytest.fixture
+def two_batches(study, tmp_path, monkeypatch):
+    """Folder with a study in two batches of two cases."""
+    monkeypatch.setattr(Folder, "compact", lambda self, share, at_end=False: None)
+    monkeypatch.setattr(worker, "RUN", RunSettings(save_seconds=60.0))
+    for e_over_a in (0.0, 1.0):
+        run(part(e_over_a=e_over_a), tmp_path)
+    Folder(tmp_path).write_study(study)
+    assert [len(batch) for batch in Folder(tmp_path).results().batches] == [2, 2]
+    return tmp_path
+
+
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
-def test_a_damaged_file_is_set_aside_and_solved_again(study, tmp_path, content):
-    run(study, tmp_path)
-    path = Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1))
+def test_a_damaged_batch_costs_its_cases_only(study, two_batches, content):
+    path = batch_paths(two_batches / "batches")[0]
     path.write_bytes(content)
-    assert run(study, tmp_path).solved == 1
-    assert (tmp_path / "set-aside" / path.name).read_bytes() == content
-    assert path.name in (tmp_path / "run.log").read_text()
-    assert load_case(path)["pressure"].max() > 0
+    opened = open_study(two_batches)
+    lost = opened["status"] == "missing"
+    assert int(lost.sum()) == 2
+    assert path.name in str(opened["message"].values[lost.values][0])
+    assert float(opened["peak_pressure"].where(~lost).min()) > 0
+    report = run(study, two_batches)
+    assert (report.solved, report.counts) == (2, {"ok": 4})
+    assert (two_batches / "set-aside" / path.name).read_bytes() == content
+    assert "its cases are missing" in report.remarks[0]
+    assert float(open_study(two_batches)["peak_pressure"].min()) > 0
 
 
-def test_foreign_and_misplaced_files_are_set_aside(study, tmp_path):
+def test_a_changed_byte_is_found(study, tmp_path):
     run(study, tmp_path)
-    cases = tmp_path / "cases"
-    good = Folder(tmp_path).case_path(identity(e_over_a=1, friction=0.1))
-    shutil.copy(good, cases / "copy.nc")
-    (cases / "notes.nc").write_text("mine")
-    report = good.with_suffix(".html")
-    report.write_text("a report of the case")
-    assert run(study, tmp_path).solved == 0
-    assert report.exists()
-    assert {path.name for path in (tmp_path / "set-aside").iterdir()} == {"copy.nc", "notes.nc"}
+    (path,) = batch_paths(tmp_path / "batches")
+    data = bytearray(path.read_bytes())
+    data[-100] ^= 1
+    path.write_bytes(bytes(data))
+    assert run(study, tmp_path).solved == 4
+    assert (tmp_path / "set-aside" / path.name).exists()
 
 
-def test_another_case_under_a_cases_name(study, tmp_path):
-    run(study, tmp_path)
-    one, other = (Folder(tmp_path).case_path(identity(e_over_a=1, friction=f)) for f in (0, 0.1))
-    shutil.copy(one, other)
-    assert run(study, tmp_path).solved == 1
+def test_foreign_files_are_set_aside_and_others_stay(study, two_batches):
+    batches = two_batches / "batches"
+    first, second = batch_paths(batches)
+    shutil.copy(first, second)  # another batch under this name
+    (batches / "notes.nc").write_text("mine")
+    (batches / "pipe.nc").symlink_to(two_batches / "nowhere")
+    os.mkfifo(batches / "fifo.nc")
+    (batches / "report.html").write_text("a report of the study")
+    assert run(study, two_batches).solved == 2
+    assert (batches / "report.html").exists()
+    aside = {path.name for path in (two_batches / "set-aside").iterdir()}
+    assert aside == {second.name, "notes.nc", "pipe.nc", "fifo.nc"}
 
 
 def test_a_higher_level_solves_again(tmp_path):
@@ -147,7 +164,7 @@ def test_a_higher_level_solves_again(tmp_path):
 
 
 def test_cases_of_another_version_are_stale_and_solved_by_rerun(study, tmp_path, monkeypatch):
-    monkeypatch.setattr("contactstudy.study.work.circumstances", lambda: {"contactstudy": "0.0.1"})
+    monkeypatch.setattr("contactstudy.study.worker.circumstances", lambda: {"contactstudy": "0.0.1"})
     assert run(study, tmp_path).counts == {"stale": 4}
     monkeypatch.undo()
     assert run(study, tmp_path).solved == 0
@@ -199,7 +216,7 @@ def open_place():
 
 
 @pytest.mark.skipif(not hasattr(os, "geteuid"), reason="permissions of POSIX")
-@pytest.mark.parametrize("closed", ["", "cases"])
+@pytest.mark.parametrize("closed", ["", "batches"])
 def test_a_folder_without_permission(study, open_place, closed):
     folder = open_place / "out"
     run(study, folder)
@@ -210,9 +227,8 @@ def test_a_folder_without_permission(study, open_place, closed):
     with ordinary_user(), pytest.raises(StoreError, match=r"cannot write .*[Pp]ermission"):
         run(with_more, folder)
     (folder / closed).chmod(0o777)
-    assert not (folder / "run.lock").exists()
-    for path in folder.glob("cases/*.nc"):
-        read_header(path, verify=True)
+    assert not Folder(folder).holders
+    assert intact(folder)
     report = run(with_more, folder)
     assert (report.counts, report.solved) == ({"ok": 6}, 2)
 
@@ -244,13 +260,12 @@ def test_a_full_disk(small_disk, study, workers):
     with pytest.raises(StoreError, match=r"disk is full|No space"):
         run(study, small_disk / "out", workers=workers)
     assert not list(small_disk.glob("**/*.part-*"))
-    assert not (small_disk / "out" / "run.lock").exists()
-    done = list((small_disk / "out" / "cases").glob("*.nc"))
-    for path in done:
-        read_header(path, verify=True)
+    assert not Folder(small_disk / "out").holders
+    assert intact(small_disk / "out")
+    done = finished(small_disk / "out")
     rest.unlink()
     report = run(study, small_disk / "out")
-    assert (report.counts, report.solved) == ({"ok": 4}, 4 - len(done))
+    assert (report.counts, report.solved) == ({"ok": 4}, 4 - done)
 
 
 @pytest.mark.system
@@ -270,27 +285,60 @@ def test_a_worker_that_dies_costs_its_case_only(tmp_path):
     report = run(study, tmp_path, workers=2)
     assert report.counts == {"ok": 3, "failed": 1}
     assert report.failures[0][0].name == "e_over_a=1 friction=0.77"
-    assert report.failures[0][1].reason.startswith("WorkerDied")
-
-
-def test_records_hold_no_fields(study, tmp_path):
-    report = run(study, tmp_path)
-    assert all(np.isscalar(value) for entry in report.entries for value in entry.scalars.values())
+    assert report.failures[0][1].startswith("WorkerDied")
 
 
 @pytest.mark.slow
 def test_memory_of_the_parent_is_flat(tmp_path, monkeypatch):
-    """Over 500 cases of two workers that keep fields; what grows is the manifest, a few kilobytes for each."""
+    """Over 500 cases of two workers that retain fields."""
     import psutil
 
     sizes = []
-    finished = Progress.finished
+    count = Progress.finished
 
-    def note(self, job, record):
-        finished(self, job, record)
+    def note(self, name, outcome):
+        count(self, name, outcome)
         sizes.append(psutil.Process().memory_info().rss)
 
     monkeypatch.setattr(Progress, "finished", note)
     sweep = {"e_over_a": [0, 1, 2, 3, 4], "max_pressure": [1e9 + 1e6 * number for number in range(100)]}
     assert run(small_study(sweep=sweep), tmp_path, workers=2).counts == {"ok": 500}
     assert max(sizes) - sizes[49] < 8e6
+
+
+def test_a_sample_is_solved_for_an_estimate(study, tmp_path):
+    report = run(study, tmp_path, sample=2)
+    assert (report.solved, report.counts) == (2, {"ok": 2, "missing": 2})
+    assert report.states.status.tolist()[0] == report.states.status.tolist()[-1] == 0
+
+
+def test_shares_are_independent_and_make_up_the_study(study, tmp_path):
+    for number in (2, 1, 3):
+        run(study, tmp_path / "shares", share=(number, 3))
+    run(study, tmp_path / "whole")
+    shared, whole = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("shares", "whole"))
+    assert shared.identical(whole)
+    assert (tmp_path / "shares" / "run-2-of-3.log").exists()
+    assert run(study, tmp_path / "shares").solved == 0
+
+
+@pytest.mark.parametrize("share", [(0, 3), (4, 3), (1, 2, 3), "1/3", (1.0, 2)])
+def test_a_wrong_share(study, tmp_path, share):
+    with pytest.raises(InvalidInputError, match="share"):
+        run(study, tmp_path, share=share)
+
+
+def test_a_deleted_working_directory(study, tmp_path, monkeypatch):
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    monkeypatch.chdir(gone)
+    gone.rmdir()
+    with pytest.raises(StoreError, match="working directory"):
+        run(study, None)
+
+
+def test_a_case_that_cannot_be_set_up_is_skipped_by_the_worker(tmp_path, monkeypatch):
+    monkeypatch.setattr("contactstudy.study.plan.RUN", RunSettings(checked_groups=1))
+    report = run(small_study(sweep={"e_over_a": [0, -9, -8], "friction": [0.0]}), tmp_path)
+    assert report.counts == {"ok": 1, "skipped": 2}
+    assert "body length" in report.states.reasons[1]

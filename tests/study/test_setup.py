@@ -3,8 +3,10 @@ import pytest
 
 from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import HalfSpace
+from contactstudy.case.motion import Shift
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.setup import build_setup
+from contactstudy.study.parameters import completed, counted
+from contactstudy.study.setup import build_setup, motion_of
 from tests.small_study import BASE
 
 
@@ -53,8 +55,7 @@ AT_APPROACH = {key: BASE[key] for key in ("young", "poisson", "radius", "roller_
 def test_an_approach_leaves_the_half_width_to_the_solution():
     setup = build_setup(AT_APPROACH | {"end_distance": 1e-4})
     assert setup.case.approach == 1e-6
-    assert np.isnan(setup.described["e_over_a"])
-    assert setup.operator != build_setup(AT_APPROACH | {"end_distance": 1e-4, "approach": 2e-6}).operator
+    assert np.isnan(setup.e_over_a)
 
 
 @pytest.mark.parametrize(
@@ -75,12 +76,6 @@ def test_what_is_over_a_is_refused_with_an_approach(changes, message):
 def test_stress_points_are_over_a():
     setup = build_setup(BASE | {"e_over_a": 0})
     np.testing.assert_allclose(setup.options["x"] / setup.case.hertz_half_width, [0, 1, 2])
-
-
-def test_cases_that_share_an_operator():
-    first = build_setup(BASE | {"e_over_a": 1, "friction": 0.0})
-    assert first.operator == build_setup(BASE | {"e_over_a": 1, "friction": 0.1}).operator
-    assert first.operator != build_setup(BASE | {"e_over_a": 2, "friction": 0.1}).operator
 
 
 @pytest.mark.parametrize(
@@ -135,3 +130,16 @@ def test_the_roller_of_one_material_needs_no_constants():
 def test_contradictions_about_the_roller(wrong, parameter):
     with pytest.raises(InvalidInputError, match=parameter):
         build_setup({**BASE, "e_over_a": 1.0, **wrong})
+
+
+def test_default_accuracy_and_default_friction_in_the_identity():
+    assert completed({"friction": 0.1}) == {"friction": 0.1, "accuracy": 0.01}
+    assert completed({"cells_x": 4.0}) == {"cells_x": 4.0}
+    assert counted("friction", 0.0) is None
+    tapered = {"kind": "tapered", "half_angle": 0.1}
+    assert counted("profile", tapered | {"name": "ours"}) == tapered
+
+
+def test_shift_from_its_parameters():
+    values = {"motion": "shift", "shift_y": 1e-6, "rolling_model": "exact"}
+    assert motion_of(values) == Shift(y=1e-6)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from contactstudy import open_study, run_study
 from contactstudy.fatigue import shakedown_limit
@@ -13,6 +14,7 @@ from tests.small_study import BASE, small_study
 PASSAGE = {"field_y_over_a": np.linspace(-2.0, 2.0, 17).tolist()}
 
 
+@pytest.mark.slow
 def test_cases_keep_their_limits_where_stresses_span_the_passage(tmp_path):
     run_study(small_study(base=BASE | PASSAGE, level="summary"), tmp_path, workers=0)
     study = open_study(tmp_path)

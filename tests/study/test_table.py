@@ -14,7 +14,7 @@ from tests.stand_in_solver import solve_fake
 
 
 def ids(study: Study) -> list[str]:
-    return [case.id for case in study.plan().cases]
+    return [case.id for case in study.plan()]
 
 
 def test_a_grid_is_a_product() -> None:

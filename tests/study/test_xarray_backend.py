@@ -26,7 +26,7 @@ def test_a_folder_opens_as_a_study(folder: Path, chunks: dict[str, int] | None) 
 
 
 def test_its_arguments_are_those_of_the_study(folder: Path) -> None:
-    own = xr.open_dataset(str(folder), engine="contactstudy", cells="own", drop_variables="von_mises")
+    own = xr.open_dataset(str(folder), engine="contactstudy", cells="original", drop_variables="von_mises")
     assert "x_index" in own.dims
     assert "von_mises" not in own
     with pytest.raises(InvalidInputError, match="cells"):
@@ -34,9 +34,9 @@ def test_its_arguments_are_those_of_the_study(folder: Path) -> None:
 
 
 def test_files_and_other_folders_are_not_its_business(folder: Path, tmp_path: Path) -> None:
-    case = next((folder / "cases").glob("*.nc"))
+    case = next((folder / "batches").glob("*.nc"))
     with xr.open_dataset(case) as opened:
         assert Path(opened.encoding["source"]) == case
-        assert "status" not in opened
+        assert opened.sizes["case"] == 4
     with pytest.raises((OSError, ValueError)):
         xr.open_dataset(tmp_path)

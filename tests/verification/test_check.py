@@ -7,22 +7,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from benchmarks.convergence import SETTINGS, Table
 from contactstudy.verification.check import compare, compare_fields
-from contactstudy.verification.convergence import SETTINGS, Table
-from contactstudy.verification.report import line
+from contactstudy.verification.suite import line
 
 FINITE = st.floats(-1e6, 1e6)
 
 
 @given(FINITE, FINITE, st.floats(0, 1e3))
-def test_a_check_passes_within_its_tolerance_only(computed: float, expected: float, tolerance: float) -> None:
+def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
     check = compare("case", "quantity", "source", computed, expected, tolerance)
     assert check.passed == (abs(computed - expected) <= tolerance)
     assert line(check).startswith("ok" if check.passed else "FAIL")
 
 
 @given(st.lists(FINITE, min_size=1, max_size=8), st.integers(0, 7))
-def test_fields_are_judged_by_their_worst_point(expected: list[float], place: int) -> None:
+def test_worst_point_of_fields(expected: list[float], place: int) -> None:
     computed = np.array(expected)
     computed[place % computed.size] += 1.0
     check = compare_fields("case", "field", "source", computed, expected, 0.5)
@@ -37,7 +37,7 @@ def test_what_is_not_a_number_fails(wrong: float) -> None:
     assert not compare_fields("case", "field", "source", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
 
 
-def test_convergence_is_judged_by_error_and_order() -> None:
+def test_convergence_by_error_and_order() -> None:
     def failing(errors: tuple[float, ...]) -> list[str]:
         table = Table(
             title="case",
@@ -56,7 +56,7 @@ def test_convergence_is_judged_by_error_and_order() -> None:
     assert len(failing((0.001, 0.001, 0.001))) == 1
 
 
-def test_every_setting_of_the_quadratures_is_studied_at_its_default() -> None:
+def test_every_setting_of_the_quadratures() -> None:
     from dataclasses import asdict
 
     from contactstudy.overlapping.quadrature import Resolution

@@ -9,7 +9,8 @@ import pytest
 
 from contactstudy import InvalidInputError
 from contactstudy.verification import closed_forms as ref
-from contactstudy.verification import published
+from contactstudy.verification import free_ends
+from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 
 NU = 0.3
 Field = Callable[[np.ndarray, np.ndarray, np.ndarray], ref.Stress]
@@ -82,14 +83,14 @@ def test_circle_on_the_surface() -> None:
     assert stress["sigma_zz"] == pytest.approx(-p, abs=1e-9)
     assert stress["tau_yz"] == pytest.approx(-0.25 * p, abs=1e-9)
     assert stress["tau_xz"] == pytest.approx(0, abs=1e-9)
-    radial, hoop = ref.hertz_circle_surface(r, 1.0, 1.0, NU)
+    radial, hoop = hertz_circle_surface(r, 1.0, 1.0, NU)
     frictionless = ref.hertz_circle(r, 0.0, 0.0, 1.0, 1.0, NU)
     assert frictionless["sigma_xx"] == pytest.approx(radial, abs=1e-9)
     assert frictionless["sigma_yy"] == pytest.approx(hoop, abs=1e-9)
     x, y = np.array([0.1, 0.4, -0.3]), np.array([0.2, -0.5, 0.6])
     shear = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU, 1.0)
     plain = ref.hertz_circle(x, y, 0.0, 1.0, 1.0, NU)
-    for name, value in ref.sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
+    for name, value in sliding_circle_surface(x, y, 1.0, 1.0, NU).items():
         assert shear[name] - plain[name] == pytest.approx(value, abs=1e-9), name
 
 
@@ -126,14 +127,13 @@ def test_circle_symmetries() -> None:
 
 
 def test_hertz_dimensions() -> None:
-    modulus = ref.composite_modulus(210e9, 0.3, 210e9, 0.3)
-    assert modulus == pytest.approx(115.3846e9, rel=1e-6)
+    modulus = 115.3846e9
     a, p0, approach = ref.hertz_point(100.0, 0.01, modulus)
     assert approach == pytest.approx((9 * 100**2 / (16 * 0.01 * modulus**2)) ** (1 / 3))
     assert p0 == pytest.approx((6 * 100 * modulus**2 / (np.pi**3 * 0.01**2)) ** (1 / 3))
     a, p0 = ref.hertz_line(2e5, 0.005, modulus)
     assert p0 == pytest.approx(np.sqrt(2e5 * modulus / (np.pi * 0.005)))
-    assert ref.hertz_line_from_pressure(p0, 0.005, modulus) == pytest.approx((a, 2e5))
+    assert 0.5 * np.pi * a * p0 == pytest.approx(2e5)
 
 
 def test_strip_on_the_surface() -> None:
@@ -220,7 +220,7 @@ def test_ellipse_with_exchanged_radii_is_an_error() -> None:
         ref.hertz_ellipse(1.0, 1.0, 2.0, 1.0)
 
 
-def test_rectangle_of_point_loads_is_newmarks_below_its_corner() -> None:
+def test_point_loads_against_newmark() -> None:
     z = np.array([0.5, 1.0, 3.0])
     stress = ref.rectangle(1.0, 0.5, z, 1.0, 0.5, NU)
     assert stress["sigma_zz"] == pytest.approx(ref.below_rectangle_corner(z, 2.0, 1.0), abs=1e-9)
@@ -230,6 +230,6 @@ def test_plane_of_a_wedge_carries_its_load() -> None:
     """The radial field of a quarter plane loaded at its corner: forces across any arc."""
     angle, weight = np.polynomial.legendre.leggauss(20)
     angle, weight = 0.25 * np.pi * (angle + 1), 0.25 * np.pi * weight
-    radial = published.wedge_stress(angle)
+    radial = free_ends.wedge_stress(angle)
     assert weight @ (radial * np.sin(angle)) == pytest.approx(-1.0)
     assert weight @ (radial * np.cos(angle)) == pytest.approx(0.0, abs=1e-12)

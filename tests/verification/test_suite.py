@@ -12,9 +12,8 @@ import xarray as xr
 
 from contactstudy import InvalidInputError
 from contactstudy.cli import main
-from contactstudy.verification import Verification, report, suite, verify
+from contactstudy.verification import Verification, suite, verify
 from contactstudy.verification.check import Check, Curve, compare
-from contactstudy.verification.convergence import Table
 
 
 def fake(full: bool) -> Iterator[Check]:
@@ -30,9 +29,7 @@ def small_suite(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("small_suite")
-def test_command_writes_the_table_and_fails_with_a_failed_check(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_command_with_a_failed_check(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["verify", "--out", str(tmp_path / "out")]) == 1
     output = capsys.readouterr().out
     assert re.search(r"^ok .* good \| case: pressure \[Hertz\]$", output, re.MULTILINE)
@@ -60,34 +57,13 @@ def test_nothing_checked_is_not_a_pass() -> None:
     assert not Verification("quick").passed
 
 
-def test_convergence_tables_are_written_and_drawn(tmp_path: Path) -> None:
-    table = Table(
-        title="sphere",
-        setting="cells",
-        source="Hertz",
-        values=(8, 16),
-        errors={"error": (0.04, 0.01)},
-        used=16,
-        order=1.0,
-    )
-    verification = Verification("full", {"convergence": list(table.checks())}, [table], 1.0)
-    paths = report.write(verification, tmp_path)
-    assert tmp_path / "convergence.png" in paths
-    assert "| ... order | | 2.0 |" in (tmp_path / "verification.md").read_text()
-    data = xr.load_dataset(tmp_path / "verification.nc")
-    assert data["convergence_error"].values.tolist() == [0.04, 0.01]
-    assert data["convergence_setting"].values.tolist() == ["cells", "cells"]
-
-
 @pytest.mark.parametrize("level", ["thorough", "", None, 2])
 def test_unknown_levels_are_errors(level: object) -> None:
     with pytest.raises(InvalidInputError, match="level"):
         verify(level)  # type: ignore[arg-type]
 
 
-def test_a_folder_that_cannot_be_made_is_refused_before_the_work(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_impossible_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     assert main(["verify", "--out", str(tmp_path / "file")]) == 2
     captured = capsys.readouterr()

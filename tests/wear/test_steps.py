@@ -5,10 +5,9 @@ import pytest
 
 from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
-from contactstudy.contact.contact import Settings, Shape
-from contactstudy.contact.prescribed import Prescribed
-from contactstudy.wear.steps import Stepper
-from contactstudy.wear.worn_contact import WornContact
+from contactstudy.contact.normal.contact import Settings, Shape
+from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.wear.steps import Stepper, WornContact
 
 
 @pytest.fixture
@@ -21,8 +20,8 @@ def stepper():
     return Stepper(WornContact(case, shape, Settings()), 1e-17 / (2 * np.pi * 5e-3), "slip", 0.01)
 
 
-def test_a_step_whose_contact_fails_is_cut(stepper, monkeypatch):
-    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
+def test_step_after_a_failed_contact(stepper, monkeypatch):
+    begun = stepper.initial(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
     real = WornContact.pressed
     longest = 50.0
 
@@ -37,8 +36,8 @@ def test_a_step_whose_contact_fails_is_cut(stepper, monkeypatch):
     assert len(states) > 2
 
 
-def test_what_never_converges_is_taken_in_the_end_and_says_so(stepper, monkeypatch):
-    begun = stepper.begun(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
+def test_shortest_step_without_convergence(stepper, monkeypatch):
+    begun = stepper.initial(0.0, np.zeros(stepper.contact.shape.grid.cells_x), 0.0)
     real = WornContact.pressed
     monkeypatch.setattr(WornContact, "pressed", lambda *arguments: real(*arguments)._replace(converged=False))
     states = stepper.states(begun, 1.0, 1.0)

@@ -1,0 +1,1 @@
+"""Studies under faults: what is tried, how often, and what held, as a table made by command."""

@@ -1,0 +1,68 @@
+"""A study in a folder that two systems share: another host, or another container of this host."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+from pathlib import Path
+
+import xarray as xr
+
+from benchmarks.faults import studies
+from benchmarks.faults.studies import CASES, SECONDS
+from benchmarks.faults.table import Row
+from tests.stand_in_solver import give_tickets
+from tests.study.conftest import start_run, tickets_of
+
+
+def _system(name: str) -> list[str]:
+    """A command that runs another one where the host has a `name` and processes have numbers of their own."""
+    separate = ["unshare", "--uts", "--pid", "--fork", "--kill-child", "--mount-proc"]
+    return [*separate, "sh", "-c", 'hostname "$0" && exec "$@"', name]
+
+
+def two_systems(calm: xr.Dataset, count: int) -> Row:
+    """A second run, on this system, while the first goes on in another one; the first ends, or is killed."""
+    fault = "a run in another system (host or container, of another name or the same) that shares the folder"
+    names = ["another-host", socket.gethostname()]
+    possible = (
+        shutil.which("unshare")
+        and not subprocess.run([*_system(names[0]), "true"], capture_output=True, check=False).returncode
+    )
+    if not possible:
+        return Row(fault, 0, 0, "not tried: no right to make a system with a name of its own")
+    held = sum(_held(calm, names[number % 2], killed=number % 4 > 1) for number in range(count))
+    found = (
+        "while it goes on: code 2, its host is named, and it ends bit for bit; after a kill its lock is free, and "
+        "a run resumes bit for bit"
+    )
+    return Row(fault, count, held, found)
+
+
+def _held(calm: xr.Dataset, name: str, *, killed: bool) -> bool:
+    """Whether nothing was lost or done twice."""
+    with studies.study_folder() as folder:
+        out, study = folder / "out", folder / "study.toml"
+        first = start_run(study, out, "--workers", "0", tickets=2, within=_system(name))
+        studies.wait(first, lambda: len(studies.finished(folder)) == 2)
+        right = _refused(folder, name)
+        if killed:
+            os.killpg(first.pid, signal.SIGKILL)
+            first.communicate()
+            right = right and len(studies.finished(folder)) == 2
+            right = right and studies.resume(folder) == {"ok": CASES}
+        else:
+            give_tickets(tickets_of(out), CASES)
+            first.communicate(timeout=SECONDS)
+            right = right and first.returncode == 0 and not studies.left_over(folder)
+        return right and studies.values(folder).identical(calm)
+
+
+def _refused(folder: Path, name: str) -> bool:
+    """Whether a run on this system is refused and told who holds the lock."""
+    second = studies.start(folder, "--workers", "0")
+    _, errors = second.communicate(timeout=SECONDS)
+    return second.returncode == 2 and f" on {name} since" in errors and "Traceback" not in errors

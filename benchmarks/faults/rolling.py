@@ -1,0 +1,114 @@
+"""A study of rolling cases, killed in its middle and resumed, against one that nothing happened to, bit for bit.
+
+``python -m benchmarks.faults.rolling --cases 500`` compares every case, with one process and with several.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.study import Study, open_study
+from contactstudy.study.folder import Folder
+from tests.small_study import BASE, as_toml
+from tests.study.conftest import ROOT
+
+CREEPAGES, LATERAL = 25, 5
+"""Longitudinal creepages, and lateral ones for each: the frictions make up the number of cases."""
+
+SECONDS = 3600.0
+"""Longest wait for a run."""
+
+
+def rolling_study(cases: int) -> Study:
+    """So many cases of steady rolling on a half-space: it has no ends to certify, which takes longest."""
+    creepages = min(cases, CREEPAGES)
+    lateral = min(LATERAL, cases // creepages)
+    frictions = cases // (creepages * lateral)
+    return Study(
+        name="rolling",
+        level="surface",
+        base={name: value for name, value in BASE.items() if not name.startswith("field_")}
+        | {"cells_x": 8, "cells_y": 16, "motion": "rolling", "e_over_a": 0.5, "stresses": False, "body": "half-space"},
+        sweep={
+            "longitudinal_creepage": np.linspace(0.0, 3e-3, creepages).tolist(),
+            "lateral_creepage": np.linspace(0.0, 1e-3, lateral).tolist(),
+            "friction": np.linspace(0.1, 0.4, frictions).tolist(),
+        },
+    )
+
+
+def begin(folder: Path, workers: int) -> subprocess.Popen[str]:
+    """Begin the study in a folder, or go on with it, in a new group of processes."""
+    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure"]
+    return subprocess.Popen(
+        [sys.executable, "-m", "contactstudy.cli", *command, "--workers", str(workers)],
+        cwd=ROOT,
+        start_new_session=True,
+        text=True,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    )
+
+
+def done(folder: Path) -> int:
+    """Number of cases that are done."""
+    return len(Folder(folder / "out").results().locations)
+
+
+def run(study: Study, folder: Path, workers: int, kill_at: int | None = None) -> xr.Dataset:
+    """Values of a study but for the times; killed once so many cases are done, and resumed."""
+    folder.mkdir()
+    (folder / "study.toml").write_text(as_toml(study))
+    if kill_at is not None:
+        process = begin(folder, workers)
+        end = time.monotonic() + SECONDS
+        while done(folder) < kill_at and process.poll() is None and time.monotonic() < end:
+            time.sleep(0.01)
+        os.killpg(process.pid, signal.SIGKILL)
+        process.communicate()
+        assert kill_at <= done(folder) < study.size, "the run ended before it was killed"
+    process = begin(folder, workers)
+    _, errors = process.communicate(timeout=SECONDS)
+    assert process.returncode == 0, errors
+    return open_study(folder / "out").drop_vars("seconds").load()
+
+
+def different(first: xr.Dataset, second: xr.Dataset) -> list[str]:
+    """Variables in which two studies differ in any bit."""
+    names = {*first.variables, *second.variables}
+    return sorted(
+        str(name)
+        for name in names
+        if name not in first or name not in second or not first[name].identical(second[name])
+    )
+
+
+def main() -> int:
+    """Compare what is asked for."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.faults.rolling", description=__doc__)
+    parser.add_argument("--cases", type=int, default=500, help="number of cases")
+    study = rolling_study(parser.parse_args().cases)
+    differences: list[str] = []
+    with tempfile.TemporaryDirectory(prefix="rolling-") as name:
+        calm = run(study, Path(name) / "calm", 0)
+        print(f"{study.size} cases, {int(calm['converged'].sum())} converged", flush=True)
+        for workers in (0, 2, 3):
+            found = run(study, Path(name) / f"workers-{workers}", workers, study.size // 2)
+            unlike = different(calm, found)
+            differences += unlike
+            print(f"killed in the middle and resumed, workers = {workers}: {unlike or 'all bits equal'}", flush=True)
+    return int(bool(differences))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

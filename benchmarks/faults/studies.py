@@ -1,0 +1,139 @@
+"""Studies of tiny cases with the stand-in solver, in processes that can be killed, and the same without faults."""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import xarray as xr
+
+from contactstudy.cli import main
+from contactstudy.study import open_study, run_study, worker
+from contactstudy.study.batches import batch_paths, damage
+from contactstudy.study.folder import Folder
+from contactstudy.study.settings import RunSettings
+from tests.small_study import as_toml, small_study
+from tests.stand_in_solver import HELD, solve_fake
+from tests.study.conftest import ROOT
+
+SWEEP = {"e_over_a": [0.0, 0.5, 1.0, 1.5], "friction": [0.0, 0.1, 0.2, 0.3, 0.4]}
+STUDY = small_study("faults", sweep=SWEEP)
+CASES = 20
+SECONDS = 300.0
+"""Longest wait for another process."""
+
+
+@contextmanager
+def study_folder() -> Iterator[Path]:
+    """Folder with the study as a file."""
+    with tempfile.TemporaryDirectory(prefix="faults-") as name:
+        folder = Path(name)
+        (folder / "study.toml").write_text(as_toml(STUDY))
+        yield folder
+
+
+def start(folder: Path, *more: str, largest_file: int | None = None) -> subprocess.Popen[str]:
+    """Start the study, in a new group of processes; files may have at most `largest_file` bytes."""
+
+    def limited() -> None:
+        assert largest_file is not None
+        resource.setrlimit(resource.RLIMIT_FSIZE, (largest_file, largest_file))
+
+    command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", *more]
+    return subprocess.Popen(
+        [sys.executable, "-m", "tests.study.fake_run", *command],
+        cwd=ROOT,
+        env={name: value for name, value in os.environ.items() if name != HELD},
+        start_new_session=True,
+        text=True,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        preexec_fn=limited if largest_file is not None else None,
+    )
+
+
+class Forked:
+    """Run of the study in a fork of this process, which needs no time to import: killed like any process."""
+
+    returncode: int | None = None
+
+    def __init__(self, folder: Path) -> None:
+        self.pid = os.fork()
+        if self.pid:
+            return
+        os.setsid()
+        null = os.open(os.devnull, os.O_RDWR)
+        os.dup2(null, 1)
+        os.dup2(null, 2)
+        worker.RUN = RunSettings(save_seconds=0.0)
+        command = ["run", str(folder / "study.toml"), "--out", str(folder / "out"), "--no-figure", "--workers", "0"]
+        os._exit(main(command, solver=solve_fake))
+
+    def poll(self, options: int = os.WNOHANG) -> int | None:
+        """Return the exit code, or None while the process runs."""
+        if self.returncode is None:
+            pid, status = os.waitpid(self.pid, options)
+            self.returncode = os.waitstatus_to_exitcode(status) if pid else None
+        return self.returncode
+
+    def communicate(self, timeout: float | None = None) -> tuple[str, str]:
+        """Wait for the end of the process."""
+        self.poll(0)
+        return "", ""
+
+
+def batches(folder: Path) -> list[Path]:
+    """Batches of the study."""
+    return batch_paths(folder / "out" / "batches")
+
+
+def finished(folder: Path) -> dict[bytes, int]:
+    """Identities of the cases that are done, with the number of the run that solved them."""
+    results = Folder(folder / "out").results()
+    return {identity: int(results.batches[batch].runs[row]) for identity, (batch, row) in results.locations.items()}
+
+
+def unreadable(folder: Path) -> int:
+    """Number of batches that are damaged."""
+    return sum(bool(damage(path)) for path in batches(folder))
+
+
+def resume(folder: Path) -> dict[str, int]:
+    """Run the study to its end, in this process; counts by state."""
+    return dict(run_study(STUDY, folder / "out", workers=0, solver=solve_fake).counts)
+
+
+def values(folder: Path) -> xr.Dataset:
+    """Return the opened study without its times."""
+    return open_study(folder / "out").drop_vars("seconds").load()
+
+
+def left_over(folder: Path) -> list[Path | str]:
+    """Parts of files and held locks, which a run must not leave behind."""
+    out = folder / "out"
+    return [*out.glob("**/*.part"), *Folder(out).holders]
+
+
+def calm_values() -> xr.Dataset:
+    """Return the opened study of a run without faults."""
+    with study_folder() as folder:
+        assert resume(folder) == {"ok": CASES}
+        return values(folder)
+
+
+def wait(process: subprocess.Popen[str] | Forked, condition: Callable[[], object]) -> None:
+    """Wait for a condition, or for the successful end of the process."""
+    end = time.monotonic() + SECONDS
+    while not condition():
+        if process.poll() is not None:
+            assert process.returncode == 0, process.communicate()
+            return
+        assert time.monotonic() < end, "waited too long"
+        time.sleep(0.005)

@@ -1,0 +1,13 @@
+"""Independent finite elements for bodies with free ends: where the stored references come from.
+
+* `harmonics`: the body for one wavenumber along y, with scikit-fem;
+* `superpose`: stresses under a load, the integral over the wavenumber;
+* `contact`: contact of a rigid roller as a complementarity problem;
+* `eigenstrain`: residual stress of eigenstrains, with the same body at wavenumber 0;
+* `passes`: a line contact over an elastic-plastic half-plane, step by step, in plane strain;
+* `shakedown`: Melan's bound as a cone program on equilibrium elements;
+* `stress_file`, `contact_file`, `passes_file`, `generate`: the files in `data`, with the estimates of their errors.
+
+The load cases are in `contactstudy.verification.problems`, the loading of the files in
+`contactstudy.verification.problems`.
+"""

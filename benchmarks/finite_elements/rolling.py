@@ -1,0 +1,190 @@
+"""Steady rolling of two like bodies between free ends, on the flexibility of the finite elements.
+
+Traction and pressure are uniform on columns along x and on strips along y. For each wavenumber along y the finite
+elements give the mean displacement of each column under each; the integral over the wavenumber makes of it the
+displacement of strips. Bodies and motion are even about mid-length: pressure and the traction along y are even, the
+traction along x is odd, so one half of the columns is unknown.
+
+Rolling begins at rest and goes on strip by strip. In every step the material of a strip comes from the strip ahead,
+and the tractions q minimise
+
+    q A q - 2 q A q_before    for    |q| <= f p    in every cell and a prescribed sum of the q along y,
+
+with the flexibility A of one body and the tractions one strip ahead and one step earlier: a convex program over cones.
+Its multiplier of the sum is the rigid slip of the step, the creepage. Nothing is shared with the solver, neither the
+body nor the way to the steady state. Slip is taken between neighbouring strips, so the creepage has an error of first
+order in their width.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import clarabel
+import numpy as np
+import scipy.sparse as sp
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+
+from benchmarks.finite_elements.contact import complementarity
+from benchmarks.finite_elements.harmonics import HarmonicBody, Line
+from benchmarks.finite_elements.superpose import Resolution
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class ColumnFlexibility:
+    """Mean displacement of pairs of columns, in units where `2 G` is 1, per wavenumber: arrays `[k, of, under]`.
+
+    `x` and `y` are even and odd in the half of the body as the traction along them is; `cross` is the displacement
+    along x under tractions along y, the factor of `sin`.
+    """
+
+    edges: Array
+    z: Array
+    x: Array
+    y: Array
+    cross: Array
+    k: Array
+    poisson: float
+    resolution: Resolution
+
+
+def flexibility(length: float, columns: int, poisson: float, resolution: Resolution) -> ColumnFlexibility:
+    """Solve for every wavenumber on an even number of columns; the body is cut where a panel's load has decayed."""
+    edges = np.linspace(0.0, length, columns + 1)
+    near = resolution.mesh_x(length)
+    near = near[near < 0.9 * edges[1]]
+    x = Line(np.unique(np.concatenate([edges, near, length - near])), resolution.order)
+    step, half = edges[1], columns // 2
+
+    def column(low: float, mirrored: float) -> Array:
+        """Forces of a pair of columns: 1 on the one, 1 or -1 on its mirror image."""
+        unit_load, other = (x.load(lambda x, s=s: 1.0 * (x > s) * (x < s + step)) for s in (low, length - low - step))
+        return unit_load + mirrored * other
+
+    even, odd = (np.array([column(edges[i], sign) for i in range(half)]) for sign in (1.0, -1.0))
+    depth, node = resolution.mesh_z(), legendre.leggauss(resolution.nodes)[0]
+    flexibilities: dict[str, list[Array]] = {"z": [], "x": [], "y": [], "cross": []}
+    ks = []
+    for low, high in zip(resolution.panels[:-1], resolution.panels[1:], strict=True):
+        deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
+        body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), poisson)
+        for k in low + 0.5 * (high - low) * (node + 1):
+            loads = np.zeros((3, half, 3, x.basis.N, body.z.basis.N))
+            for component_load, component, forces, sign in zip(
+                loads, (2, 0, 1), (even, odd, even), (1, 1, -1), strict=True
+            ):
+                component_load[:, component] = sign * forces[:, :, None] * body.top
+            amplitudes = body.displaced(loads.reshape(-1, *loads.shape[2:]), float(k))
+            top = 2 * (amplitudes @ body.top).reshape(3, half, 3, -1)
+            # A pair's mean is that of its first column: the functional of both, halved.
+            mean = 0.5 / step
+            flexibilities["z"].append(mean * even @ top[0, :, 2].T)
+            flexibilities["x"].append(mean * odd @ top[1, :, 0].T)
+            flexibilities["y"].append(-mean * even @ top[2, :, 1].T)
+            flexibilities["cross"].append(mean * odd @ top[2, :, 0].T)
+            ks.append(float(k))
+    return ColumnFlexibility(
+        edges,
+        *(np.array(component_load) for component_load in flexibilities.values()),
+        np.array(ks),
+        poisson,
+        resolution,
+    )
+
+
+def between_strips(flexible: ColumnFlexibility, name: str, width: float, count: int) -> Array:
+    """Displacement `[offset, of, under]` in the middle of strips, `offset` strips away from the loaded one.
+
+    Under a resultant it grows like a constant over k at small wavenumbers, the same for all columns: that part is
+    integrated with `cos(k y) - 1`, which leaves out a displacement of the whole body.
+    """
+    values, odd, resultant = getattr(flexible, name), name == "cross", name in "yz"
+    resolution, n = flexible.resolution, flexible.resolution.nodes
+    coarse = np.linalg.inv(legendre.legvander(legendre.leggauss(n)[0], n - 1))
+    offsets = width * np.arange(count)
+    base = values[:, -1, -1] if resultant else np.zeros(flexible.k.size)
+    total = np.zeros((count, *values.shape[1:]))
+    for i, (low, high) in enumerate(zip(resolution.panels[:-1], resolution.panels[1:], strict=True)):
+        part = slice(i * n, (i + 1) * n)
+        node, weight = legendre.leggauss(24 + int(0.6 * (high - low) * offsets[-1]))
+        k = low + 0.5 * (high - low) * (node + 1)
+        factor = 0.5 * (high - low) * weight * width * np.sinc(k * width / (2 * np.pi)) / np.pi
+        interpolate = legendre.legvander(node, n - 1) @ coarse
+        waves = (np.sin if odd else np.cos)(np.outer(offsets, k))
+        total += np.tensordot(waves * factor @ interpolate, values[part] - base[part, None, None], axes=1)
+        if resultant:
+            total += ((waves - 1) / k * factor @ interpolate @ (flexible.k[part] * base[part]))[:, None, None]
+    return total
+
+
+@dataclass(frozen=True)
+class Rolled:
+    """Steady tractions on columns of the first half and strips `[column, strip]`, and how far the last step moved."""
+
+    creepage: float
+    pressure: Array
+    along_x: Array
+    along_y: Array
+    change: float
+
+
+def _blocks(strips: Array, count: int, *, odd: bool = False) -> Array:
+    """Matrix between cells, numbered column first, from displacements by offset; odd ones change sign behind."""
+    offset = np.arange(count)[:, None] - np.arange(count)
+    blocks = strips[np.abs(offset)]
+    if odd:
+        blocks = blocks * np.sign(offset)[..., None, None]
+    columns = strips.shape[1]
+    return blocks.transpose(2, 0, 3, 1).reshape(columns * count, columns * count)
+
+
+def roll(
+    flexible: ColumnFlexibility, strips: int, window: float, load: float, friction: float, part: float, steps: int
+) -> Rolled:
+    """Two like bodies of plane-strain modulus 1 each, the gap y**2 / 2, rolling along +y from rest.
+
+    The force along y is a part of full sliding's.
+    """
+    half, width = flexible.edges.size // 2, 2 * window / strips
+    # 2 G = (1 - nu) E', of one body.
+    of = {name: between_strips(flexible, name, width, strips) / (1 - flexible.poisson) for name in ("z", "x", "y")}
+    normal = 2 * _blocks(of["z"], strips)
+    y = (np.arange(strips) + 0.5) * width - window
+    areas = np.full(half * strips, 2 * width * flexible.edges[1])
+    pressure = complementarity(0.5 * (normal + normal.T), np.tile(0.5 * y**2, half), areas, load)
+    cross = between_strips(flexible, "cross", width, strips) / (1 - flexible.poisson)
+    along_y = _blocks(of["y"], strips)
+    # A constant between all tractions along y is a displacement of the whole body. It makes the program convex.
+    along_y = along_y - 1.01 * min(float(np.linalg.eigvalsh(along_y + along_y.T)[0]) / 2, 0.0) / areas.size
+    coupled = _blocks(cross, strips, odd=True)
+    matrix = np.block([[_blocks(of["x"], strips), coupled], [coupled.T, along_y]])
+    matrix = 0.5 * (matrix + matrix.T)
+    pressed = np.flatnonzero(pressure > 0)
+    count, unknown = pressed.size, np.concatenate([pressed, areas.size + pressed])
+    force = part * friction * pressure.sum()
+    # The sum of the q along y, then (f p, q_x, q_y) cell by cell in a cone.
+    numbers = np.arange(count)
+    rows = np.concatenate([np.zeros(count, int), 3 * numbers + 2, 3 * numbers + 3])
+    columns = np.concatenate([count + numbers, numbers, count + numbers])
+    values = np.concatenate([np.ones(count), -np.ones(2 * count)])
+    constraints = sp.csc_matrix((values, (rows, columns)), (1 + 3 * count, 2 * count))
+    limits = np.zeros(1 + 3 * count)
+    limits[0], limits[1::3] = force, friction * pressure[pressed]
+    cones = [clarabel.ZeroConeT(1), *[clarabel.SecondOrderConeT(3)] * count]
+    upper = sp.csc_matrix(np.triu(2 * matrix[np.ix_(unknown, unknown)]))
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    traction, change, creepage = np.zeros((2, half, strips)), np.inf, np.nan
+    for _ in range(steps):
+        ahead = np.zeros_like(traction)
+        ahead[:, :, :-1] = traction[:, :, 1:]
+        surface_shift = 2 * matrix @ ahead.ravel()
+        solution = clarabel.DefaultSolver(upper, -surface_shift[unknown], constraints, limits, cones, settings).solve()
+        forces = np.zeros(2 * areas.size)
+        forces[unknown] = solution.x
+        change = float(np.abs(forces - traction.ravel()).max() / (friction * pressure.max()))
+        traction, creepage = forces.reshape(traction.shape), -solution.z[0] / width
+    return Rolled(creepage, pressure.reshape(half, -1), traction[0], traction[1], change)

@@ -1,0 +1,124 @@
+"""Melan's bound by equilibrium finite elements: linear stresses in triangles, tractions that match between them.
+
+The elements are those of S. W. Sloan, Lower bound limit analysis using finite elements and linear programming, Int. J.
+Numer. Anal. Meth. Geomech. 12 (1988) 61: in each triangle the stress is linear and in equilibrium; across each side
+the tractions are continuous, and on the faces zero.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import clarabel
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+Array = NDArray[np.float64]
+OFFSETS = (0.2, 0.7), (0.25, 0.75)
+"""Points per rectangle, over its sides: every triangle has one at least, none is on a side."""
+
+
+def points(edges: Array, axis: int) -> Array:
+    """Positions of the points along x (0) or z (1)."""
+    offsets = np.array(OFFSETS[axis])
+    return (edges[:-1, None] + np.diff(edges)[:, None] * offsets).ravel()
+
+
+class Elements:
+    """Triangles of a rectangle; unknowns are (xx, zz, xz) at the corners of each."""
+
+    def __init__(self, x: Array, z: Array) -> None:
+        self.x, self.z = x, z
+        self.triangles: list[Array] = []
+        for i in range(x.size - 1):
+            for j in range(z.size - 1):
+                a, b, c, d = ([x[i + k], z[j + n]] for k, n in ((0, 0), (1, 0), (1, 1), (0, 1)))
+                self.triangles += [np.array([a, b, c]), np.array([a, c, d])]
+        self.count = 9 * len(self.triangles)
+
+    def equilibrium(self) -> sparse.csr_matrix:
+        """All equations: in the triangles, across their sides, on the faces."""
+        rows: list[dict[int, float]] = []
+        sides: dict[tuple[tuple[float, ...], ...], list[tuple[int, Array]]] = defaultdict(list)
+        for number, corners in enumerate(self.triangles):
+            slopes = np.linalg.inv(np.column_stack([np.ones(3), corners]))[1:]
+            for row_component, other in ((0, 2), (2, 1)):  # xx,x + xz,z and xz,x + zz,z
+                row: dict[int, float] = defaultdict(float)
+                for corner in range(3):
+                    row[9 * number + 3 * corner + row_component] += slopes[0, corner]
+                    row[9 * number + 3 * corner + other] += slopes[1, corner]
+                rows.append(row)
+            for first in range(3):
+                second = (first + 1) % 3
+                ends = sorted((tuple(corners[first]), tuple(corners[second])))
+                tangent = np.subtract(ends[1], ends[0])
+                normal = np.array([tangent[1], -tangent[0]]) / np.hypot(*tangent)
+                for end in ends:
+                    corner = first if tuple(corners[first]) == end else second
+                    sides[(*ends, end)].append((9 * number + 3 * corner, normal))
+        for sharing in sides.values():
+            for direction in range(2):
+                row = defaultdict(float)
+                for sign, (start, normal) in zip((1.0, -1.0), sharing, strict=False):
+                    components = (0, 2) if direction == 0 else (2, 1)
+                    row[start + components[0]] += sign * normal[0]
+                    row[start + components[1]] += sign * normal[1]
+                rows.append(row)
+        entries = [(i, j, value) for i, row in enumerate(rows) for j, value in row.items()]
+        i, j, values = zip(*entries, strict=True)
+        return sparse.csr_matrix((values, (i, j)), shape=(len(rows), self.count))
+
+    def at_points(self) -> list[sparse.csr_matrix]:
+        """Matrices from the unknowns to the stresses xx, zz, xz at all points (x first)."""
+        x, z = points(self.x, 0), points(self.z, 1)
+        matrices = [sparse.lil_matrix((x.size * z.size, self.count)) for _ in range(3)]
+        for i, px in enumerate(x):
+            for j, pz in enumerate(z):
+                rectangle = (i // 2) * (self.z.size - 1) + j // 2
+                upper = OFFSETS[1][j % 2] > OFFSETS[0][i % 2]
+                number = 2 * rectangle + int(upper)
+                corners = self.triangles[number]
+                shares = np.linalg.solve(np.vstack([np.ones(3), corners.T]), [1.0, px, pz])
+                for component in range(3):
+                    for corner in range(3):
+                        matrices[component][i * z.size + j, 9 * number + 3 * corner + component] = shares[corner]
+        return [matrix.tocsr() for matrix in matrices]
+
+
+def least_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
+    """Least k for histories (point, instant, 6) at the points of a mesh with these edges."""
+    elements = Elements(x, z)
+    equations, (xx, zz, xz) = elements.equilibrium(), elements.at_points()
+    count, instants = history.shape[:2]
+    root = np.sqrt(3.0)
+    sxx, syy, szz, sxy, sxz, syz = np.moveaxis(history, -1, 0)
+    parts = [
+        np.zeros((count, instants)),
+        syy - 0.5 * (sxx + szz),
+        0.5 * root * (sxx - szz),
+        root * sxz,
+        root * np.sqrt(sxy**2 + syz**2),
+    ]
+    rows = np.arange(count * instants)
+    point = rows // instants
+
+    # Unknowns: von Mises' stress t, the free part of each point along u, the stresses.
+    def cone(row: int, matrix: sparse.spmatrix) -> sparse.csr_matrix:
+        spread = sparse.csr_matrix((np.full(rows.size, -1.0), (5 * rows + row, rows)), shape=(5 * rows.size, rows.size))
+        return spread @ matrix
+
+    bound = cone(0, sparse.csr_matrix(np.ones((rows.size, 1))))
+    free = cone(1, sparse.csr_matrix((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
+    stress = cone(2, 0.5 * root * (xx - zz)[point]) + cone(3, root * xz[point])
+    constraints = sparse.hstack([sparse.csr_matrix((equations.shape[0], 1 + count)), equations])
+    matrix = sparse.vstack([constraints, sparse.hstack([bound, free, stress])], format="csc")
+    right = np.concatenate([np.zeros(equations.shape[0]), np.stack(parts, axis=-1).ravel()])
+    cost = np.zeros(1 + count + elements.count)
+    cost[0] = 1.0
+    settings = clarabel.DefaultSettings()
+    settings.verbose = False
+    cones = [clarabel.ZeroConeT(equations.shape[0])] + [clarabel.SecondOrderConeT(5)] * rows.size
+    nothing = sparse.csc_matrix((cost.size, cost.size))
+    solution = clarabel.DefaultSolver(nothing, cost, matrix, right, cones, settings).solve()
+    return float(solution.obj_val) / root

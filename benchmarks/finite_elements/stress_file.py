@@ -1,0 +1,129 @@
+"""The file of stresses under prescribed loads: every case, and how much each approximation changes it.
+
+Every case is solved at the production resolution and with one thing at a time made worse: element order,
+mesh, depth of the body, quadrature in k. The sum of the largest changes is stored as the error estimate of
+the case.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import groupby
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import scipy
+import skfem  # type: ignore[import-untyped]
+import xarray as xr
+
+from benchmarks.finite_elements.harmonics import COMPONENTS
+from benchmarks.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
+from contactstudy.verification.problems import LOAD_CASES, LoadCase, quartic
+
+Z = (0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.8, 1.25, 2.0, 3.0, 5.0)
+Y = (0.0, 0.25, 0.5, 0.75, 1.0, 1.25)
+X = {
+    8.0: (0.0, 0.02, 0.1, 0.25, 0.5, 1.0, 1.5, 2.0, 4.0, 7.75, 8.0),
+    4.0: (0.0, 0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 3.0, 3.75, 3.98, 4.0),
+    2.5: (0.0, 0.02, 0.1, 0.25, 0.5, 0.8, 1.25, 2.0, 2.5),
+    0.5: (0.0, 0.02, 0.05, 0.1, 0.25, 0.4, 0.5),
+}
+PRODUCTION = Resolution()
+LOWER = replace(PRODUCTION, order=5)
+VARIANTS = {  # name: (variant, reference)
+    "order": (LOWER, PRODUCTION),
+    "mesh": (replace(LOWER, growth=2.2, smallest=0.05), LOWER),
+    "depth": (replace(LOWER, depth=7e3), LOWER),
+    "wavenumbers": (replace(LOWER, nodes=5, panels=(0, 0.02, *PANELS[2:-1], 80)), LOWER),
+}
+
+
+def coordinates(case: LoadCase) -> dict[str, Sequence[float]]:
+    """Points of a case: with friction nothing is even in y, so both sides."""
+    y = Y if case.friction == 0 else tuple(-v for v in Y[:0:-1]) + Y
+    return {"x": X[case.length], "y": y, "z": Z}
+
+
+def evaluate(case: LoadCase, harmonic: Harmonics, shapes: list[tuple[object, bool]]) -> xr.Dataset:
+    """Stresses, and where it has a meaning the displacement, from the harmonics of a body."""
+    positions = coordinates(case)
+    normal = shapes.index((case.g, "z"))
+    tangential = shapes.index((case.g, "y")) if case.friction else None
+    fields = stresses(harmonic, normal, tangential, case.friction, positions["y"])
+    units = {"units": "p0"}
+    data = xr.Dataset(
+        {n: (("x", "y", "z"), fields[n], units) for n in COMPONENTS}, coords={k: list(v) for k, v in positions.items()}
+    )
+    for name in positions:
+        data[name].attrs["units"] = "a"
+    if case.symmetric:
+        reference = positions["x"].index(case.length / 2)
+        u = displacement(harmonic, case, normal, tangential, positions["y"], reference)
+        attrs = {
+            "long_name": "displacement of the top into the body times Young's modulus, less that of the reference",
+            "units": "p0 a",
+            "reference_x": case.length / 2,
+            "reference_y": 0.0,
+        }
+        data["displacement_z_young"] = (("x", "y"), u, attrs)
+    return data
+
+
+def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]:
+    """Largest and median change of the stresses, largest change of the displacement."""
+    stress = np.array([np.abs(worse[n] - better[n]) for n in COMPONENTS])
+    name = "displacement_z_young"
+    moved = float(np.abs(worse[name] - better[name]).max()) if name in better else 0.0
+    return float(stress.max()), float(np.median(stress)), moved
+
+
+def write(path: Path) -> None:
+    """Solve all cases at all resolutions and store the result."""
+    path.unlink(missing_ok=True)
+    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
+    versions = ", ".join(f"{name} {module.__version__}" for name, module in modules.items())
+    xr.Dataset(
+        attrs={
+            "title": "Stresses in a finite-length space under prescribed loads, by finite elements",
+            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+            "load": "on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
+            "h": str(quartic.__doc__),
+            "units": "lengths in a, the half-width of h; stresses in p0, positive in tension",
+            "method": "Fourier integral in y, tensor-product elements of high order in x and z",
+            "resolution": str(PRODUCTION),
+            "software": versions,
+            "regenerate": "python -m benchmarks.finite_elements.generate stress",
+        }
+    ).to_netcdf(path)
+    for (length, poisson), group in groupby(LOAD_CASES.items(), key=lambda item: (item[1].length, item[1].poisson)):
+        cases = dict(group)
+        shapes = list(
+            dict.fromkeys([(c.g, "z") for c in cases.values()] + [(c.g, "y") for c in cases.values() if c.friction])
+        )
+        results: dict[Resolution, dict[str, xr.Dataset]] = {}
+        for resolution in dict.fromkeys([PRODUCTION, LOWER, *(v for v, _ in VARIANTS.values())]):
+            start = time.perf_counter()
+            harmonic = harmonics(length, poisson, shapes, X[length], Z, resolution)
+            results[resolution] = {n: evaluate(c, harmonic, list(shapes)) for n, c in cases.items()}
+            print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
+        for name, case in cases.items():
+            estimates = {v: changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
+            stored = results[PRODUCTION][name].astype("float32")
+            stored.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
+            for variant, (largest, median, _) in estimates.items():
+                stored.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
+            stored.attrs["error_estimate"] = sum(c[0] for c in estimates.values())
+            stored.attrs["error_estimate_median"] = sum(c[1] for c in estimates.values())
+            if "displacement_z_young" in stored:
+                stored["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
+            stored = stored.assign_coords({k: list(v) for k, v in coordinates(case).items()})
+            stored.to_netcdf(path, mode="a", group=name, encoding={n: {"_FillValue": None} for n in stored.data_vars})
+            print(
+                name,
+                stored.attrs["error_estimate"],
+                {v: f"{c[0]:.1e}, {c[1]:.1e}, {c[2]:.1e}" for v, c in estimates.items()},
+                flush=True,
+            )

@@ -1,0 +1,1 @@
+"""Random cases: their parameters, their properties, and long runs by command."""

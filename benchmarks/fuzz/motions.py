@@ -1,0 +1,70 @@
+"""Random shifts and rolling, and the same seen from the other end or in other units."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from random import Random
+
+from contactstudy import Case, Rolling, Shift
+from contactstudy.case.motion import Motion
+
+OF_X = ("lateral_creepage", "spin", "moment_z", "force_x", "x")
+"""Quantities that change sign for a roller turned end for end."""
+
+UNITS = {"force_x": (2, 1), "force_y": (2, 1), "moment_z": (3, 1), "spin": (-1, 0), "x": (1, 0), "y": (1, 0)}
+"""Powers of length and modulus in the unit of each."""
+
+
+def random_motion(chance: Random, case: Case, friction: float) -> Motion:
+    """From hardly any slip to full sliding."""
+    half_width, radius, full_sliding = case.hertz_half_width, case.roller.radius, friction * case.normal_load
+    if chance.random() < 0.35:
+        shift = 0.5 * friction * half_width**2 / radius
+        return Shift(
+            **{
+                name: value
+                for axis in "xy"
+                for name, value in _either(chance, axis, f"force_{axis}", shift, full_sliding)
+            }
+        )
+    creepage, spin = friction * half_width / radius, friction / radius
+    turns = full_sliding * 0.25 * case.roller.length
+    values = dict(
+        [
+            *_either(chance, "longitudinal_creepage", "force_y", creepage, full_sliding),
+            *_either(chance, "lateral_creepage", "force_x", creepage, full_sliding),
+            *_either(chance, "spin", "moment_z", spin, turns),
+        ]
+    )
+    if chance.random() < 0.1:
+        values = {name: value for name, value in values.items() if name.endswith("creepage") or name == "spin"}
+        return Rolling(**values, model="fastsim")
+    return Rolling(**values)
+
+
+def _either(chance: Random, move: str, force: str, of_move: float, of_force: float) -> list[tuple[str, float]]:
+    """A move or the force that it makes, or neither."""
+    chosen = chance.random()
+    if chosen < 0.3:
+        return []
+    if chosen < 0.75:
+        return [(move, chance.choice((0.1, 1.0, 3.0)) * chance.uniform(-1.0, 1.0) * of_move)]
+    return [(force, chance.uniform(-0.5, 0.5) * of_force)]
+
+
+def turned_motion(motion: Motion) -> Motion:
+    """The same seen from the other end."""
+    return replace(motion, **{name: -value for name, value in _prescribed_values(motion).items() if name in OF_X})
+
+
+def scaled_motion(motion: Motion, length: float, modulus: float) -> Motion:
+    """The same with every length and every modulus multiplied."""
+    values = {name: value for name, value in _prescribed_values(motion).items() if name in UNITS}
+    return replace(
+        motion, **{name: value * length ** UNITS[name][0] * modulus ** UNITS[name][1] for name, value in values.items()}
+    )
+
+
+def _prescribed_values(motion: Motion) -> dict[str, float]:
+    """Prescribed values by name."""
+    return {name: value for name, value in vars(motion).items() if isinstance(value, float)}

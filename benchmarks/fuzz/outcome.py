@@ -1,0 +1,86 @@
+"""One random case from its seed, and its outcome."""
+
+from __future__ import annotations
+
+import time
+import traceback
+import warnings
+from dataclasses import dataclass
+from random import Random
+
+from benchmarks.fuzz import motion_properties, properties
+from benchmarks.fuzz.drawn import Drawn, random_drawn
+from benchmarks.fuzz.solved import Solved, ViolationError, run
+from contactstudy import ContactStudyError, MagnitudeWarning
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """Outcome of a case.
+
+    Attributes
+    ----------
+    kind : str
+        "converged", "not converged" (with its warning), "refused" (by an error of the package) or "violation".
+    message : str
+        Property, error, or message.
+    checked : tuple of str
+        Properties that held.
+    seconds : float
+        Time it took.
+    """
+
+    kind: str
+    message: str = ""
+    checked: tuple[str, ...] = ()
+    seconds: float = 0.0
+
+
+def outcome_of(chance: Random, *, refined: bool | None = None) -> Outcome:
+    """Draw a case, solve it and look at its properties; nothing that goes wrong leaves this function.
+
+    `refined` decides whether cells are refined or given; None leaves it to chance.
+    """
+    began = time.perf_counter()
+    checked: list[str] = []
+    now = "drawing"
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            warnings.simplefilter("ignore", MagnitudeWarning)  # scaled cases are of any size
+            drawn = random_drawn(chance, refined=refined)
+            now = "solve"
+            kind, message = _checked(drawn, chance, checked)
+    except ViolationError as violation:
+        now = checked.pop() if checked else now
+        kind, message = "violation", f"{now}: {violation}"
+    except ContactStudyError as error:
+        kind, message = (
+            ("refused", type(error).__name__) if not checked else ("violation", f"{checked.pop()}: {error!r}")
+        )
+    except Exception as error:
+        frame = traceback.extract_tb(error.__traceback__)[-1]
+        kind, message = "violation", f"{(checked or [now])[-1]}: {error!r} in {frame.filename}:{frame.lineno}"
+    return Outcome(kind, message, tuple(checked), time.perf_counter() - began)
+
+
+def _checked(drawn: Drawn, chance: Random, checked: list[str]) -> tuple[str, str]:
+    """Solve a case and note each property as it is looked at."""
+    result = run(drawn)
+    if not bool(result["converged"]):
+        return "not converged", ""
+    solved = Solved(drawn, result, chance)
+    always, in_turn = properties.ALWAYS, properties.IN_TURN
+    if solved.moves:
+        always, in_turn = always + motion_properties.ALWAYS, motion_properties.IN_TURN
+    for holds in always:
+        checked.append(holds.__name__)
+        if not holds(solved):
+            checked.pop()
+    # One that there is anything to look at for.
+    for holds in chance.sample(in_turn, len(in_turn)):
+        checked.append(holds.__name__)
+        if holds(solved):
+            break
+        checked.pop()
+    return "converged", ""

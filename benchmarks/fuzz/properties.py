@@ -1,0 +1,470 @@
+"""Properties of every converged case.
+
+Each function raises `ViolationError`, or returns whether the property applies to the case. Bounds are over the peak
+pressure unless stated otherwise. They contain the tolerance of the contact, which bounds the gap: on fine cells the
+pressure varies by more.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from scipy import ndimage
+
+from benchmarks.fuzz.shapes import magnitude
+from benchmarks.fuzz.solved import (
+    SAME_PRESSURE,
+    TOLERANCE,
+    Solved,
+    ViolationError,
+    close,
+    contact,
+    on_cells,
+    require,
+    run,
+    solve_again,
+)
+from contactstudy import (
+    ConvergenceWarning,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    cache,
+    equivalent_loads,
+    fatigue,
+    stress_field,
+    surface_displacement,
+)
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import EndedBody
+from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES
+from contactstudy.kernels.fine_cells import REACH
+
+
+def finite_values(solved: Solved) -> bool:
+    """No NaN is marked converged, pressure is not negative, the gap is infinite beyond the roller only."""
+    for key, values in solved.result.data_vars.items():
+        name = str(key)
+        array = np.asarray(values.values)
+        exponent = name.removesuffix("_error").replace("intensity", "exponent")
+        unknown = name.startswith("end_intensity") and float(solved.result[exponent]) == 0  # a logarithm has none
+        if array.dtype.kind == "f" and not unknown:
+            require(not np.isnan(array).any(), f"{name} holds NaN")
+    pressure, gap = solved.result["pressure"].values, solved.result["gap"].values
+    require(np.isfinite(pressure).all() and pressure.min() >= 0 and pressure.max() > 0, "pressure out of range")
+    require((np.isinf(gap) == np.isinf(solved.result["initial_gap"].values)).all(), "the gap is infinite elsewhere")
+    return True
+
+
+def certificate(solved: Solved) -> bool:
+    """The stated violations are within the tolerance."""
+    for name in ("load_error", "penetration_error", "open_pressure_error", "load_position_error"):
+        value = abs(float(solved.result[name]))
+        require(value <= CONVERGED_TOLERANCES * TOLERANCE, f"{name} = {value:.3g} in a converged result")
+    return True
+
+
+def balance(solved: Solved) -> bool:
+    """The pressure carries the load, where the load acts."""
+    case, grid = solved.drawn.case, solved.grid
+    forces = solved.result["pressure"].values.sum(axis=1) * grid.widths * grid.dy
+    off = abs(float(forces.sum()) / case.normal_load - 1)
+    require(off <= 1e-5, f"the pressure carries {off:.3g} more or less than the load")
+    if case.load_position is not None:
+        arm = abs(float((forces * (grid.x - case.load_position)).sum())) / forces.sum() / case.contact_length
+        require(arm <= 1e-4, f"the load acts {arm:.3g} of the length beside its position")
+    return True
+
+
+def complementarity(solved: Solved) -> bool:
+    """From the public functions alone: touching cells lie on the rigid roller, the others outside."""
+    case, result = solved.drawn.case, solved.result
+    if case.roller.material is not None or (solved.moves and case.coupled):
+        return False
+    friction = case.friction if case.coupled else 0.0
+    sunk = result["displacement_z"].values
+    # The displacement refers to a line in the body: it differs from the displacement of the top by a rigid motion.
+    rigid = surface_displacement(case.body, result["pressure"], friction).values - sunk
+    line = np.polynomial.polynomial.polyfit(solved.grid.x, rigid[:, 0], min(1, rigid.shape[0] - 1))
+    fitted = np.polynomial.polynomial.polyval(solved.grid.x, line)[:, None]
+    close("rigid motion of the reference line", rigid, fitted + 0 * rigid, float(np.ptp(sunk)), 1e-6)
+    arm = (solved.grid.x - (case.load_position or 0.0))[:, None]
+    tilt = float(result["tilt"]) - case.tilt
+    opening = result["initial_gap"].values + sunk - float(result["approach"]) - tilt * arm
+    touching = result["pressure"].values > 0
+    variation = float(np.ptp(sunk))
+    worst = max(float(np.abs(opening[touching]).max()), float(-opening.min())) / variation
+    require(worst <= 2e-5, f"gap or overlap of {worst:.3g} of the displacement under pressure")
+    return True
+
+
+def symmetry_across(solved: Solved) -> bool:
+    """Without coupled friction the pressure is symmetric in y, in a symmetric window."""
+    low, high = solved.grid.y_range
+    if solved.drawn.case.coupled or abs(low + high) > 1e-9 * high:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure at +y and -y", pressure, pressure[:, ::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def reversed_friction(solved: Solved) -> bool:
+    """Friction that acts the other way mirrors the pressure across y."""
+    low, high = solved.grid.y_range
+    drawn = solved.cells
+    if not drawn.case.coupled or abs(low + high) > 1e-9 * high:
+        return False
+    other = solve_again(replace(drawn, case=replace(drawn.case, friction=-drawn.case.friction)))
+    if other is None:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure under -f", pressure, other[:, ::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def turned_round(solved: Solved) -> bool:
+    """A case turned end for end has the mirrored pressure."""
+    if not isinstance(solved.drawn.case.body, (FiniteLengthSpace, HalfSpace)):
+        return False
+    other = solve_again(solved.cells.turned())
+    if other is None:
+        return False
+    pressure = solved.result["pressure"].values
+    close("pressure turned round", pressure, other[::-1], solved.peak, SAME_PRESSURE)
+    return True
+
+
+def other_units(solved: Solved) -> bool:
+    """Lengths and moduli in other units: a power of two, so that not even rounding differs."""
+    length, modulus = (2.0 ** solved.chance.randint(-12, 12) for _ in range(2))
+    other = solve_again(solved.cells.scaled(length, modulus))
+    if other is None:
+        return False
+    pressure = modulus * solved.result["pressure"].values
+    scale = modulus * solved.peak
+    close(f"lengths x {length:g}, moduli x {modulus:g}", pressure, other, scale, SAME_PRESSURE)
+    return True
+
+
+def same_load_by_pressure(solved: Solved) -> bool:
+    """A load, and the Hertz pressure of that load, are one case."""
+    case = solved.drawn.case
+    by_pressure = case.load is None
+    value = {"load": case.normal_load} if by_pressure else {"max_pressure": case.hertz_max_pressure}
+    other = solve_again(replace(solved.cells, case=replace(case, **({"load": None, "max_pressure": None} | value))))
+    if other is None:
+        return False
+    close("load or pressure", solved.result["pressure"].values, other, solved.peak, SAME_PRESSURE)
+    return True
+
+
+def parts(solved: Solved) -> bool:
+    """`solve_contact` of the initial gap gives the pressure that `solve` gave."""
+    case, result = solved.drawn.case, solved.result
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        other = contact(case, result["initial_gap"])
+    if not bool(other["converged"]):
+        return False
+    close("solve_contact", other["pressure"].values, result["pressure"].values, solved.peak, SAME_PRESSURE)
+    close("shear traction", result["traction_y"].values, case.friction * result["pressure"].values, solved.peak, 1e-12)
+    return True
+
+
+def superposition(solved: Solved) -> bool:
+    """Stresses and displacements are linear in the pressure and in the friction."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    pressure = solved.result["pressure"]
+    peak = solved.peak
+    noise = np.random.default_rng(chance.randrange(2**32)).random(grid.shape)
+    other = pressure.copy(data=peak * noise)
+    pressure_sum = pressure + 0.5 * other
+    friction = chance.uniform(-1.0, 1.0)
+    points = inner_points(solved)
+    inside = {"inside_cells": chance.choice([pressure, "uniform"]), **points}
+    fields = [stacked(stress_field(case.body, load, friction, **inside)) for load in (pressure, other, pressure_sum)]
+    close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, 1e-9)
+    frictionless, full = (stacked(stress_field(case.body, pressure, f, **inside)) for f in (0.0, 1.0))
+    close("stresses with friction", frictionless + friction * (full - frictionless), fields[0], peak, 1e-9)
+    sunk = [surface_displacement(case.body, load, friction).values for load in (pressure, other, pressure_sum)]
+    close("displacements of a sum", sunk[0] + 0.5 * sunk[1], sunk[2], float(np.abs(sunk[2]).max()), 1e-9)
+    return True
+
+
+QUADRATURE = 2e-5
+"""The positions on the ends depend on the loaded cells."""
+
+
+def reciprocity(solved: Solved) -> bool:
+    """Two pressures do equal work on the displacement of each other (Betti)."""
+    body, grid = solved.drawn.case.body, solved.grid
+    if isinstance(body, EndedBody) and body.model != "exact":
+        return False
+    first = solved.result["pressure"]
+    noise = np.random.default_rng(solved.chance.randrange(2**32)).random(grid.shape)
+    second = first.copy(data=solved.peak * noise)
+    sunk = [surface_displacement(body, load).values for load in (first, second)]
+    works = [float((grid.weights * p.values * u).sum()) for p, u in ((first, sunk[1]), (second, sunk[0]))]
+    size = float((grid.weights * second.values * np.abs(sunk[0])).sum()) + abs(works[0])
+    off = abs(works[0] - works[1]) / size
+    require(off <= RECIPROCITY, f"works differ by {off:.3g}")
+    return True
+
+
+RECIPROCITY = 1e-2
+"""Centres stand for means over cells, which differ in width: exact on uniform cells, roughly so on others."""
+
+
+def inner_points(solved: Solved) -> dict[str, list[float]]:
+    """Random positions inside the body."""
+    grid, chance, a = solved.grid, solved.chance, solved.drawn.case.hertz_half_width
+    low, high = grid.x_range
+    return {
+        "x": [low + chance.uniform(0.05, 0.95) * (high - low) for _ in range(2)],
+        "y": [chance.uniform(-1.5, 1.5) * a],
+        "z": [chance.uniform(0.05, 3.0) * a, 0.0],
+    }
+
+
+def stacked(field: xr.Dataset) -> np.ndarray:
+    """Stresses (6, x, y, z)."""
+    return np.stack([field[name].values for name in STRESSES])
+
+
+def equilibrium(solved: Solved) -> bool:
+    """The divergence of the stresses inside vanishes, by central differences."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    a, peak = case.hertz_half_width, solved.peak
+    low, high = grid.x_range
+    # Below the steps of the cells, and away from the ends by more than a step.
+    size = max(a, float(grid.widths.max()), grid.dy)
+    depth = chance.uniform(1.0, 2.0) * size
+    step = 0.02 * min(size, high - low)
+    # There the load's cells change from fine to whole, and on few cells the stresses by up to 1e-3 of the peak.
+    for change in (REACH * grid.dy, REACH * float(grid.widths.max())):
+        if abs(depth - change) < 2 * step:
+            depth = change + 2 * step
+    position = [low + chance.uniform(0.1, 0.9) * (high - low), chance.uniform(-1.0, 1.0) * a, depth]
+    axes = [[centre - step, centre, centre + step] for centre in position]
+    pressure = solved.result["pressure"]
+    field = stacked(stress_field(case.body, pressure, case.friction, *axes, inside_cells=pressure))
+    stress_rows = np.stack(
+        [
+            field[:, 2, 1, 1] - field[:, 0, 1, 1],
+            field[:, 1, 2, 1] - field[:, 1, 0, 1],
+            field[:, 1, 1, 2] - field[:, 1, 1, 0],
+        ]
+    )
+    xx, yy, zz, xy, xz, yz = range(6)
+    rows = ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
+    for row in rows:
+        terms = [stress_rows[axis, component] / (2 * step) * size for axis, component in enumerate(row)]
+        require(
+            abs(sum(terms)) / peak <= EQUILIBRIUM, f"divergence {abs(sum(terms)) / peak:.3g} p / length at {position}"
+        )
+    return True
+
+
+EQUILIBRIUM = 5e-3
+"""Divergence times the length of variation of the stresses, over the peak: the error of the differences."""
+
+
+def loads_on_the_top(solved: Solved) -> bool:
+    """On the top the stresses equal the loads, uniform in each cell or smooth."""
+    case, grid = solved.drawn.case, solved.grid
+    pressure = solved.result["pressure"]
+    if isinstance(case.body, EndedBody) and case.body.model == "mirror-factor":
+        return False  # its weights add up to one, but its mirrors do not end where the body does
+    i, j = (solved.chance.randrange(count) for count in grid.shape)
+    p = float(pressure[i, j])
+    for smooth in (False, True):
+        field = stress_field(
+            case.body,
+            pressure,
+            case.friction,
+            [grid.x[i]],
+            [grid.y[j]],
+            [0.0],
+            inside_cells=pressure if smooth else "uniform",
+        )
+        # A smooth load keeps the force of a cell; in its middle it may differ, up to the steepest that a cell can hold.
+        stress = -field["sigma_zz"].item() if smooth else p
+        low, high = -MOMENTS * solved.peak, 1.5 * p * (1 + 1e-6) + MOMENTS * solved.peak
+        require(
+            p == 0 or low <= stress <= high,
+            f"a smooth load of {stress / solved.peak:.6g}, its mean is {p / solved.peak:.6g}",
+        )
+        for name, expected in (("sigma_zz", -stress), ("tau_yz", -case.friction * stress), ("tau_xz", 0.0)):
+            value = field[name].item()
+            off = abs(value - expected) / solved.peak
+            require(off <= 1e-6, f"{name} = {value / solved.peak:.6g} on the top, not {expected / solved.peak:.6g}")
+    return True
+
+
+MOMENTS = 0.03
+"""Load of a fine cell for the moments of its neighbours, where a load falls steeply to zero in few cells."""
+
+
+def same_points_among_others(solved: Solved) -> bool:
+    """Stresses at the cells' centres do not depend on further positions, which exclude the use of symmetry."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    pressure = solved.result["pressure"]
+    depth = [chance.uniform(0.2, 2.0) * case.hertz_half_width]
+    alone = stacked(stress_field(case.body, pressure, case.friction, z=depth, inside_cells=pressure))
+    aside = [
+        np.sort(np.append(position, position[0] + 0.31 * (position[1] - position[0]))) for position in (grid.x, grid.y)
+    ]
+    stresses = stacked(stress_field(case.body, pressure, case.friction, *aside, depth, inside_cells=pressure))
+    index = np.ix_(range(6), *(np.arange(position.size) != 1 for position in aside))
+    close("stresses among others", stresses[index], alone, solved.peak, QUADRATURE)
+    return True
+
+
+def free_ends(solved: Solved) -> bool:
+    """The ends of a body that frees them carry no traction, from a quarter of a cell below the top on.
+
+    Nearer to the top the traction depends on the edges of the cells; `end_traction_residual` bounds it on coarse cells.
+    On few columns in a thin body a larger traction has to be stated.
+    """
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    ends = [end for end in case.body.extent if np.isfinite(end)]
+    if not ends or not isinstance(case.body, EndedBody) or case.body.model != "exact":
+        return False
+    size = max(grid.dy, float(grid.widths[[0, -1]].max()))
+    depths = [magnitude(chance, 0.25, 4.0) * size for _ in range(2)]
+    across = [chance.uniform(*grid.y_range) for _ in range(3)]
+    pressure = solved.result["pressure"]
+    field = stress_field(case.body, pressure, case.friction, ends, across, depths, inside_cells=pressure)
+    end_traction = (
+        max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solved.peak
+    )
+    position = {"x": [float(grid.x.mean())], "y": [0.0], "z": [case.hertz_half_width]}
+    residual = float(run(solved.drawn, **position)["end_traction_residual"])
+    require(
+        end_traction <= max(FREE, SAMPLED * residual),
+        f"traction of {end_traction:.3g} is left on the ends, {residual:.3g} is stated",
+    )
+    return True
+
+
+FREE, SAMPLED = 2e-3, 1.5
+"""Largest traction on the ends, and its ratio to the stated one, which is a sample."""
+
+
+def stated_errors(solved: Solved) -> bool:
+    """The errors that refined cells state cover the difference from cells refined further."""
+    if solved.drawn.grid is not None or solved.drawn.accuracy < 0.02:
+        return False
+    position = {"x": [float(solved.result.x.mean())], "y": [0.0], "z": [solved.drawn.case.hertz_half_width]}
+    rough, finer = (
+        run(replace(solved.drawn, accuracy=share * solved.drawn.accuracy), **position) for share in (1.0, 0.25)
+    )
+    for name in ("peak_pressure", "end_pressure_first", "end_pressure_last", "peak_von_mises"):
+        error, stress = float(rough[f"{name}_error"]), float(finer[f"{name}_error"])
+        if not np.isfinite(error + stress):
+            continue
+        difference = abs(float(rough[name]) - float(finer[name]))
+        allowed = error + stress
+        require(
+            difference <= allowed,
+            f"{name}: stated {error / solved.peak:.3g} of the peak, off by {difference / solved.peak:.3g}",
+        )
+    return True
+
+
+def largest_stress(solved: Solved) -> bool:
+    """The stated largest stress and its error bound the stresses on the top off the rim, and below."""
+    case, grid, chance = solved.drawn.case, solved.grid, solved.chance
+    if solved.drawn.grid is not None:
+        return False
+    position = {"x": [float(grid.x.mean())], "y": [0.0], "z": [case.hertz_half_width]}
+    result = run(solved.drawn, **position)
+    most = float(result["peak_von_mises"] + result["peak_von_mises_error"])
+    if not np.isfinite(most):
+        return False
+    loaded = result["pressure"].values > 0
+    inside = ndimage.binary_erosion(loaded, iterations=2, border_value=1)
+    columns, rows = (
+        np.sort(chance.sample(list(indices), min(len(indices), 25)))
+        for indices in (np.flatnonzero(loaded.any(axis=1)), np.flatnonzero(loaded.any(axis=0)))
+    )
+    depths = case.hertz_half_width * np.array([0.0, 0.1, 0.2, 0.4, 0.7, 1.0])
+    positions = {"x": grid.x[columns], "y": grid.y[rows], "z": depths}
+    # On refined cells random cases slide.
+    pressure = result["pressure"]
+    field = stress_field(case.body, pressure, case.friction, **positions, inside_cells=pressure)["von_mises"].values
+    field[..., 0][~inside[np.ix_(columns, rows)]] = 0.0
+    require(field.max() <= most, f"a von Mises stress of {field.max() / most:.4g} of the stated largest")
+    return True
+
+
+def equivalent_loads_are_finite(solved: Solved) -> bool:
+    """The method's equivalent loads exist for every pressure of `solve`."""
+    case = solved.drawn.case
+    if not isinstance(case.body, EndedBody) or case.body.model != "exact":
+        return False
+    depth = solved.chance.uniform(0.1, 3.0) * case.hertz_half_width
+    loads = equivalent_loads(case.body, solved.result["pressure"], float(case.friction), z=[depth])
+    require(all(np.isfinite(values).all() for values in loads.values()), "an equivalent load is not finite")
+    return True
+
+
+def single_plane(solved: Solved) -> bool:
+    """The risk of a single plane is refused: it needs a volume."""
+    case, pressure = solved.drawn.case, solved.result["pressure"]
+    depths = case.hertz_half_width * np.array([0.2, 0.5, 1.0])
+    field = stress_field(
+        case.body, pressure, case.friction, solved.grid.x, [0.0], depths, inside_cells=pressure
+    ).assign(hertz_max_pressure=case.hertz_max_pressure)
+    try:
+        fatigue.lundberg_palmgren(field)
+    except InvalidInputError:
+        return True
+    raise ViolationError("the risk of a single plane is not refused")
+
+
+def two_threads(solved: Solved) -> bool:
+    """Two threads that solve a case without a cache return the pressure of one thread."""
+    cells = solved.cells
+    assert cells.grid is not None
+    gap = on_cells(cells.grid, cells.case.gap(cells.grid))
+    cache.clear()
+    with ThreadPoolExecutor(2) as pool:
+        pressures = [result["pressure"].values for result in pool.map(lambda _: contact(cells.case, gap), range(2))]
+    require(np.array_equal(*pressures), "two threads return different pressures")
+    return True
+
+
+ALWAYS: tuple[Callable[[Solved], bool], ...] = (
+    finite_values,
+    certificate,
+    balance,
+    complementarity,
+    symmetry_across,
+    free_ends,
+    stated_errors,
+)
+"""Properties that need no other solution, and the stated errors."""
+
+IN_TURN: tuple[Callable[[Solved], bool], ...] = (
+    reversed_friction,
+    turned_round,
+    other_units,
+    same_load_by_pressure,
+    parts,
+    superposition,
+    reciprocity,
+    equilibrium,
+    loads_on_the_top,
+    largest_stress,
+    equivalent_loads_are_finite,
+    single_plane,
+    two_threads,
+    same_points_among_others,
+)
+"""Properties that need another solution or stresses: two per case."""

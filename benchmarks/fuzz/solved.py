@@ -1,0 +1,141 @@
+"""A solved random case, and how it is solved once more."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, replace
+from random import Random
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.fuzz.drawn import Drawn
+from contactstudy import (
+    Case,
+    ContactStudyError,
+    ConvergenceWarning,
+    Grid,
+    MagnitudeWarning,
+    Sliding,
+    solve,
+    solve_contact,
+)
+from contactstudy.arrays.cells import cell_coordinates
+from contactstudy.contact import ContactSettings
+
+TOLERANCE = 1e-6
+"""Of every contact."""
+
+SAME_PRESSURE = 2e-3
+"""Largest difference of two solutions of one contact: both meet the tolerance."""
+
+
+class ViolationError(AssertionError):
+    """A property does not hold."""
+
+
+@dataclass(frozen=True)
+class Solved:
+    """A case and its converged result, without stresses."""
+
+    drawn: Drawn
+    result: xr.Dataset
+    chance: Random
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, Pa."""
+        return float(self.result["pressure"].max())
+
+    @property
+    def moves(self) -> bool:
+        """Whether it rolls or is shifted, with stick and slip, instead of sliding."""
+        return not isinstance(self.drawn.case.motion, Sliding)
+
+    @property
+    def cells(self) -> Drawn:
+        """The case on the cells that it was solved on, whether these were refined or given."""
+        if self.drawn.grid is not None:
+            return self.drawn
+        result = self.result
+        dy = float(result["y"][1] - result["y"][0])
+        window = (float(result["y"][0]) - 0.5 * dy, float(result["y"][-1]) + 0.5 * dy)
+        edges = np.append(result["x_bounds"][:, 0], result["x_bounds"][-1, 1])
+        return replace(self.drawn, grid=Grid.between(edges, window, result.sizes["y"]))
+
+    @property
+    def grid(self) -> Grid:
+        """Cells."""
+        grid = self.cells.grid
+        assert grid is not None
+        return grid
+
+
+def require(condition: object, message: str) -> None:
+    """Raise unless a condition holds."""
+    if not condition:
+        raise ViolationError(message)
+
+
+def run(drawn: Drawn, **positions: list[float]) -> xr.Dataset:
+    """Solve a case, with stresses at positions if given; check its warnings."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        result = solve(
+            drawn.case,
+            drawn.grid,
+            accuracy=None if drawn.grid is not None else drawn.accuracy,
+            stresses=bool(positions),
+            tolerance=TOLERANCE,
+            **positions,  # type: ignore[arg-type]
+        )
+    kinds = {warning.category for warning in caught}
+    other = [
+        str(warning.message) for warning in caught if warning.category not in (ConvergenceWarning, MagnitudeWarning)
+    ]
+    require(not other, f"an undeclared warning: {other[:1]}")
+    require(
+        bool(result["converged"]) == (ConvergenceWarning not in kinds), "converged and warning contradict each other"
+    )
+    return result
+
+
+def solve_again(drawn: Drawn) -> np.ndarray | None:
+    """Pressure of a variant of a solved case; None without convergence."""
+    try:
+        if drawn.grid is None:
+            result = run(drawn)
+        else:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", ConvergenceWarning)
+                result = contact(drawn.case, on_cells(drawn.grid, drawn.case.gap(drawn.grid)))
+    except ContactStudyError as error:
+        raise ViolationError(f"a variant of a solved case was refused: {type(error).__name__}: {error}") from error
+    return result["pressure"].values if bool(result["converged"]) else None
+
+
+def on_cells(grid: Grid, values: np.ndarray) -> xr.DataArray:
+    """Label values on cells."""
+    coordinates = {"x": grid.x, "y": grid.y} | cell_coordinates(grid)
+    return xr.DataArray(
+        values, {name: positions for name, positions in coordinates.items() if name != "x_bounds"}, ("x", "y")
+    )
+
+
+def contact(case: Case, gap: xr.DataArray) -> xr.Dataset:
+    """Contact of a case from its gap."""
+    return solve_contact(
+        case.body,
+        gap,
+        case.normal_load,
+        case.friction,
+        counterbody=case.counterbody,
+        settings=ContactSettings(coupled=case.coupled, load_position=case.load_position, tolerance=TOLERANCE),
+    )
+
+
+def close(quantity: str, first: np.ndarray, second: np.ndarray, scale: float, bound: float) -> None:
+    """Require two arrays to agree."""
+    require(first.shape == second.shape, f"{quantity}: shapes {first.shape} and {second.shape}")
+    difference = float(np.abs(first - second).max()) / scale
+    require(difference <= bound, f"{quantity}: differ by {difference:.3g}, allowed {bound:g}")

@@ -1,0 +1,152 @@
+"""Try changes of the solver's core: ``python -m benchmarks.mutation --notes FOLDER``.
+
+At first every test that may notice something is run once, and ``FOLDER/reached.jsonl`` notes which lines of the core
+it runs and how long it takes. Then each change is made in a fork of the process that has imported everything, and the
+tests that run the changed statement are run, those first that have noticed most for their time. ``FOLDER/tried.jsonl``
+has a line for each change that was tried; begun again, the run goes on.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import traceback
+from collections import Counter, defaultdict
+from collections.abc import Callable, Iterable
+from dataclasses import asdict
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from benchmarks.mutation.equivalent import EQUIVALENT
+from benchmarks.mutation.forked import TESTS, Reached, Session, with_session
+from benchmarks.mutation.mutants import PACKAGES, Mutant, all_mutants
+
+Notes = dict[str, Any]
+
+
+def read(file: Path, key: str) -> dict[str, Notes]:
+    """Lines of JSON by one of their entries; the last one of each counts."""
+    lines = file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+    return {note[key]: note for note in map(json.loads, lines)}
+
+
+def shared(work: Callable[[Any], Notes], jobs: list[Any], file: Path, processes: int) -> None:
+    """Do jobs in some processes and append each result to a file.
+
+    Raises
+    ------
+    RuntimeError
+        If a process ended before it had done its jobs.
+    """
+    for number in range(processes):
+        if os.fork():
+            continue
+        try:
+            for job in jobs[number::processes]:
+                line = json.dumps(work(job))
+                with file.open("a", encoding="utf-8") as notes:
+                    notes.write(f"{line}\n")
+            os._exit(0)
+        except BaseException:
+            traceback.print_exc()
+        finally:
+            os._exit(1)
+    ended = [os.wait()[1] for _ in range(processes)]
+    if any(ended):
+        raise RuntimeError("a process ended early: begin again, what was tried is kept")
+
+
+class Trials:
+    """Changes that are tried by the tests that reach them, until one fails or `seconds` of tests have passed."""
+
+    def __init__(self, session: Session, reached: Iterable[Reached], seconds: float) -> None:
+        self.session, self.seconds = session, seconds
+        self.taken: dict[str, float] = {}
+        self.by_line: dict[tuple[str, str], set[str]] = defaultdict(set)
+        self.noticed: dict[str, Counter[str]] = defaultdict(Counter)
+        for reached_test in reached:
+            if not reached_test.passed or reached_test.test not in session.items:
+                continue
+            self.taken[reached_test.test] = reached_test.seconds
+            for file, lines in reached_test.lines.items():
+                for line in lines:
+                    self.by_line[file, line].add(reached_test.test)
+
+    def learn(self, notes: dict[str, Notes]) -> None:
+        """Count which tests noticed changes that were tried before."""
+        for change, note in notes.items():
+            self.noticed[change.split(":")[0]][note["by"].split(" (")[0]] += 1
+
+    def tests(self, mutant: Mutant) -> list[tuple[str, float]]:
+        """Tests that run a changed statement, with their seconds: the most promising first."""
+        reaching = set().union(*(self.by_line[mutant.file, line] for line in mutant.lines))
+        noticed = self.noticed[mutant.file]
+        promising = sorted(reaching, key=lambda test: (self.taken[test] + 0.05) / (1 + 5 * noticed[test]))
+        chosen, total = [], 0.0
+        for test in promising:
+            if total + self.taken[test] <= self.seconds:
+                chosen.append((test, self.taken[test]))
+                total += self.taken[test]
+        return chosen
+
+    def tried(self, mutant: Mutant) -> Notes:
+        """Try a change and return the failing test."""
+        tests = self.tests(mutant)
+        by = self.session.first_failure(tests, mutant)
+        self.noticed[mutant.file][by.split(" (")[0]] += 1
+        print("noticed" if by else "MISSED ", mutant.key, flush=True)
+        return {"change": mutant.key, "by": by, "tests": len(tests)}
+
+
+def summary(notes: dict[str, Notes]) -> str:
+    """Counts by package, and every change that no test noticed."""
+    lines = []
+    for package in PACKAGES:
+        notes_of_package = [note for key, note in notes.items() if f"/{package}/" in key]
+        missed = [note for note in notes_of_package if not note["by"]]
+        equivalent = [note for note in missed if note["change"] in EQUIVALENT]
+        lines.append(
+            f"{package}: {len(notes_of_package)} tried, {len(notes_of_package) - len(missed)} noticed, "
+            f"{len(equivalent)} equivalent, "
+            f"{len(missed) - len(equivalent)} missed"
+        )
+    return "\n".join(
+        lines + [f"  missed: {key}" for key, note in notes.items() if not note["by"] and key not in EQUIVALENT]
+    )
+
+
+def main() -> None:
+    """Try the selected changes."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.mutation", description=__doc__)
+    parser.add_argument("--notes", type=Path, required=True, help="folder of notes")
+    parser.add_argument("--sample", type=int, help="so many changes, drawn by lot; default: all")
+    parser.add_argument("--only", default="", help="only changes whose source or text has this in it")
+    parser.add_argument("--tests", nargs="+", default=TESTS, help="files of tests; default: those of the core")
+    parser.add_argument("--again", action="store_true", help="try those again that no test noticed")
+    parser.add_argument("--seconds", type=float, default=60.0, help="processor time of tests for one change")
+    parser.add_argument("--processes", type=int, default=1, help="processes that share the work")
+    options = parser.parse_args()
+    options.notes.mkdir(parents=True, exist_ok=True)
+    reached, tried = options.notes / "reached.jsonl", options.notes / "tried.jsonl"
+
+    def work(session: Session) -> None:
+        durations = read(reached, "test")
+        tests = [test for test in session.items if test not in durations]
+        shared(lambda test: asdict(session.reached(test)), tests, reached, options.processes)
+        trials = Trials(session, (Reached(**note) for note in read(reached, "test").values()), options.seconds)
+        notes = read(tried, "change")
+        trials.learn(notes)
+        finished = {key for key, note in notes.items() if note["by"] or not options.again}
+        mutants = [mutant for mutant in all_mutants() if options.only in mutant.key]
+        Random(0).shuffle(mutants)
+        remaining = [mutant for mutant in mutants[: options.sample] if mutant.key not in finished | set(EQUIVALENT)]
+        shared(trials.tried, remaining, tried, options.processes)
+        print(summary(read(tried, "change")))
+
+    with_session(work, options.tests)
+
+
+if __name__ == "__main__":
+    main()

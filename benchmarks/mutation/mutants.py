@@ -1,0 +1,152 @@
+"""Sources with one sign, factor or comparison changed."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+PACKAGES = ("kernels", "overlapping", "contact")
+"""The solver's core."""
+
+OTHER = {ast.Add: ("+", "-"), ast.Sub: ("-", "+"), ast.Mult: ("*", "/"), ast.Div: ("/", "*")}
+"""Arithmetic signs and their changes."""
+
+REVERSED = {ast.Lt: ("<", ">"), ast.Gt: (">", "<"), ast.LtE: ("<=", ">="), ast.GtE: (">=", "<=")}
+"""Comparisons and their changes."""
+
+FACTOR = 1.1
+"""By which a number with a decimal point grows inside a function."""
+
+
+@dataclass(frozen=True)
+class Mutant:
+    """A change of a source.
+
+    Attributes
+    ----------
+    file, source : str
+        The source, relative to the repository, and its text.
+    start, stop : int
+        Characters that are replaced.
+    text : str
+        What they become.
+    lines : tuple of str
+        Lines of the statement around it, without those of statements within.
+    where : str
+        The function.
+    shown : str
+        The line before and after.
+    """
+
+    file: str
+    source: str = field(repr=False)
+    start: int
+    stop: int
+    text: str
+    lines: tuple[str, ...]
+    where: str
+    description: str
+
+    @property
+    def key(self) -> str:
+        """Identity of a change, also after lines have moved."""
+        return f"{self.file}: {self.where}: {self.description}"
+
+    @property
+    def changed(self) -> str:
+        """The source with the change."""
+        return self.source[: self.start] + self.text + self.source[self.stop :]
+
+
+def mutants_of(file: str, source: str) -> Iterator[Mutant]:
+    """All changes of the bodies of a source's functions."""
+    starts = [0]
+    for line in source.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+
+    def offset_of(line: int, column: int) -> int:
+        # ast counts bytes; sources hold other letters in comments and docstrings only.
+        return starts[line - 1] + column
+
+    texts, times = source.splitlines(), Counter[str]()
+
+    def mutant(lines: range, where: str, start: int, stop: int, text: str) -> Mutant:
+        number = source.count("\n", 0, start) + 1
+        changed = source[:start] + text + source[stop:]
+        before, after = (version.splitlines()[number - 1].strip() for version in (source, changed))
+        description = f"{before}  ->  {after}"
+        times[where + description] += 1
+        if times[where + description] > 1:
+            description += f"  (no. {times[where + description]})"
+        statement = tuple(texts[number - 1].strip() for number in lines)
+        return Mutant(file, source, start, stop, text, statement, where, description)
+
+    for node, lines, where in _in_functions(ast.parse(source)):
+        match node:
+            case ast.BinOp(left=left, op=op) if type(op) in OTHER:
+                symbol, replacement = OTHER[type(op)]
+                offset = _between(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+                if not (isinstance(left, ast.Constant) and isinstance(left.value, str)):
+                    yield mutant(lines, where, offset, offset + len(symbol), replacement)
+            case ast.Compare(left=left, ops=[op]) if type(op) in REVERSED:
+                symbol, replacement = REVERSED[type(op)]
+                offset = _between(source, offset_of(left.end_lineno or 0, left.end_col_offset or 0), symbol)
+                yield mutant(lines, where, offset, offset + len(symbol), replacement)
+            case ast.UnaryOp(op=ast.USub(), operand=operand) if not isinstance(operand, ast.Constant):
+                offset = offset_of(node.lineno, node.col_offset)
+                yield mutant(lines, where, offset, offset + 1, "+")
+            case ast.Constant(value=float(value)) if value:
+                start, stop = (
+                    offset_of(node.lineno, node.col_offset),
+                    offset_of(node.end_lineno or 0, node.end_col_offset or 0),
+                )
+                yield mutant(lines, where, start, stop, repr(FACTOR * value))
+
+
+def _in_functions(tree: ast.AST, where: str = "") -> Iterator[tuple[ast.AST, range, str]]:
+    """Nodes of functions that compute, with the lines of their statement and the function's name."""
+    for node in ast.iter_child_nodes(tree):
+        name = f"{where}.{node.name}".lstrip(".") if isinstance(node, (ast.FunctionDef, ast.ClassDef)) else where
+        yield from _in_functions(node, name)
+        if isinstance(node, ast.FunctionDef):
+            for statement in node.body:
+                yield from ((part, lines, name) for part, lines in _computing(statement, range(0)))
+
+
+def _computing(node: ast.AST, lines: range) -> Iterator[tuple[ast.AST, range]]:
+    """Nodes below one, without errors that are raised, texts, types and functions within, which come by themselves."""
+    if isinstance(node, (ast.Raise, ast.JoinedStr, ast.FunctionDef, ast.Assert)):
+        return
+    if isinstance(node, ast.stmt):
+        within = [statement.lineno for statement in getattr(node, "body", [])]
+        lines = range(node.lineno, min([*within, (node.end_lineno or 0) + 1]))
+    yield node, lines
+    for name, value in ast.iter_fields(node):
+        if name in ("annotation", "returns"):
+            continue
+        for child in value if isinstance(value, list) else [value]:
+            if isinstance(child, ast.AST):
+                yield from _computing(child, lines)
+
+
+def _between(source: str, start: int, sign: str) -> int:
+    """Place of a sign after an operand, beyond closing brackets and comments."""
+    offset = start
+    while not source.startswith(sign, offset):
+        offset = source.index("\n", offset) if source[offset] == "#" else offset + 1
+    return offset
+
+
+def all_mutants(packages: tuple[str, ...] = PACKAGES, root: Path = ROOT) -> list[Mutant]:
+    """All changes of the sources of some packages, in order."""
+    files = sorted(path for package in packages for path in (root / "contactstudy" / package).glob("*.py"))
+    return [
+        mutant
+        for path in files
+        for mutant in mutants_of(path.relative_to(root).as_posix(), path.read_text(encoding="utf-8"))
+    ]

@@ -1,0 +1,1 @@
+"""Speed of the package and of published contact codes: `python -m benchmarks.performance`."""

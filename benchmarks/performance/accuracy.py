@@ -1,0 +1,243 @@
+"""How often the stated errors hold: random cases, settled loosely and tightly.
+
+Usage: ``python -m benchmarks.performance.accuracy [--cases 60] [--seed 1] [--first 0] [--accuracy 0.02]
+[--reference 0.002] [--markdown FILE]``.
+
+Each case has a random body, roller length, profile, tilt or load position, end distance, roller material and load. It
+is settled to `accuracy` and to `reference`. A value is covered if the two differ by no more than the error stated with
+the first. A singular end is covered if both runs say so; its intensity K is counted apart. Case ``n`` of a seed is the
+same whatever the number of cases, so a single one is repeated with ``--first n --cases 1``.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, QuarterSpace, Roller, profiles
+from contactstudy.bodies.models import Body
+from contactstudy.contact.refinement.refined_contact import refine_contact, refined_values
+from contactstudy.errors import ContactStudyError
+from contactstudy.threads import one_blas_thread
+
+STEEL, BRONZE = Material(210e9, 0.3), Material(110e9, 0.34)
+RADIUS = 5e-3
+VALUES = ("peak_pressure", "end_pressure_first", "end_pressure_last")
+LOADS = ("end_load_first", "end_load_last")
+INTENSITIES = ("end_intensity_first", "end_intensity_last")
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A random case and its name; or why it is none."""
+
+    number: int
+    name: str
+    case: Case | None
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """One value of one case, over the Hertz pressure (an intensity: over that and the root of the half-width; a load:
+    over that of a half-width under the mean load per length)."""
+
+    drawn: Drawn
+    value: str
+    loose: float
+    error: float
+    tight: float
+
+    @property
+    def covered(self) -> bool:
+        """Whether the stated error covers the difference, or both runs find the end singular."""
+        if np.isinf(self.loose) or np.isinf(self.tight):
+            return bool(self.loose == self.tight)
+        return abs(self.loose - self.tight) <= self.error
+
+
+def _log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
+    return float(np.exp(rng.uniform(np.log(low), np.log(high))))
+
+
+def drawn_case(seed: int, number: int) -> Drawn:
+    """Draw case `number` of a seed."""
+    rng = np.random.default_rng([seed, number])
+    p0 = rng.uniform(0.8e9, 3e9)
+    material = [None, None, None, STEEL, BRONZE][rng.integers(5)]
+    plane = STEEL.plane_strain_modulus
+    modulus = plane if material is None else 1 / (1 / plane + 1 / material.plane_strain_modulus)
+    a = 4 * p0 * RADIUS / (2 * modulus)
+    length = a * _log_uniform(rng, 8, 200)
+    kind, profile = _profile(rng, p0, length, modulus)
+    roller = Roller(
+        radius=RADIUS, length=length, profile=profile, material=material, ends=("free", "none")[rng.integers(2)]
+    )
+    body_kind = ("half", "quarter", "finite", "finite")[rng.integers(4)]
+    distance = 0.0
+    if body_kind != "half":
+        distance = float(
+            (0.0, a * _log_uniform(rng, 0.1, 5), -a * rng.uniform(0.1, 2))[rng.choice(3, p=[0.5, 0.4, 0.1])]
+        )
+    body: Body = HalfSpace(material=STEEL)
+    if body_kind == "quarter":
+        body = QuarterSpace(material=STEEL)
+    elif body_kind == "finite":
+        other = distance if rng.random() < 0.5 else a * rng.uniform(0.0, 5)
+        body = FiniteLengthSpace(length=length + distance + other, material=STEEL)
+    inclination: dict[str, float] = {}
+    slope = min(1.0, 20 * a / length)
+    if (choice := rng.random()) < 0.3:
+        inclination = {"tilt": float(rng.uniform(-1e-3, 1e-3) * slope)}
+    elif choice < 0.4:
+        inclination = {"load_position": distance + length * (0.5 + 0.05 * float(rng.uniform(-1, 1)))}
+    name = (
+        f"{kind}, L {length / a:.0f}a, {p0 / 1e9:.2f} GPa, {body_kind}, e {distance / a:.2f}a, "
+        f"{'rigid' if material is None else 'steel' if material is STEEL else 'bronze'}"
+        + (f" ends {roller.ends}" if material is not None else "")
+        + "".join(f", {key} {value:.2e}" for key, value in inclination.items())
+    )
+    try:
+        return Drawn(
+            number,
+            name,
+            Case(
+                body=body,
+                roller=roller,
+                max_pressure=p0,
+                end_distance=None if body_kind == "half" else distance,
+                **inclination,
+            ),
+        )
+    except ContactStudyError as error:
+        return Drawn(number, f"{name}: {error}", None)
+
+
+def _profile(rng: np.random.Generator, p0: float, length: float, modulus: float) -> tuple[str, profiles.Profile]:
+    """Draw a profile and its name."""
+    fillet = min(_log_uniform(rng, 0.02e-3, 0.5e-3), 0.3 * length)
+    sag = _log_uniform(rng, 0.2e-6, 20e-6) * min(1.0, length / 10e-3)
+    crown = profiles.FullCrown(crown_radius=length**2 / (8 * sag))
+    rounded = profiles.Cylinder(fillet_radius=fillet)
+    kind = ("sharp", "fillet", "crown", "crown + fillet", "lundberg", "partial crown", "measured")[rng.integers(7)]
+    detail = {"fillet": f" {1e3 * fillet:.3f} mm", "crown": f" {1e6 * sag:.1f} um"}
+    name = kind + "".join(text for word, text in detail.items() if word in kind and kind != "partial crown")
+    if kind == "sharp":
+        return name, profiles.Cylinder()
+    if kind == "fillet":
+        return name, rounded
+    if kind == "crown":
+        return name, crown
+    if kind == "crown + fillet":
+        return name, crown + rounded
+    if kind == "lundberg":
+        pressure = p0 * rng.uniform(0.6, 1.2)
+        return name, profiles.Lundberg.for_pressure(pressure, radius=RADIUS, modulus=modulus)
+    if kind == "partial crown":
+        straight = length * rng.uniform(0.3, 0.8)
+        radius = _log_uniform(rng, 0.1, 3.0)
+        return f"{name} {straight / length:.2f} L, R {radius:.2f} m", profiles.PartialCrown(straight, radius)
+    x = np.linspace(-0.5 * length, 0.5 * length, 401)
+    drops = (crown + rounded).drop(x, length)
+    return f"{name} crown {1e6 * sag:.1f} um + fillet {1e3 * fillet:.3f} mm", profiles.Measured(
+        x.tolist(), drops.tolist()
+    )
+
+
+def compared(drawn: Drawn, accuracy: float, reference: float) -> Iterator[Comparison]:
+    """Settle a case twice and compare its values."""
+    assert drawn.case is not None
+    case = drawn.case
+    loose, tight = (_values(case, row) for row in (accuracy, reference))
+    scale = case.hertz_max_pressure
+    for value in VALUES:
+        error = float(loose[f"{value}_error"]) / scale
+        yield Comparison(drawn, value, float(loose[value]) / scale, error, float(tight[value]) / scale)
+    usual = case.normal_load * case.hertz_half_width / case.contact_length
+    for value in LOADS:
+        error = float(loose[f"{value}_error"]) / usual
+        yield Comparison(drawn, value, float(loose[value]) / usual, error, float(tight[value]) / usual)
+    for value in INTENSITIES:
+        power = float(loose.get(value.replace("intensity", "exponent"), 0.0))
+        if value in loose and value in tight and case.roller.material is None and power:
+            unit = scale * case.hertz_half_width**power
+            error = float(loose[f"{value}_error"]) / unit
+            yield Comparison(drawn, value, float(loose[value]) / unit, error, float(tight[value]) / unit)
+
+
+def _values(case: Case, accuracy: float) -> xr.Dataset:
+    return refined_values(refine_contact(case, accuracy, 1e-6))
+
+
+def _table(comparisons: list[Comparison], refused: list[str], took: dict[str, float]) -> str:
+    """Markdown of the coverage and of every miss."""
+    lines = [
+        "| value | cases | covered | % | median difference / p0 | median error / p0 |",
+        "|---|---|---|---|---|---|",
+    ]
+    for value in (*VALUES, *LOADS, *INTENSITIES):
+        rows = [row for row in comparisons if row.value == value]
+        finite = [row for row in rows if np.isfinite([row.loose, row.tight]).all() and row.loose]
+        if rows:
+            covered = sum(row.covered for row in rows)
+            apart = np.median([abs(row.loose - row.tight) for row in finite]) if finite else np.nan
+            error = np.median([row.error for row in finite]) if finite else np.nan
+            share = 100 * covered / len(rows)
+            lines.append(f"| {value} | {len(rows)} | {covered} | {share:.1f} | {apart:.4f} | {error:.4f} |")
+    numbers = sorted({row.drawn.number for row in comparisons})
+    missed = {row.drawn.number for row in comparisons if not row.covered and row.value in VALUES}
+    lines += ["", f"{len(numbers) - len(missed)} of {len(numbers)} cases have all three pressures covered."]
+    lines += [f"Seconds per case: {', '.join(f'{name} {value:.2f}' for name, value in took.items())}.", "", "Misses:"]
+    lines += [
+        f"* {row.drawn.number}: {row.drawn.name}: {row.value} {row.loose:.4f} +- {row.error:.4f}, "
+        f"tightly {row.tight:.4f}"
+        for row in comparisons
+        if not row.covered
+    ]
+    return "\n".join([*lines, "", f"Refused: {len(refused)}", *(f"* {row}" for row in refused)])
+
+
+def main() -> None:
+    """Read the options, compare and print."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--cases", type=int, default=60)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--first", type=int, default=0)
+    parser.add_argument("--accuracy", type=float, default=0.02)
+    parser.add_argument("--reference", type=float, default=0.002)
+    parser.add_argument("--markdown", type=Path)
+    options = parser.parse_args()
+    comparisons: list[Comparison] = []
+    refused: list[str] = []
+    start = time.perf_counter()
+    for number in range(options.first, options.first + options.cases):
+        drawn = drawn_case(options.seed, number)
+        if drawn.case is None:
+            refused.append(f"{number}: {drawn.name}")
+            continue
+        try:
+            with one_blas_thread():
+                rows = list(compared(drawn, options.accuracy, options.reference))
+        except ContactStudyError as error:
+            refused.append(f"{number}: {drawn.name}: {type(error).__name__}: {error}")
+            print(refused[-1], flush=True)
+            continue
+        comparisons += rows
+        marks = ", ".join(
+            f"{row.value} {row.loose:.4f} +- {row.error:.4f} / {row.tight:.4f}{'' if row.covered else ' MISSED'}"
+            for row in rows
+        )
+        print(f"{number}: {drawn.name}: {marks}", flush=True)
+    table = _table(comparisons, refused, {"both": (time.perf_counter() - start) / max(options.cases, 1)})
+    print(table)
+    if options.markdown:
+        options.markdown.write_text(table + "\n")
+
+
+if __name__ == "__main__":
+    main()

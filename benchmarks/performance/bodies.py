@@ -1,0 +1,141 @@
+"""Rows on the body: building the operator, stresses, and rollers that are long against their contact."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.performance.peers import contact_of
+from benchmarks.performance.problems import HALF_WIDTH, STEEL, roller
+from benchmarks.performance.timing import Report, Row, medians, nudge, show
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, stress_field
+from contactstudy.bodies import Body
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.kernels.load import Load
+
+LONG_CELLS = (250, 500, 1000)
+MEMORY_BAR = 2000.0  # megabytes
+
+
+def building(repeats: int, _: Report) -> Iterator[Row]:
+    """Operator of a body with ends, and the time of a second case."""
+    grid = Grid((0.0, 8 * HALF_WIDTH), (-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), 128, 64)
+    body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
+    surface_operator(OperatorRequest(body, grid))
+    works: dict[str, Callable[[], object]] = {
+        "cold": lambda: SurfaceOperator.of(OperatorRequest(body, grid)),
+        "friction": lambda: SurfaceOperator.of(OperatorRequest(body, grid, (Load.NORMAL, Load.ALONG_Y))),
+        "kept": lambda: surface_operator(OperatorRequest(body, grid)),
+    }
+    seconds = medians(works, repeats, warm_up=False)
+    megabytes = surface_operator(OperatorRequest(body, grid)).nbytes / 1e6
+    yield Row(
+        "building the operator, 128 x 64, L = 8a",
+        show(seconds["cold"]),
+        bar="1 s",
+        met=seconds["cold"] <= 1.0,
+        notes=f"with traction {show(seconds['friction'])}; reused by a second case in "
+        f"{1e6 * seconds['kept']:.0f} µs; {megabytes:.0f} MB",
+    )
+
+
+def stresses(repeats: int, _: Report) -> Iterator[Row]:
+    """Six stresses on 128 x 128 x 32 points: everything new, and a new pressure on the same cells."""
+    length, window = 8 * HALF_WIDTH, 4 * HALF_WIDTH
+    z = np.linspace(0.0, 3 * HALF_WIDTH, 32)
+    bodies: dict[str, Body] = {
+        "half-space": HalfSpace(material=STEEL),
+        "finite-length": FiniteLengthSpace(length=length, material=STEEL),
+    }
+    grid = Grid((0.0, length), (-window / 2, window / 2), 128, 128)
+    line = 1e9 * np.sqrt(np.maximum(1 - (grid.y / HALF_WIDTH) ** 2, 0.0)) * np.ones((128, 1))
+    # As wide an ellipse: its edge on the cells is another one in every section, so nothing is a product of x and y.
+    axial = 2 * grid.x[:, None] / length - 1
+    ellipse = 1e9 * np.sqrt(np.maximum(1 - axial**2 - (grid.y / HALF_WIDTH) ** 2, 0.0))
+
+    def field(body: Body, friction: float, load: np.ndarray, cold: bool) -> xr.Dataset:
+        pressure = xr.DataArray(load * nudge(), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+        # Kernels are kept by depth: other depths have none.
+        return stress_field(body, pressure, friction, z=z * nudge() if cold else z, inside_cells=pressure)
+
+    def timed(friction: float, load: np.ndarray, cold: bool) -> dict[str, float]:
+        works: dict[str, Callable[[], object]] = {
+            name: partial(field, body, friction, load, cold) for name, body in bodies.items()
+        }
+        return medians(works, repeats)
+
+    sliding = timed(0.3, line, False)
+    cold = timed(0.0, line, True)
+    for name, seconds, bar in (("", cold, 0.26), ("..., same cells", timed(0.0, line, False), 0.11)):
+        yield Row(
+            f"six stresses 128 x 128 x 32, uniform along x, half-space{name}",
+            show(seconds["half-space"]),
+            bar=f"{bar} s",
+            met=seconds["half-space"] <= bar,
+            notes="with friction " + show(sliding["half-space"]) if name else "",
+        )
+        yield _against_half_space(f"... finite-length{name}", seconds)
+    for name, new in (("", True), ("..., same cells", False)):
+        yield _against_half_space(f"... under an elliptic pressure, finite-length{name}", timed(0.0, ellipse, new))
+
+
+def _against_half_space(work: str, seconds: dict[str, float]) -> Row:
+    """Row on a body with ends, whose bar is twice the half-space's time."""
+    ratio = seconds["finite-length"] / seconds["half-space"]
+    seconds_finite, half = show(seconds["finite-length"]), "our half-space " + show(seconds["half-space"])
+    return Row(work, seconds_finite, half, f"{ratio:.2f}", "2x the half-space", ratio <= 2)
+
+
+def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
+    """Contact on 1000 x 48 cells, L = 100a, and how the cost grows to there."""
+    contact, build, counts = {}, {}, {}
+    for cells in LONG_CELLS:
+        problem = roller((cells, 48), cells / 10, free_ends=True)
+        grid = Grid.from_centres(problem.labelled()["x"].values, problem.labelled()["y"].values)
+        make = partial(SurfaceOperator.of, OperatorRequest(problem.body, grid))
+        build[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
+        contact[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
+        counts[cells] = int(contact_of(problem)["iterations"])
+    first, last = LONG_CELLS[0], LONG_CELLS[-1]
+    growth = contact[last] / contact[first] / (last / first)
+    per_application = growth * counts[first] / counts[last]
+    times = ", ".join(f"{cells}: {show(contact[cells])} ({counts[cells]} applications)" for cells in LONG_CELLS)
+    yield Row(
+        "contact 1000 x 48, L = 100a, built", show(contact[last]), bar="1.5 s", met=contact[last] <= 1.5, notes=times
+    )
+    yield Row(
+        "growth from 250 to 1000 cells, over linear",
+        f"{growth:.2f}",
+        bar="1.2",
+        met=growth <= 1.2,
+        notes=f"per operator application {per_application:.2f}",
+    )
+    yield Row(
+        "building the operator, 1000 x 48, L = 100a",
+        show(build[last]),
+        notes=", ".join(f"{cells}: {show(build[cells])}" for cells in LONG_CELLS),
+    )
+    yield from memory(report)
+
+
+def memory(report: Report) -> Iterator[Row]:
+    """Peak memory of a process that builds the operator, solves the contact and takes stresses in one section."""
+    process = subprocess.run(
+        [sys.executable, "-m", "benchmarks.performance.memory"], capture_output=True, text=True, check=False
+    )
+    if process.returncode:
+        report.remark(f"the measurement of memory failed: {process.stderr.strip().splitlines()[-1]}")
+        return
+    idle, contact, stress = (float(word) for word in process.stdout.split())
+    yield Row(
+        "peak memory, 1000 x 48, L = 100a",
+        f"{stress:.0f} MB",
+        bar="2 GB",
+        met=stress <= MEMORY_BAR,
+        notes=f"process with its imports {idle:.0f} MB, after the contact {contact:.0f} MB, after stresses in y = 0",
+    )

@@ -1,0 +1,169 @@
+"""Rows on contact: point contact and roller against peers, then the free ends against the half-space."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from functools import partial
+
+import numpy as np
+
+from benchmarks.performance.peers import (
+    LIMIT_SETTING,
+    OURS,
+    SETTINGS,
+    Solver,
+    available,
+    contact_of,
+    quietly,
+    solve_ours,
+)
+from benchmarks.performance.problems import FloatArray, Problem, roller, sphere
+from benchmarks.performance.timing import Report, Row, medians, named, show
+from contactstudy import solve_contact
+from contactstudy.contact import ContactSettings
+
+GOAL = 1e-6
+ROLLER_CELLS, ROLLER_WINDOW = (512, 64), 40.0
+PEERS = ("aspher", "tamaas", "ContactMechanics", "plain SciPy")
+
+
+def difference(pressure: FloatArray, limit: FloatArray) -> float:
+    """Sum of the pressure's deviations over the sum of the pressure."""
+    return float(np.abs(pressure - limit).sum() / limit.sum())
+
+
+def loosest_setting(solve: Solver, problem: Problem, goal: float = GOAL) -> tuple[float, float]:
+    """Loosest tolerance at which a code comes within `goal` of its own limit, and how near it then is.
+
+    Parameters
+    ----------
+    solve : callable
+        The code.
+    problem : Problem
+        Problem.
+    goal : float
+        Allowed difference from the code's own answer at its tightest setting.
+
+    Raises
+    ------
+    RuntimeError
+        If no setting is tight enough.
+    """
+    limit = solve(problem, LIMIT_SETTING)
+    errors: dict[int, float] = {}
+
+    def error(index: int) -> float:
+        if index not in errors:
+            errors[index] = difference(solve(problem, SETTINGS[index]), limit)
+        return errors[index]
+
+    index = SETTINGS.index(min(SETTINGS, key=lambda setting: abs(np.log10(setting / goal))))
+    while index < len(SETTINGS) - 1 and error(index) > goal:
+        index += 1
+    while index > 0 and error(index - 1) <= goal:
+        index -= 1
+    if error(index) > goal:
+        raise RuntimeError(f"no setting comes within {goal:g} of the limit")
+    return SETTINGS[index], error(index)
+
+
+def compare(problem: Problem, names: tuple[str, ...], repeats: int, report: Report) -> tuple[dict[str, float], str]:
+    """Median seconds of each code at equal measured accuracy, and a note on the settings that it took."""
+    works: dict[str, Callable[[], object]] = {}
+    notes = []
+    limits: dict[str, FloatArray] = {}
+    for name, solve in available(names, report.remark):
+        with quietly():
+            try:
+                setting, error = loosest_setting(solve, problem)
+            except RuntimeError as reason:
+                report.remark(f"{name} is skipped for {problem.gap.shape} cells: {reason}")
+                continue
+            limits[name] = solve(problem, setting)
+        works[name] = partial(solve, problem, setting)
+        notes.append(f"{name} {error:.0e} at {setting:.0e}")
+    with quietly():
+        seconds = medians(works, repeats, warm_up=False)
+    apart = max(difference(pressure, limits[OURS]) for pressure in limits.values())
+    return seconds, f"measured error at setting: {', '.join(notes)}; codes agree within {apart:.0e}"
+
+
+def point_contact(repeats: int, report: Report) -> Iterator[Row]:
+    """Sphere on a half-space, square grids."""
+    for cells in (128, 256, 512):
+        problem = sphere(cells)
+        seconds, note = compare(problem, PEERS, repeats if cells < 512 else min(repeats, 3), report)
+        ours = seconds.pop(OURS)
+        iterations = float(contact_of(problem)["iterations"])
+        fastest = seconds.get("aspher")
+        yield Row(
+            f"half-space point contact {cells}²",
+            show(ours),
+            named(seconds),
+            ", ".join(f"{ours / duration:.2f}" for duration in seconds.values()),
+            "no slower than aspher",
+            None if fastest is None else ours <= fastest,
+            f"{note}; {iterations:.0f} operator applications at the default 1e-6",
+        )
+
+
+def half_space_roller(repeats: int, report: Report) -> Iterator[Row]:
+    """Cylinder with sharp ends on a half-space, rectangular cells."""
+    problem = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
+    seconds, note = compare(problem, PEERS[1:], repeats, report)
+    report.remark("aspher has square cells only: no roller on 512 x 64")
+    ours = seconds.pop(OURS)
+    yield Row(
+        "half-space roller 512 x 64",
+        show(ours),
+        named(seconds),
+        ", ".join(f"{ours / duration:.2f}" for duration in seconds.values()),
+        "0.15 s",
+        ours <= 0.15,
+        note,
+    )
+
+
+def finite_length_roller(repeats: int, report: Report) -> Iterator[Row]:
+    """Contact with free ends on the same cells, once the operator is built."""
+    bar = 2.0
+    half = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False)
+    for overhang, label in ((2.0, "ends 2a inside the body's"), (0.0, "roller as long as the body")):
+        ended = roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True, overhang=overhang)
+        works: dict[str, Callable[[], object]] = {
+            "finite": partial(contact_of, ended),
+            "built": partial(contact_of, half),
+            "cold": partial(solve_ours, half, 1e-6),
+        }
+        seconds = medians(works, repeats)
+        count = {name: int(contact_of(problem)["iterations"]) for name, problem in (("f", ended), ("h", half))}
+        ratio = seconds["finite"] / seconds["built"]
+        yield Row(
+            f"finite-length contact 512 x 64, built; {label}",
+            show(seconds["finite"]),
+            f"our half-space: {show(seconds['built'])} built, {show(seconds['cold'])} cold",
+            f"{ratio:.2f}, {seconds['finite'] / seconds['cold']:.2f}",
+            f"{bar:g}x the half-space",
+            ratio <= bar,
+            f"all at the default 1e-6; operator applications {count['f']}, half-space {count['h']}",
+        )
+
+
+def iterations(_: int, report: Report) -> Iterator[Row]:
+    """Operator applications of this package for each case, at two tolerances."""
+    cases = {
+        **{f"sphere {cells}²": sphere(cells) for cells in (128, 256, 512)},
+        "half-space roller 512 x 64": roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=False),
+        "finite-length 512 x 64": roller(ROLLER_CELLS, ROLLER_WINDOW, free_ends=True),
+        "finite-length 1000 x 48": roller((1000, 48), 100.0, free_ends=True),
+    }
+    for tolerance in (1e-4, 1e-6, 1e-8):
+        counts = []
+        for name, problem in cases.items():
+            contact = solve_contact(
+                problem.body, problem.labelled(), problem.load, settings=ContactSettings(tolerance=tolerance)
+            )
+            if not bool(contact["converged"]):
+                report.remark(f"not converged: {name} at {tolerance:g}")
+            counts.append(f"{name}: {int(contact['iterations'])}")
+        yield Row(f"operator applications at {tolerance:.0e}", ", ".join(counts), bar="aspher: 8 at 1e-6")

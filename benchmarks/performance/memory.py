@@ -1,0 +1,42 @@
+"""Peak memory of one long roller: prints megabytes after the imports, after the contact and after the stresses.
+
+Run on its own, ``python -m benchmarks.performance.memory``, because a peak counts for a whole process.
+"""
+
+from __future__ import annotations
+
+import resource
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.performance.peers import contact_of
+from benchmarks.performance.problems import HALF_WIDTH, roller
+from contactstudy import stress_field
+
+
+def peak() -> float:
+    """Return the largest memory that the process has taken so far, megabytes."""
+    status = Path("/proc/self/status")
+    if status.exists():  # the other figure begins with that of the process that started this one
+        line = next(line for line in status.read_text().splitlines() if line.startswith("VmHWM"))
+        return float(line.split()[1]) * 1024 / 1e6
+    unit = 1 if sys.platform == "darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / 1e6
+
+
+def main() -> None:
+    """Build, solve, look at one section, and print the peak after each."""
+    peaks = [peak()]
+    problem = roller((1000, 48), 100.0, free_ends=True)
+    contact = contact_of(problem)
+    peaks.append(peak())
+    depths, pressure = np.linspace(0.0, 5 * HALF_WIDTH, 25), contact["pressure"]
+    stress_field(problem.body, pressure, y=[0.0], z=depths, inside_cells=pressure)
+    peaks.append(peak())
+    print(*(f"{value:.1f}" for value in peaks))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,131 @@
+"""The codes that are compared, each behind one call: pressure of a problem at a tolerance."""
+
+from __future__ import annotations
+
+import importlib
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.performance.classic import solve_classic
+from benchmarks.performance.problems import FloatArray, Problem
+from benchmarks.performance.timing import nudge
+from contactstudy import solve_contact
+from contactstudy.contact import ContactSettings
+
+Solver = Callable[[Problem, float], FloatArray]
+
+OURS = "ours"
+SETTINGS = tuple(first * 10.0**power for power in range(-4, -10, -1) for first in (1.0, 0.3))
+LIMIT_SETTING = 1e-10
+
+
+def solve_ours(problem: Problem, tolerance: float) -> FloatArray:
+    """Pressure by this package, from scratch: nothing is kept from an earlier call."""
+    return np.asarray(contact_of(problem, tolerance, stretch=nudge())["pressure"].values)
+
+
+def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.0) -> xr.Dataset:
+    """Contact by this package, which never repeats a load; with the same `stretch` the operator is kept."""
+    return solve_contact(
+        problem.body,
+        problem.labelled(stretch),
+        problem.nudged_load(),
+        settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
+    )
+
+
+def _aspher() -> Solver:
+    aspher = importlib.import_module("aspher")
+
+    def solve(problem: Problem, tolerance: float) -> FloatArray:
+        cells = problem.gap.shape[0]
+        side = problem.size[0]
+        result = aspher.solve_nested(
+            grid_size=cells,
+            gap=problem.gap.ravel(),
+            p_nominal=problem.load / side**2,
+            domain_size=side,
+            E_star=problem.contact_modulus,
+            tol=tolerance,
+            backend="fft",
+        )
+        return np.asarray(result.pressure).reshape(problem.gap.shape)
+
+    return solve
+
+
+def _tamaas() -> Solver:
+    tamaas = importlib.import_module("tamaas")
+    tamaas.set_log_level(tamaas.LogLevel.error)
+
+    def solve(problem: Problem, tolerance: float) -> FloatArray:
+        # Its stopping rule has units, so it gets numbers near 1.
+        unit, depth = problem.size[1], float(np.ptp(problem.gap[np.isfinite(problem.gap)]))
+        scale = problem.contact_modulus * depth / unit
+        size = [length / unit for length in problem.size]
+        model = tamaas.ModelFactory.createModel(tamaas.model_type.basic_2d, size, list(problem.gap.shape))
+        # The operator takes the modulus that it finds when it is registered.
+        model.E, model.nu = 1.0, 0.0
+        tamaas.ModelFactory.registerNonPeriodic(model, "dcfft")
+        solver = tamaas.PolonskyKeerRey(model, -problem.finite_gap / depth, tolerance)
+        solver.setIntegralOperator("dcfft")
+        solver.max_iter = 5000
+        solver.solve(problem.load / (problem.size[0] * problem.size[1]) / scale)
+        return np.array(model.traction) * scale
+
+    return solve
+
+
+def _contact_mechanics() -> Solver:
+    substrates = importlib.import_module("ContactMechanics")
+    topography = importlib.import_module("SurfaceTopography")
+
+    def solve(problem: Problem, tolerance: float) -> FloatArray:
+        shape = problem.gap.shape
+        substrate = substrates.FreeFFTElasticHalfSpace(shape, problem.contact_modulus, physical_sizes=problem.size)
+        surface = topography.Topography(-problem.finite_gap, problem.size)
+        system = substrates.Systems.NonSmoothContactSystem(substrate, surface)
+        depth = np.ptp(problem.gap[np.isfinite(problem.gap)])
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            result = system.minimize_proxy(
+                external_force=problem.load,
+                pentol=tolerance * depth,
+                forcetol=tolerance * problem.load,
+                thermotol=tolerance,
+                maxiter=5000,
+            )
+        if not result.success:
+            raise RuntimeError(str(result.message))
+        cell = problem.size[0] * problem.size[1] / problem.gap.size
+        return np.asarray(result.jac)[: shape[0], : shape[1]] / cell
+
+    return solve
+
+
+_MAKERS = {"aspher": _aspher, "tamaas": _tamaas, "ContactMechanics": _contact_mechanics}
+
+
+def available(names: tuple[str, ...], remark: Callable[[str], None]) -> Iterator[tuple[str, Solver]]:
+    """Yield this package and those of the named codes that can be loaded; `remark` gets the reason for the others."""
+    yield OURS, solve_ours
+    for name in names:
+        if name == "plain SciPy":
+            yield name, solve_classic
+            continue
+        try:
+            yield name, _MAKERS[name]()
+        except ImportError as error:
+            remark(f"{name} is skipped: {error}")
+
+
+@contextmanager
+def quietly() -> Iterator[None]:
+    """Leave out warnings of codes whose tolerance is below their rounding."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        yield

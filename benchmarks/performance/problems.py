@@ -1,0 +1,107 @@
+"""The contacts that are timed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from benchmarks.performance.timing import nudge
+from contactstudy import FiniteLengthSpace, HalfSpace, Material
+from contactstudy.bodies import Body
+
+FloatArray = npt.NDArray[np.float64]
+
+STEEL = Material(210e9, 0.3)
+HALF_WIDTH = 1e-4
+RADIUS = 8e-3
+# Where a roller cannot touch, peers get a gap of this many times the largest finite one.
+OUT_OF_REACH = 10.0
+
+
+@dataclass(frozen=True)
+class Problem:
+    """A rigid shape over a grid of cells, and the load that presses it down.
+
+    Attributes
+    ----------
+    body : Body
+        Body under the roller.
+    gap : array (x, y)
+        Initial gap, metres; infinite beyond a roller's ends.
+    size : tuple
+        Window along x and y, metres.
+    load : float
+        Newton.
+    """
+
+    body: Body
+    gap: FloatArray
+    size: tuple[float, float]
+    load: float
+
+    @property
+    def contact_modulus(self) -> float:
+        """``E / (1 - nu**2)``, Pa."""
+        return self.body.material.young / (1 - self.body.material.poisson**2)
+
+    @property
+    def finite_gap(self) -> FloatArray:
+        """Gap for codes without infinite gaps."""
+        finite = np.isfinite(self.gap)
+        return np.where(finite, self.gap, OUT_OF_REACH * self.gap[finite].max())
+
+    def labelled(self, stretch: float = 1.0) -> xr.DataArray:
+        """Gap with its coordinates; a stretch next to 1 makes a grid for which no operator is kept."""
+        cells_x, cells_y = self.gap.shape
+        x = (np.arange(cells_x) + 0.5) * self.size[0] / cells_x * stretch
+        y = (np.arange(cells_y) + 0.5 - cells_y / 2) * self.size[1] / cells_y * stretch
+        return xr.DataArray(self.gap, coords={"x": x, "y": y}, dims=("x", "y"))
+
+    def nudged_load(self) -> float:
+        """Load that differs from every earlier one in its last digits."""
+        return self.load * nudge()
+
+
+def sphere(cells: int) -> Problem:
+    """Sphere on a half-space, its Hertz contact half as wide as the square window."""
+    half_width, radius = 1e-3, 50e-3
+    size = 4 * half_width
+    centres = (np.arange(cells) + 0.5 - cells / 2) * size / cells
+    gap = (centres[:, None] ** 2 + centres**2) / (2 * radius)
+    body = HalfSpace(material=STEEL)
+    load = 4 / 3 * STEEL.young / (1 - STEEL.poisson**2) * half_width**3 / radius
+    return Problem(body, gap, (size, size), load)
+
+
+def roller(cells: tuple[int, int], length: float, *, free_ends: bool, overhang: float = 2.0) -> Problem:
+    """Cylindrical roller with sharp ends.
+
+    Parameters
+    ----------
+    cells : tuple of int
+        Cells along x and y.
+    length : float
+        Window along x in Hertz half-widths; with free ends the length of the body.
+    free_ends : bool
+        Whether the body ends at the window's edges along x.
+    overhang : float
+        How far the window goes on beyond either end of the roller, in half-widths.
+
+    Returns
+    -------
+    Problem
+    """
+    size_x, size_y = length * HALF_WIDTH, 3.0 * HALF_WIDTH
+    x = (np.arange(cells[0]) + 0.5) * size_x / cells[0] - size_x / 2
+    y = (np.arange(cells[1]) + 0.5 - cells[1] / 2) * size_y / cells[1]
+    roller_length = size_x - 2 * overhang * HALF_WIDTH
+    touching = np.where(np.abs(x) <= roller_length / 2, 0.0, np.inf)
+    gap = touching[:, None] + y**2 / (2 * RADIUS)
+    body: Body = HalfSpace(material=STEEL)
+    if free_ends:
+        body = FiniteLengthSpace(length=size_x, material=STEEL)
+    per_length = np.pi * HALF_WIDTH**2 * STEEL.young / (1 - STEEL.poisson**2) / (4 * RADIUS)
+    return Problem(body, gap, (size_x, size_y), per_length * roller_length)

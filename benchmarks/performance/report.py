@@ -1,0 +1,56 @@
+"""All rows in order, and their output."""
+
+from __future__ import annotations
+
+import argparse
+import platform
+import time
+from collections.abc import Callable, Iterator
+from importlib import metadata
+from pathlib import Path
+
+from benchmarks.performance import bodies, contacts, rolling, settled
+from benchmarks.performance.timing import Report, Row
+
+PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
+    "point": contacts.point_contact,
+    "roller": contacts.half_space_roller,
+    "finite": contacts.finite_length_roller,
+    "building": bodies.building,
+    "stresses": bodies.stresses,
+    "long": bodies.long_rollers,
+    "rolling": rolling.steady_rolling,
+    "refined": settled.refined_columns,
+    "iterations": contacts.iterations,
+}
+VERSIONS = ("contactstudy", "numpy", "scipy", "pyfftw", "aspher", "tamaas", "ContactMechanics")
+
+
+def versions() -> str:
+    """Return the compared rows."""
+    reports = []
+    for name in VERSIONS:
+        try:
+            reports.append(f"{name} {metadata.version(name)}")
+        except metadata.PackageNotFoundError:
+            reports.append(f"{name} absent")
+    return f"Python {platform.python_version()}, {', '.join(reports)}; one thread"
+
+
+def main() -> None:
+    """Run the selected parts, print each row, and then the table."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.performance", description=__doc__)
+    parser.add_argument("--repeats", type=int, default=5, help="rounds behind each median")
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS), help="parts to run")
+    parser.add_argument("--markdown", type=Path, help="file to write the table to")
+    arguments = parser.parse_args()
+    started = time.perf_counter()
+    report = Report()
+    for name in arguments.only:
+        for row in PARTS[name](max(1, arguments.repeats), report):
+            report.rows.append(row)
+            print(row.plain(), flush=True)
+    report.remark(f"{versions()}; medians of {arguments.repeats}; {time.perf_counter() - started:.0f} s in all")
+    print("\n" + report.markdown())
+    if arguments.markdown:
+        arguments.markdown.write_text(report.markdown() + "\n", encoding="utf-8")

@@ -1,0 +1,179 @@
+"""Cost of the study layer beside solving: planning, overhead of a case, files, opening, gain of a second worker.
+
+Usage: ``python -m benchmarks.performance.study_layer [--frictions 50] [--pairs 48] [--cases 100000]``; 0 omits a part.
+The gain of a second worker is printed beside that of two bare processes, without the layer, on the same cases.
+"""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import resource
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+import numpy as np
+
+from contactstudy import Study, open_study, run_study, solve
+from contactstudy.study import RunReport
+from contactstudy.study.engine import WORKER_ENVIRONMENT
+from contactstudy.study.setup import build_setup
+from contactstudy.study.worker import Solver, single_threaded
+from tests.stand_in_solver import solve_fake
+
+BASE = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 0.5e-3,
+    "cells_x": 4,
+    "cells_y": 8,
+    "stresses": False,
+}
+GIGAPASCAL = 1e9
+
+
+TABLE = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 10e-3,
+    "profile": {"kind": "cylinder", "fillet_radius": 5e-5},
+    "stresses": False,
+}
+"""Case of a table of numbers: a roller with an edge radius, on columns that are refined."""
+
+
+def run(study: Study, folder: Path, workers: int, solver: Solver | None = None) -> tuple[RunReport, float]:
+    """Run a study; return the report and the seconds on the wall clock, start of workers included."""
+    began = time.perf_counter()
+    report = run_study(study, folder, workers=workers, progress=False, solver=solver)
+    seconds = time.perf_counter() - began
+    assert report.counts == {"ok": len(report.plan)}, report.counts
+    return report, seconds
+
+
+def overhead(frictions: int) -> None:
+    """Print the processor time of cases beyond their contact: 8 contacts, solved once before and kept in memory."""
+    contacts = {"max_pressure": [1e9, 1.5e9], "e_over_a": [0.0, 1.0, 2.0, 4.0]}
+    seconds = []
+    for number in (2, 1, frictions):  # the first run solves the contacts
+        swept = contacts | {"friction": (0.3 * np.arange(1, number + 1) / number).tolist()}
+        study = Study(name="overhead", level="summary", base=TABLE, sweep=swept)
+        with tempfile.TemporaryDirectory() as folder:
+            began = time.process_time()
+            run(study, Path(folder), workers=0)
+            seconds.append(time.process_time() - began)
+    each = (seconds[2] - seconds[1]) / (8 * (frictions - 1))
+    print(f"overhead: {1e3 * each:.2f} ms of processor time per case beyond its contact (bar 5 ms)", flush=True)
+
+
+def files(cases: int, level: str) -> None:
+    """Print files, bytes, memory and time to open a study of many cases with the stand-in solver."""
+    sweep = {"max_pressure": np.linspace(1e9, 2e9, 10).tolist(), "friction": np.linspace(0, 0.2, cases // 100).tolist()}
+    base = BASE | {"roller_length": 0.3e-3}
+    study = Study(name="files", level=level, base=base, sweep=sweep | {"e_over_a": np.linspace(0, 4, 10).tolist()})
+    with tempfile.TemporaryDirectory() as name:
+        began = time.process_time()
+        report, _ = run(study, Path(name), 0, solve_fake)
+        solving = time.process_time() - began
+        size = sum(path.stat().st_size for path in report.files)
+        count = len(report.files)
+        del report
+        began = time.perf_counter()
+        opened = open_study(name)
+        opening = time.perf_counter() - began
+        began = time.perf_counter()
+        largest = float(opened["peak_pressure"].max())
+        reading = time.perf_counter() - began
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    print(
+        f"files, level {level}: {study.size} cases, {count} files, {size / study.size:.0f} bytes per case, "
+        f"{1e3 * solving / study.size:.1f} ms of processor time per case with the stand-in solver, opened in "
+        f"{opening:.1f} s, one number of all ({largest:.3g}) in {reading:.2f} s, largest memory {peak:.0f} MB",
+        flush=True,
+    )
+
+
+def planning() -> None:
+    """Print time and memory of the plan of a million combinations."""
+    sweep = {
+        "max_pressure": np.linspace(1e9, 2e9, 100).tolist(),
+        "e_over_a": np.linspace(0, 5, 100).tolist(),
+        "friction": np.linspace(0, 0.2, 100).tolist(),
+    }
+    study = Study(name="million", base=TABLE, sweep=sweep)
+    began = time.process_time()
+    plan = study.plan()
+    unique, checked = len(plan.unique), plan.review.checked
+    seconds = time.process_time() - began
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
+    print(f"plan: {unique} cases, {checked} contacts checked, {seconds:.1f} s (bar 10 s), {peak:.0f} MB (bar 1000 MB)")
+
+
+def solve_bare(parameters: list[dict[str, object]]) -> float:
+    """Solve cases without the layer; return the seconds."""
+    began = time.perf_counter()
+    with single_threaded():
+        for values in parameters:
+            setup = build_setup(values)
+            solve(setup.case, setup.grid, **setup.options)
+    return time.perf_counter() - began
+
+
+def bare(parameters: list[dict[str, object]], processes: int) -> float:
+    """Return the seconds that cases take in `processes` bare processes, start and imports not counted."""
+    with ProcessPoolExecutor(processes, mp_context=multiprocessing.get_context("spawn")) as pool:
+        list(pool.map(solve_bare, [parameters[:1]] * processes))
+        began = time.perf_counter()
+        list(pool.map(solve_bare, [parameters[index::processes] for index in range(processes)]))
+        return time.perf_counter() - began
+
+
+def scaling(cases: int, rounds: int) -> None:
+    """Print how much faster two workers are than one, in the layer and bare."""
+    study = Study(
+        name="scaling",
+        level="summary",
+        base=BASE | {"cells_x": 8, "cells_y": 16, "friction": 0.1},
+        sweep={"e_over_a": [0.0, 1.0], "max_pressure": [GIGAPASCAL * (1 + i / cases) for i in range(cases // 2)]},
+    )
+    parameters = [case.parameters for case in study.plan()]
+    for _ in range(rounds):
+        seconds = {}
+        for workers in (1, 2):
+            with tempfile.TemporaryDirectory() as folder:
+                seconds[workers] = run(study, Path(folder), workers)[1]
+        alone = {processes: bare(parameters, processes) for processes in (1, 2)}
+        print(
+            f"scaling: {len(parameters)} cases, 1 worker {seconds[1]:.1f} s, 2 workers {seconds[2]:.1f} s: "
+            f"{seconds[1] / seconds[2]:.2f} times as fast (bar 1.7); bare processes {alone[1]:.1f} s, "
+            f"{alone[2]:.1f} s: {alone[1] / alone[2]:.2f} times; load of the machine {os.getloadavg()[0]:.1f}",
+            flush=True,
+        )
+
+
+def main() -> None:
+    """Measure the chosen parts."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--frictions", type=int, default=50, help="frictions of each contact, for the overhead")
+    parser.add_argument("--pairs", type=int, default=48, help="cases for one and two workers")
+    parser.add_argument("--rounds", type=int, default=1, help="times to compare these")
+    parser.add_argument("--cases", type=int, default=100_000, help="cases of the stand-in solver, for the files")
+    parser.add_argument("--level", default="summary", help="arrays that these retain")
+    options = parser.parse_args()
+    os.environ.update(WORKER_ENVIRONMENT)
+    planning()
+    if options.frictions:
+        overhead(options.frictions)
+    if options.pairs:
+        scaling(options.pairs, options.rounds)
+    if options.cases:
+        files(options.cases, options.level)
+
+
+if __name__ == "__main__":
+    main()

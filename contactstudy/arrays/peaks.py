@@ -1,0 +1,84 @@
+"""Peaks of sampled pressures and fields: values between samples, and the width of a peak."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
+
+FLANK = 0.8  # fraction of a peak at which its width is read; a half-ellipse is 1 / 0.6 times as wide there
+SAMPLES_BETWEEN = 17  # points between the two neighbours of a sample at which the interpolating polynomial is evaluated
+
+
+def section_maxima(pressure: FloatArray) -> FloatArray:
+    """Largest pressure of each cross-section (x, y), between its cells along y."""
+    # The squared pressure is nearly a parabola across the contact, through the largest cell and its neighbours.
+    squared = pressure**2
+    centre = np.clip(squared.argmax(axis=1), 1, squared.shape[1] - 2)
+    lower, middle, upper = (squared[np.arange(centre.size), centre + step] for step in (-1, 0, 1))
+    second_difference = np.minimum(lower - 2 * middle + upper, 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rise = np.where(second_difference < 0, -((upper - lower) ** 2) / (8 * second_difference), 0.0)
+    maxima = squared.max(axis=1)
+    # One or two cells do not determine a parabola.
+    return np.sqrt(np.where(maxima > 0, np.maximum(middle + np.minimum(rise, 0.25 * middle), maxima), 0.0))
+
+
+class LocalPolynomial(NamedTuple):
+    """Polynomial interpolation of samples about one of them."""
+
+    window: slice  # samples that the polynomial interpolates
+    points: FloatArray  # points of evaluation: from the left to the right neighbour, with the sample
+    matrix: FloatArray  # (point, node): maps samples in the window to values at `points`
+
+
+def local_polynomial(positions: FloatArray, centre: int, neighbours: int) -> LocalPolynomial:
+    """Polynomial through a sample and `neighbours` samples on either side; at an edge all of them on one side."""
+    count = min(2 * neighbours + 1, positions.size)
+    start = min(max(centre - neighbours, 0), positions.size - count)
+    nodes = positions[start : start + count]
+    low, high = positions[max(centre - 1, 0)], positions[min(centre + 1, positions.size - 1)]
+    points = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), positions[centre])) if count > 1 else nodes
+    matrix = np.ones((points.size, count))
+    for i, j in product(range(count), repeat=2):
+        if i != j:
+            matrix[:, i] *= (points - nodes[j]) / (nodes[i] - nodes[j])
+    return LocalPolynomial(slice(start, start + count), points, matrix)
+
+
+def interpolate_about(
+    axes: Sequence[FloatArray], index: Sequence[int], values: FloatArray, neighbours: int
+) -> tuple[list[FloatArray], FloatArray]:
+    """Points along each axis, and components (component, *axes, ...) there, by polynomials about a sample."""
+    polynomials = [local_polynomial(axis, i, neighbours) for axis, i in zip(axes, index, strict=True)]
+    values = values[(slice(None), *(polynomial.window for polynomial in polynomials))]
+    for number, polynomial in enumerate(polynomials, start=1):
+        values = np.moveaxis(np.tensordot(polynomial.matrix, values, axes=(1, number)), 0, number)
+    return [polynomial.points for polynomial in polynomials], values
+
+
+def peak_width(pressure: FloatArray, x: FloatArray, dy: float, column: int) -> float:
+    """Half-width of a pressure peak, metres: the smaller of its steeper axial flank and the width along y."""
+    return min(variation_lengths(pressure, x, dy, column, rising=False))
+
+
+def variation_lengths(
+    pressure: FloatArray, x: FloatArray, dy: float, column: int, *, rising: bool = True
+) -> tuple[float, float]:
+    """Lengths along x and y over which a pressure varies about one column, metres."""
+    # Along x: the half-width of the half-ellipse that falls, or with `rising` rises, as fast; infinite for a nearly
+    # uniform pressure, the distance to the contact for a column without pressure.
+    axial = pressure.max(axis=1)
+    different = axial < FLANK * axial[column]
+    if rising:
+        different |= FLANK * axial > axial[column]
+    loaded = column if axial[column] > 0 else int(axial.argmax())
+    length_y = 0.5 * dy * np.count_nonzero(pressure[loaded] > 0)
+    length_x = np.abs(x[different] - x[column]).min() if different.any() else np.inf
+    if axial[column] > 0:
+        length_x /= np.sqrt(1 - FLANK**2)
+    return float(length_x), float(length_y)

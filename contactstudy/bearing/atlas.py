@@ -1,0 +1,232 @@
+"""Atlas of logarithmic rollers: pressure, stress and stiffness from a table of solved contacts, without a solution."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from importlib.resources import files
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from scipy.interpolate import RBFInterpolator
+from scipy.spatial import cKDTree
+
+from contactstudy.arrays.variables import describe
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.errors import InvalidInputError
+
+# Dimensionless groups, in the order of the coordinates of the interpolation
+GROUPS = ("length_over_a", "e_over_a", "crown")
+# Interpolated quantities
+QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
+# Quantities whose logarithm is interpolated: their errors are relative
+LOGARITHMIC = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
+NEIGHBOURS = 6  # Nearest points whose residuals give the local error
+LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
+RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
+
+
+def atlas(
+    length_over_a: npt.ArrayLike | xr.DataArray,
+    e_over_a: npt.ArrayLike | xr.DataArray,
+    crown: npt.ArrayLike | xr.DataArray,
+) -> xr.Dataset:
+    """Interpolate the contact of a rigid roller with a logarithmic profile between free ends.
+
+    The scales are those of the Hertz line contact: half-width ``a = 2 p0 R / E*``, pressure p0, and the load
+    ``P = pi E* a**2 L / (4 R)``. Poisson's ratio is 0.3, the friction 0, the tilt 0, and the approach refers to the
+    depth of the body's length.
+
+    Parameters
+    ----------
+    length_over_a : float or array
+        Length of the roller over the half-width, ``L / a``.
+    e_over_a : float or array
+        Distance of the roller's ends from the free ends over the half-width, ``e / a``.
+    crown : float or array
+        Amplitude A of `profiles.Lundberg`, ``A R / a**2``. A crown for the pressure pd has ``(pd / p0)**2 / 4``.
+
+    Returns
+    -------
+    Dataset
+        `peak_pressure_ratio` and `peak_von_mises_ratio` over p0, `approach_ratio` over ``a**2 / R``,
+        `stiffness_ratio` dP/d(approach) over ``E* L``, and `end_load_ratio`, the load on the last half-width over the
+        mean load per half-width; each with its error ``<name>_error``, of solver and interpolation, which covers 95 %
+        of the points of a comparison. DataArrays are broadcast; other arrays of one dimension have the dimension
+        `point`.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is not a finite number inside the range of the atlas.
+
+    Notes
+    -----
+    ``studies/atlas.py`` computes the table.
+
+    Examples
+    --------
+    >>> roller = atlas(length_over_a=100, e_over_a=[0.0, 2.0], crown=0.25)
+    >>> roller["peak_pressure_ratio"].dims, bool((roller["peak_pressure_ratio_error"] < 0.05).all())
+    (('point',), True)
+    """
+    table = atlas_table()
+    given = {"length_over_a": length_over_a, "e_over_a": e_over_a, "crown": crown}
+    groups = xr.broadcast(*(_checked(name, value, table.ranges[name]) for name, value in given.items()))
+    points = np.stack([group.values.ravel() for group in groups], axis=1)
+    shape, dims = groups[0].shape, groups[0].dims
+    columns = {name: (dims, values.reshape(shape)) for name, values in table.evaluate(points).items()}
+    result = xr.Dataset(columns).assign_coords(dict(zip(GROUPS, groups, strict=True)))
+    return describe(result, "atlas of logarithmic rollers between free ends")
+
+
+def _checked(name: str, value: npt.ArrayLike | xr.DataArray, allowed: tuple[float, float]) -> xr.DataArray:
+    """Group as a DataArray, inside the range of the atlas."""
+    try:
+        values = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise InvalidInputError(name, value, "numbers") from None
+    low, high = allowed
+    outside = ~((values >= low * (1 - 1e-9)) & (values <= high * (1 + 1e-9)))
+    if outside.any():
+        raise InvalidInputError(name, float(values[outside][0]), f"from {low:g} to {high:g}", "solve the case")
+    if isinstance(value, xr.DataArray):
+        return value.astype(float)
+    if values.ndim > 1:
+        raise InvalidInputError(name, f"{values.ndim} dimensions", "a number, a sequence or a DataArray")
+    return xr.DataArray(values, dims=("point",)[: values.ndim])
+
+
+class Branch(NamedTuple):
+    """Interpolation of a smooth branch: all points of the table in a tree, and the members of the branch."""
+
+    interpolation: RBFInterpolator
+    tree: cKDTree
+    members: npt.NDArray[np.bool_]
+
+    def values(self, coordinates: FloatArray, scales: FloatArray) -> FloatArray:
+        """Values at coordinates (point, group); minus infinity away from the members."""
+        _, nearest = self.tree.query(coordinates, NEIGHBOURS)
+        values = self.interpolation(scales * coordinates)
+        return np.where(self.members[nearest].any(axis=1), values, -np.inf)
+
+
+@dataclass(frozen=True, eq=False)
+class AtlasTable:
+    """Solved points and their interpolation; residuals: differences from the interpolation between the other points."""
+
+    dataset: xr.Dataset  # (point): groups; quantities with scales, solver_error, coverage_factor; residuals; *_at_end
+
+    @cached_property
+    def ranges(self) -> dict[str, tuple[float, float]]:
+        """Least and largest value of each group."""
+        return {name: tuple(self.dataset[name].attrs["valid_range"]) for name in GROUPS}
+
+    def coordinates(self, points: FloatArray) -> FloatArray:
+        """Coordinates of points (point, group), from 0 to 1: the quantities vary evenly over them."""
+        lows, highs = np.array([self.ranges[name] for name in GROUPS]).T
+        low, value, high = (_even(np.atleast_2d(each)) for each in (lows, points, highs))
+        return np.asarray((value - low) / (high - low))
+
+    @cached_property
+    def points(self) -> FloatArray:
+        """Coordinates of the solved points (point, group)."""
+        return self.coordinates(np.stack([self.dataset[name].values for name in GROUPS], axis=1))
+
+    def samples(self, name: str) -> FloatArray:
+        """Interpolated values at the solved points: of some quantities the logarithm."""
+        values = self.dataset[name].values
+        return np.asarray(np.log(values) if name in LOGARITHMIC else values)
+
+    def branches(self, name: str) -> list[npt.NDArray[np.bool_]]:
+        """Points of each smooth branch of a quantity: a largest value is the larger one of two local maxima."""
+        if f"{name}_at_end" not in self.dataset:
+            return [np.ones(len(self.points), dtype=bool)]
+        at_end = self.dataset[f"{name}_at_end"].values.astype(bool)
+        return [at_end, ~at_end]
+
+    def interpolators(self, name: str, without: int | None = None) -> list[Branch]:
+        """Interpolation of each branch, through all points or all but one."""
+        samples, numbers = self.samples(name), np.arange(len(self.points))
+        selections = [branch & (numbers != without) for branch in self.branches(name)]
+        # Points from which on the polynomial beside the radial functions is quadratic
+        return [
+            Branch(
+                RBFInterpolator(
+                    self.dataset[name].attrs["scales"] * self.points[selected],
+                    samples[selected],
+                    kernel="cubic",
+                    degree=2 if selected.sum() >= 20 else 1,
+                ),
+                cKDTree(self.points[numbers != without]),
+                selected[numbers != without],
+            )
+            for selected in selections
+        ]
+
+    @cached_property
+    def _interpolators(self) -> dict[str, list[Branch]]:
+        return {name: self.interpolators(name) for name in QUANTITIES}
+
+    def interpolate(
+        self, name: str, coordinates: FloatArray, branches: list[Branch] | None = None
+    ) -> tuple[FloatArray, IntArray]:
+        """Interpolated values at coordinates (point, group), and the branch of each."""
+        scales = np.asarray(self.dataset[name].attrs["scales"])
+        values = np.stack([each.values(coordinates, scales) for each in branches or self._interpolators[name]])
+        return values.max(axis=0), values.argmax(axis=0)
+
+    def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray) -> FloatArray:
+        """Mean residual of the nearest points of the same branch."""
+        residuals, local = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
+        for number, members in enumerate(self.branches(name)):
+            selected = branch == number
+            if selected.any():
+                _, nearest = cKDTree(self.points[members]).query(coordinates[selected], NEIGHBOURS)
+                local[selected] = residuals[members][nearest].mean(axis=1)
+        return local
+
+    def evaluate(self, points: FloatArray) -> dict[str, FloatArray]:
+        """Quantities and their errors at points (point, group)."""
+        coordinates, values = self.coordinates(points), {}
+        for name in QUANTITIES:
+            interpolated, branch = self.interpolate(name, coordinates)
+            attributes = self.dataset[name].attrs
+            local = self.local_residual(name, coordinates, branch)
+            error = np.hypot(attributes["coverage_factor"] * local, attributes["solver_error"])
+            logarithmic = name in LOGARITHMIC
+            values[name] = np.exp(interpolated) if logarithmic else np.maximum(interpolated, 0.0)
+            values[f"{name}_error"] = error * values[name] if logarithmic else error
+        slope = self._approach_slope(points)
+        values["stiffness_ratio"] = np.pi / (4 * values["approach_ratio"] * slope)
+        # Independent errors of the approach at both ends of the step.
+        relative = values["approach_ratio_error"] / values["approach_ratio"]
+        values["stiffness_ratio_error"] = values["stiffness_ratio"] * np.sqrt(2) * relative / (RISE * slope)
+        return values
+
+    def _approach_slope(self, points: FloatArray) -> FloatArray:
+        """Slope of the approach over the load, both logarithmic, at constant lengths in metres."""
+        # With the half-width s a the groups are L/(s a), e/(s a) and A R/(s a)**2; the load grows with s**2.
+        lower, higher = (
+            self.interpolate("approach_ratio", self.coordinates(points / np.array([step, step, step**2])))[0]
+            for step in (1 - LOAD_STEP, 1 + LOAD_STEP)
+        )
+        return np.asarray(1 + (higher - lower) / RISE)
+
+
+def _even(points: FloatArray) -> FloatArray:
+    """Transform groups (point, group) so that the quantities vary evenly over them."""
+    length, distance, crown = points.T
+    return np.stack([np.log(length), np.sqrt(distance), np.log(crown)], axis=1)
+
+
+@cache
+def atlas_table() -> AtlasTable:
+    """Return the table of the package."""
+    inside = Path(str(files("contactstudy.bearing"))) / "data" / "atlas.nc"
+    path = inside if inside.exists() else Path(__file__).resolve().parents[2] / "data" / "atlas.nc"
+    with xr.open_dataset(path) as dataset:
+        return AtlasTable(dataset.load())

@@ -1,0 +1,304 @@
+"""Lubricants: viscosity and density under pressure, viscosity at a temperature."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+
+VISCOSITY_LAWS, DENSITY_LAWS = ("roelands", "barus"), ("dowson-higginson", "constant")
+
+ROELANDS_PRESSURE = 1.962e8  # Reference pressure of Roelands' law, Pa
+# Viscosity towards which Roelands' law extrapolates all oils at negative pressure, Pa s
+ROELANDS_VISCOSITY = 6.31e-5
+DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
+KELVIN = 273.15  # 0 degrees Celsius in kelvin
+
+
+@dataclass(frozen=True, kw_only=True)
+class Lubricant:
+    """A lubricant at the temperature of the inlet, Newtonian unless a shear stress limits it.
+
+    Parameters
+    ----------
+    viscosity : float
+        Dynamic viscosity ``eta0`` at ambient pressure, Pa s.
+    pressure_viscosity : float
+        Pressure-viscosity coefficient ``alpha`` at ambient pressure, 1/Pa.
+    viscosity_law : str
+        "roelands", or "barus" for ``eta0 exp(alpha p)``, which holds below some 0.5 GPa.
+    roelands_exponent : float, optional
+        Exponent ``z`` of Roelands' law; default: the one that `viscosity` and `pressure_viscosity` lead to.
+    density_law : str
+        "dowson-higginson", or "constant".
+    density : float, optional
+        Density at ambient pressure, kg/m3; for the kinematic viscosity only.
+    temperature_viscosity : float, optional
+        ``beta = -d(ln eta)/dT``, 1/K; for the thermal reduction of the film.
+    conductivity : float, optional
+        Thermal conductivity, W/(m K); for the thermal reduction of the film.
+    eyring_stress : float, optional
+        Stress ``tau0`` of Ree-Eyring's law, Pa; for the traction.
+    limiting_shear : float, optional
+        Limiting shear stress over the pressure; for the traction.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is not positive, or a law is unknown.
+
+    Examples
+    --------
+    >>> oil = Lubricant(viscosity=0.034, pressure_viscosity=20.5e-9)
+    >>> round(float(oil.viscosity_at(1e9)), 1), round(float(oil.density_ratio(1e9)), 3)
+    (30134.9, 1.214)
+    """
+
+    viscosity: float
+    pressure_viscosity: float
+    viscosity_law: str = "roelands"
+    roelands_exponent: float | None = None
+    density_law: str = "dowson-higginson"
+    density: float | None = None
+    temperature_viscosity: float | None = None
+    conductivity: float | None = None
+    eyring_stress: float | None = None
+    limiting_shear: float | None = None
+
+    def __post_init__(self) -> None:
+        units = {
+            "viscosity": "Pa s",
+            "pressure_viscosity": "1/Pa",
+            "roelands_exponent": "",
+            "density": "kg/m3",
+            "temperature_viscosity": "1/K",
+            "conductivity": "W/(m K)",
+            "eyring_stress": "Pa",
+            "limiting_shear": "",
+        }
+        for name, unit in units.items():
+            value = getattr(self, name)
+            if value is not None or name in ("viscosity", "pressure_viscosity"):
+                checks.store(self, **{name: checks.positive(name, value, unit)})
+        for name, laws in (("viscosity_law", VISCOSITY_LAWS), ("density_law", DENSITY_LAWS)):
+            checks.instance(name, getattr(self, name), str, "a name")
+            checks.known_name(name, getattr(self, name), laws)
+        if self.viscosity_law == "roelands" and self.viscosity <= ROELANDS_VISCOSITY:
+            raise InvalidInputError(
+                "viscosity",
+                self.viscosity,
+                f"above {ROELANDS_VISCOSITY:g} Pa s with viscosity_law = 'roelands'",
+                "viscosities are in Pa s: 30 mPa s is 0.03",
+            )
+
+    def __repr__(self) -> str:
+        alpha = f"{1e9 * self.pressure_viscosity:.3g} 1/GPa"
+        laws = f"{self.viscosity_law}, {self.density_law} density"
+        return f"Lubricant(eta0 = {quantity(self.viscosity, 'Pa s')}, alpha = {alpha}, {laws})"
+
+    @property
+    def exponent(self) -> float:
+        """Exponent ``z`` of Roelands' law: the one given, or ``alpha p_r / (ln eta0 + 9.67)``."""
+        if self.roelands_exponent is not None:
+            return self.roelands_exponent
+        return float(self.pressure_viscosity * ROELANDS_PRESSURE / np.log(self.viscosity / ROELANDS_VISCOSITY))
+
+    def log_viscosity(self, pressure: FloatArray | float) -> FloatArray:
+        """Logarithm of the viscosity over the ambient one, at pressures in Pa (ambient below zero)."""
+        p = np.maximum(pressure, 0.0)
+        if self.viscosity_law == "barus":
+            return np.asarray(self.pressure_viscosity * p)  # eq. (406)
+        z, scale = self.exponent, ROELANDS_PRESSURE  # eq. (407)
+        return np.asarray(self.pressure_viscosity * scale / z * ((1 + p / scale) ** z - 1))
+
+    def log_viscosity_slope(self, pressure: FloatArray | float) -> FloatArray:
+        """Return the derivative of :meth:`log_viscosity`, 1/Pa; zero below zero."""
+        p = np.maximum(pressure, 0.0)
+        slope = self.pressure_viscosity * np.ones_like(p)
+        if self.viscosity_law == "roelands":
+            slope = slope * (1 + p / ROELANDS_PRESSURE) ** (self.exponent - 1)
+        return np.asarray(slope * (np.asarray(pressure) >= 0))
+
+    def viscosity_at(self, pressure: FloatArray | float) -> FloatArray:
+        """Dynamic viscosity at pressures in Pa, Pa s."""
+        # Largest logarithm of a viscosity ratio: the exponential of more overflows where it is cubed
+        return np.asarray(self.viscosity * np.exp(np.minimum(self.log_viscosity(pressure), 400.0)))
+
+    def density_ratio(self, pressure: FloatArray | float) -> FloatArray:
+        """Density at pressures in Pa over the ambient one."""
+        p = np.maximum(pressure, 0.0)
+        if self.density_law == "constant":
+            return np.ones_like(p)
+        return np.asarray((DENSITY_PRESSURE + DENSITY_GAIN * p) / (DENSITY_PRESSURE + p))  # eq. (408)
+
+    def density_ratio_slope(self, pressure: FloatArray | float) -> FloatArray:
+        """Return the derivative of :meth:`density_ratio`, 1/Pa; zero below zero."""
+        p = np.maximum(pressure, 0.0)
+        if self.density_law == "constant":
+            return np.zeros_like(p)
+        slope = (DENSITY_GAIN - 1) * DENSITY_PRESSURE / (DENSITY_PRESSURE + p) ** 2
+        return np.asarray(slope * (np.asarray(pressure) >= 0))
+
+    @property
+    def kinematic_viscosity(self) -> float:
+        """Kinematic viscosity at ambient pressure, m2/s."""
+        if self.density is None:
+            raise InvalidInputError("lubricant.density", None, "a number (kg/m3) for the kinematic viscosity")
+        return self.viscosity / self.density
+
+    @classmethod
+    def from_kinematic(
+        cls,
+        temperature: float,
+        *,
+        viscosities: dict[float, float],
+        density: float,
+        pressure_viscosity: float,
+        **properties: float | str,
+    ) -> Lubricant:
+        """Lubricant at a temperature, from two kinematic viscosities as on data sheets (ASTM D341).
+
+        Parameters
+        ----------
+        temperature : float
+            Temperature of the inlet, degrees Celsius.
+        viscosities : dict
+            Two kinematic viscosities, mm2/s, by temperature, degrees Celsius: ``{40: 220.0, 100: 19.0}``.
+        density : float
+            Density at that temperature, kg/m3.
+        pressure_viscosity : float
+            Pressure-viscosity coefficient at that temperature, 1/Pa.
+        **properties
+            Further parameters of the lubricant.
+
+        Returns
+        -------
+        Lubricant
+            With `temperature_viscosity`.
+
+        Raises
+        ------
+        InvalidInputError
+            If there are not two viscosities above 2 mm2/s that fall with the temperature.
+
+        Examples
+        --------
+        >>> grade = {40: 220.0, 100: 19.0}
+        >>> oil = Lubricant.from_kinematic(70.0, viscosities=grade, density=870.0, pressure_viscosity=20e-9)
+        >>> round(1e6 * oil.kinematic_viscosity, 1), round(oil.temperature_viscosity, 4)
+        (51.7, 0.0396)
+        """
+        law = walther(viscosities)
+        density = checks.positive("density", density, "kg/m3")
+        point = law.at(checks.finite("temperature", temperature, "degrees Celsius"))
+        given: dict[str, object] = {"temperature_viscosity": point.fall} | dict(properties)
+        return cls(
+            viscosity=1e-6 * point.viscosity * density,
+            density=density,
+            pressure_viscosity=pressure_viscosity,
+            **given,  # type: ignore[arg-type]
+        )
+
+    @classmethod
+    def preset(cls, name: str, temperature: float) -> Lubricant:
+        """Return an oil of the table `OILS` at a temperature between 30 and 100 degrees Celsius.
+
+        Viscosities between the table's follow Vogel's law through all three, pressure-viscosity coefficients lines.
+
+        Raises
+        ------
+        InvalidInputError
+            If the oil is unknown, or the temperature lies outside its table.
+
+        Examples
+        --------
+        >>> Lubricant.preset("heavy machine oil", 60.0)
+        Lubricant(eta0 = 0.034 Pa s, alpha = 20.5 1/GPa, roelands, dowson-higginson density)
+        """
+        checks.instance("name", name, str, "a name")
+        oil = OILS[checks.known_name("name", name, OILS)]
+        theta = checks.finite("temperature", temperature, "degrees Celsius")
+        first, last = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
+        if not first <= theta <= last:
+            raise InvalidInputError("temperature", theta, f"from {first:g} to {last:g} degrees Celsius", SOURCE)
+        temperatures, logs = np.array(OIL_TEMPERATURES), np.log(oil.viscosities)
+        # ln eta = A + B / (theta - C), through three points.
+        share = (logs[0] - logs[1]) / (logs[1] - logs[2])
+        share *= (temperatures[2] - temperatures[1]) / (temperatures[1] - temperatures[0])
+        c = (share * temperatures[0] - temperatures[2]) / (share - 1)
+        b = (logs[0] - logs[1]) / (1 / (temperatures[0] - c) - 1 / (temperatures[1] - c))
+        log = logs[0] + b * (1 / (theta - c) - 1 / (temperatures[0] - c))
+        return cls(
+            viscosity=float(np.exp(log)),
+            pressure_viscosity=1e-9 * float(np.interp(theta, temperatures, oil.pressure_viscosities)),
+            temperature_viscosity=float(b / (theta - c) ** 2),
+        )
+
+    def replaced(self, **values: float | str | None) -> Lubricant:
+        """Return the lubricant with other values."""
+        return replace(self, **values)  # type: ignore[arg-type]
+
+
+class ViscosityPoint(NamedTuple):
+    """Kinematic viscosity, mm2/s, and the fall of its logarithm with the temperature, 1/K."""
+
+    viscosity: float
+    fall: float
+
+
+class Walther(NamedTuple):
+    """ASTM D341: ``log10 log10(nu + 0.7) = A - B log10 T``, nu in mm2/s and T in kelvin, eq. (409)."""
+
+    a: float
+    b: float
+
+    def at(self, temperature: float) -> ViscosityPoint:
+        """Kinematic viscosity at a temperature in degrees Celsius."""
+        kelvin = temperature + KELVIN
+        inner = 10 ** (self.a - self.b * np.log10(kelvin))
+        viscosity = 10**inner - 0.7
+        fall = (viscosity + 0.7) / viscosity * inner * np.log(10) * self.b / kelvin
+        return ViscosityPoint(float(viscosity), float(fall))
+
+
+def walther(viscosities: dict[float, float]) -> Walther:
+    """Return the law through two kinematic viscosities, mm2/s, by temperature in degrees Celsius."""
+    if not isinstance(viscosities, dict) or len(viscosities) != 2:
+        raise InvalidInputError("viscosities", viscosities, "two kinematic viscosities (mm2/s) by temperature (C)")
+    (first, thick), (last, thin) = sorted(
+        (checks.finite("viscosities", key), checks.positive("viscosities", value)) for key, value in viscosities.items()
+    )
+    if not (thick > thin >= 2 and first > -KELVIN):
+        raise InvalidInputError(
+            "viscosities", viscosities, "falling with the temperature, at least 2 mm2/s", "ASTM D341 holds from there"
+        )
+    inner = [np.log10(np.log10(each + 0.7)) for each in (thick, thin)]
+    logs = [np.log10(each + KELVIN) for each in (first, last)]
+    b = (inner[0] - inner[1]) / (logs[1] - logs[0])
+    return Walther(float(inner[0] + b * logs[0]), float(b))
+
+
+class Oil(NamedTuple):
+    """Viscosities, Pa s, and pressure-viscosity coefficients, 1/GPa, at the table's temperatures."""
+
+    viscosities: tuple[float, float, float]
+    pressure_viscosities: tuple[float, float, float]
+
+
+OIL_TEMPERATURES = (30.0, 60.0, 100.0)  # Temperatures of `OILS`, degrees Celsius
+SOURCE = "G. W. Stachowiak, A. W. Batchelor, Engineering Tribology, table 2.3"  # Source of `OILS`
+# Some mineral oils
+OILS = {
+    "heavy machine oil": Oil((0.153, 0.034, 0.0091), (23.7, 20.5, 15.8)),
+    "heavier machine oil": Oil((0.250, 0.0505, 0.0126), (25.0, 21.3, 17.6)),
+    "cylinder oil": Oil((0.810, 0.135, 0.0268), (34.0, 28.0, 22.0)),
+    "spindle oil": Oil((0.0186, 0.0063, 0.0024), (20.0, 16.0, 13.0)),
+    "light machine oil": Oil((0.045, 0.012, 0.0039), (28.0, 20.0, 16.0)),
+    "medicinal white oil": Oil((0.107, 0.0233, 0.0064), (29.6, 22.8, 17.8)),
+}

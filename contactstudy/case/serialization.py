@@ -1,0 +1,100 @@
+"""Conversion of a case to JSON values and back; the dataclass fields are the keys.
+
+Each dataclass becomes a mapping of ``kind`` (its class) and its fields, in SI units; fields equal to None are omitted.
+A profile of a user's class becomes a `Sampled` profile.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, is_dataclass
+from typing import Any, TypeVar
+
+import numpy as np
+
+from contactstudy import profiles
+from contactstudy.bodies.lubricant import Lubricant
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.case.case import Case
+from contactstudy.case.motion import AxialFriction, Rolling, Shift, Sliding
+from contactstudy.case.roller import Roller
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import Profile, Shape, Sum, checked_drop, in_words
+
+SAMPLES = 401  # Samples of the drop of a user's profile, evenly spaced from end to end
+Part = TypeVar("Part")
+
+
+@dataclass(frozen=True, repr=False)
+class Sampled(Shape):
+    """Samples of the drop of a user's profile, with linear interpolation."""
+
+    label: str  # repr of the user's profile
+    positions: tuple[float, ...]  # distances from mid-length over the roller's length
+    drops: tuple[float | None, ...]  # metres; None where infinite
+
+    def __repr__(self) -> str:
+        return self.label
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        drops = np.array([np.inf if drop is None else drop for drop in self.drops])
+        with np.errstate(invalid="ignore"):  # next to an infinite drop
+            interpolated = np.interp(np.asarray(x) / length, self.positions, drops)
+        return np.where(np.isnan(interpolated), np.inf, interpolated)
+
+
+KINDS: dict[str, type[Any]] = {
+    kind.__name__: kind
+    for kind in (
+        *(Case, Roller, Lubricant, Material, HalfSpace, QuarterSpace, FiniteLengthSpace),
+        *(AxialFriction, Sliding, Shift, Rolling, Sampled, Sum),
+        *(getattr(profiles, name) for name in profiles.__all__ if is_dataclass(getattr(profiles, name))),
+    )
+}
+"""Classes of a case and its parts, by name."""
+
+
+def to_dict(part: Any) -> dict[str, Any]:
+    """JSON values, SI, of a case or one of its parts, with ``kind``; a user's profile requires its roller."""
+    return dict(_values(part, 0.0))
+
+
+def _values(part: Any, length: float) -> Any:
+    """JSON values of a part; `length` is that over which a user's profile is sampled."""
+    name = type(part).__name__
+    if KINDS.get(name) is type(part):
+        length = getattr(part, "effective_length", part.length if isinstance(part, Roller) else length)
+        values = {entry.name: _values(getattr(part, entry.name), length) for entry in fields(part)}
+        return {"kind": name, **{key: value for key, value in values.items() if value is not None}}
+    if isinstance(part, Profile):
+        positions = np.linspace(-0.5, 0.5, SAMPLES)
+        drops = [float(drop) if np.isfinite(drop) else None for drop in checked_drop(part, positions * length, length)]
+        return _values(Sampled(in_words(part), tuple(positions.tolist()), tuple(drops)), length)
+    if isinstance(part, (tuple, list)):
+        return [_values(entry, length) for entry in part]
+    if isinstance(part, (bool, np.bool_)):
+        return bool(part)
+    return part if part is None or isinstance(part, str) else float(part)
+
+
+def from_dict(values: Mapping[str, Any], kind: type[Part]) -> Part:
+    """Case, or another part of a `kind`, of the values that `to_dict` returns."""
+    name = kind.__name__.lower()
+    try:
+        part = _part(values)
+    except (TypeError, KeyError) as error:
+        raise InvalidInputError(name, dict(values), f"values of a {name} of this version", str(error)) from None
+    if not isinstance(part, kind):
+        raise InvalidInputError(name, dict(values), f"values of a {name}")
+    return part
+
+
+def _part(values: Any) -> Any:
+    """Part of a case from JSON values."""
+    if isinstance(values, Mapping):
+        arguments = {str(key): _part(value) for key, value in values.items() if key != "kind"}
+        return KINDS[values["kind"]](**arguments)
+    return tuple(_part(value) for value in values) if isinstance(values, list) else values

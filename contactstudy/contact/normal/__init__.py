@@ -1,0 +1,1 @@
+"""Pressure of a unilateral contact under a load or an approach."""

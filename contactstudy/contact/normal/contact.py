@@ -1,0 +1,294 @@
+"""A contact in plain arrays: bodies, cells, gap and load; pressure and certificate."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.models import Body
+from contactstudy.cache import ArrayKey, cached
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.conjugate_gradients import ContactIterate
+from contactstudy.contact.normal.pair import PairOperator, PrescribedSurface
+from contactstudy.contact.normal.prescribed import (
+    LineMotions,
+    Prescribed,
+    Referred,
+    RigidMotion,
+    SolveReferred,
+    line_motions,
+    solve_referred,
+)
+from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
+from contactstudy.errors import ConvergenceWarning, WindowError
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.kernels.load import Load
+from contactstudy.threads import one_blas_thread
+
+CONVERGED_TOLERANCES = 10.0
+"""Largest violation of a converged contact over the tolerance of the iteration, which does not check its last step."""
+
+OPEN_TOLERANCES = 10.0
+"""Least open gap of `open_pressure_error`, over the tolerance and the variation of the displacement."""
+
+
+@dataclass(frozen=True)
+class Certificate:
+    """Violations of the contact's conditions."""
+
+    load_error: float
+    """Resultant of the pressure minus the prescribed load, over the load; 0 where the approach is prescribed."""
+    penetration_error: float
+    """Largest gap or overlap under pressure, or overlap elsewhere, over the variation of the displacement."""
+    open_pressure_error: float  # largest pressure where the gap is open, over the peak pressure
+    load_position_error: float
+    """Distance of the pressure's resultant from where the load is to act, over the length of the contact; 0 where
+    the shape keeps its inclination."""
+
+    def holds(self, tolerance: float) -> bool:
+        """Whether every violation is within some tolerances of the iteration."""
+        bound = CONVERGED_TOLERANCES * tolerance
+        violations = (self.load_error, self.penetration_error, self.load_position_error, self.open_pressure_error)
+        return all(abs(violation) <= bound for violation in violations)
+
+
+def certify(
+    pressure: FloatArray,
+    opening: FloatArray,
+    displacement: FloatArray,
+    *,
+    carried: float,
+    load: float | None,
+    off_position: float,
+    tolerance: float,
+) -> Certificate:
+    """Measure the violations."""
+    touching = pressure > 0
+    variation = float(np.ptp(displacement))
+    violation = max(float(np.abs(opening[touching]).max()), float(-opening.min()))  # eq. (34)
+    open_pressure = pressure[opening > OPEN_TOLERANCES * tolerance * variation]
+    return Certificate(
+        load_error=0.0 if load is None else carried / load - 1,
+        penetration_error=violation / variation,
+        open_pressure_error=float(open_pressure.max(initial=0.0) / pressure.max()),
+        load_position_error=off_position,
+    )
+
+
+class Shape(NamedTuple):
+    """Contact to solve: bodies, cells, gap and load."""
+
+    body: Body  # the elastic body
+    grid: Grid
+    gap: ArrayKey  # (x, y): initial gap, metres; infinite beside the shape
+    prescribed: Prescribed  # load or approach
+    counterbody: Counterbody | None = None  # second elastic body; None: the shape is rigid
+    coupled_friction: float = 0.0
+    """Coefficient of the friction that displaces the surfaces normally; 0 without coupling."""
+    surface: LinearOperator | None = None
+    """Displacement (x, y) of the surfaces towards each other under a pressure (x, y), both raveled, in place of the
+    body."""
+
+    @property
+    def directions(self) -> tuple[Load, ...]:
+        """Loads that displace the surfaces normally."""
+        return (Load.NORMAL, Load.ALONG_Y) if self.coupled_friction else (Load.NORMAL,)
+
+    def referred(self, solve: SolveReferred, tolerance: float, start: FloatArray | None = None) -> Referred:
+        """Solve a contact of this shape relative to the reference lines of its bodies."""
+        bodies = [self.body] if self.counterbody is None else [self.body, self.counterbody.body]
+        finite = any(np.isfinite(body.depth) for body in bodies)
+        low, high = self.grid.x_range
+        return solve_referred(
+            solve,
+            lambda pressure: self.line_motions(self.loads(pressure), pressure),
+            held=(finite and self.prescribed.approach is not None, finite and self.prescribed.load_position is None),
+            length=high - low,
+            tolerance=tolerance,
+            start=start,
+        )
+
+    def line_motions(self, loads: Mapping[Load, FloatArray], pressure: FloatArray) -> LineMotions:
+        """Motions of the reference lines under loads on the body, level below the resultant of a pressure."""
+        forces = (self.grid.weights * pressure).sum(axis=1)
+        position = float(forces @ self.grid.x / max(forces.sum(), np.finfo(float).tiny))
+        return line_motions(self.body, self.counterbody, self.grid, loads, position)
+
+    def loads(self, pressure: FloatArray) -> dict[Load, FloatArray]:
+        """Map a pressure and its coupled friction to loads."""
+        values = {Load.NORMAL: pressure, Load.ALONG_Y: self.coupled_friction * pressure}
+        return {load: values[load] for load in self.directions}
+
+
+class Settings(NamedTuple):
+    """Tolerance and bound of the iteration."""
+
+    tolerance: float = 1e-6
+    max_iterations: int = 500
+
+
+@dataclass(frozen=True, eq=False)
+class Contact:
+    """Solution of a contact."""
+
+    shape: Shape  # bodies, cells, gap and load
+    settings: Settings  # tolerance and bound of the iteration
+    pressure: FloatArray
+    """(x, y): pressure, Pa; gap after deformation and displacement of the body's top relative to its reference line,
+    metres."""
+    gap: FloatArray
+    displacement: FloatArray
+    approach: float
+    """Rigid motion of the shape relative to the reference lines: where the load acts, or at ``x = 0``, metres, and
+    radians."""
+    tilt: float
+    iterations: int  # applications of the operator
+    converged: bool  # whether the tolerance was reached
+    motions: LineMotions  # motions of the reference lines
+    certificate: Certificate  # violations of the conditions
+
+    @property
+    def carried(self) -> float:
+        """Resultant of the pressure, N."""
+        grid = self.shape.grid
+        return float((grid.weights * self.pressure).sum() * grid.cell_area)
+
+    @property
+    def load_position(self) -> float:
+        """Position x of the pressure's resultant, metres."""
+        grid = self.shape.grid
+        forces = grid.weights * self.pressure
+        return float((forces * grid.x[:, None]).sum() / forces.sum())
+
+    def warn_unless_converged(self) -> None:
+        """Warn with the violations of the conditions, if the iteration did not converge."""
+        if self.converged:
+            return
+        violations = ", ".join(f"{name} = {value:.2g}" for name, value in asdict(self.certificate).items() if value)
+        tolerance, most = self.settings
+        warnings.warn(
+            f"the contact iteration stopped after {self.iterations} operator applications without reaching "
+            f"tolerance = {tolerance:g} ({violations}); raise max_iterations (now {most}) or coarsen the grid",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+
+
+def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) -> Contact:
+    """Solve a contact, optionally from a first guess of the pressure."""
+    grid, clearance = shape.grid, shape.gap.values
+    with one_blas_thread():
+        iterate, motions = _iterate(_ContactRequest(shape, settings, start))
+        pressure = iterate.pressure.copy()
+        loads = shape.loads(pressure)
+        displacement = _body_operator(shape)(loads)
+        relative = displacement if shape.counterbody is None else contact_operator(shape)(loads)
+    check_window(shape.body, pressure)
+    prescribed = shape.prescribed
+    height = clearance + relative - motions.total.height(grid.x)
+    tilt = 0.0
+    if prescribed.load_position is not None:
+        tilt = iterate.motion[1] / prescribed.largest_arm(grid) - motions.total.tilt
+        height = height - tilt * (grid.x[:, None] - prescribed.load_position)
+    touching, forces = pressure > 0, grid.weights * pressure
+    total = forces.sum()
+    approach = prescribed.lowered
+    if prescribed.approach is None:
+        approach = float((forces * np.where(touching, height, 0.0)).sum() / total)
+    opening = height - approach  # eq. (33)
+    certificate = certify(
+        pressure,
+        opening,
+        relative,
+        carried=float(total * grid.cell_area),
+        load=prescribed.load,
+        off_position=_off_position(prescribed, grid, pressure),
+        tolerance=settings.tolerance,
+    )
+    return Contact(
+        shape,
+        settings,
+        pressure,
+        np.where(np.isfinite(opening), opening, np.inf),
+        displacement - motions.body.height(grid.x),
+        approach,
+        tilt,
+        iterate.applications,
+        iterate.converged and certificate.holds(settings.tolerance),
+        motions,
+        certificate,
+    )
+
+
+def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> float:
+    """Distance of the resultant from its prescribed position, over the length of the contact."""
+    if prescribed.load_position is None:
+        return 0.0
+    line = (grid.weights * pressure).sum(axis=1)
+    touching = np.flatnonzero(line)
+    edges = grid.x_edges
+    length = edges[touching[-1] + 1] - edges[touching[0]]
+    return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
+
+
+class _ContactRequest(NamedTuple):
+    """Request of a contact, the key of the cache."""
+
+    shape: Shape
+    settings: Settings
+    start: ArrayKey | None
+
+
+@cached("contacts", lambda referred: referred.iterate.pressure.nbytes)
+def _iterate(request: _ContactRequest) -> Referred:
+    """Pressure of a contact, and the motion of the reference lines."""
+    shape, settings, first = request
+    grid, operator = shape.grid, contact_operator(shape)
+
+    def solve(motion: RigidMotion, start: FloatArray | None) -> ContactIterate:
+        problem = ContactProblem(
+            grid,
+            shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
+            shape.prescribed.resultants(grid),
+            shape.coupled_friction,
+            *settings,
+        )
+        return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)
+
+    return shape.referred(solve, settings.tolerance, None if first is None else first.values)
+
+
+def contact_operator(shape: Shape) -> ContactOperator:
+    """Operator from the loads on the body to the relative displacement of the surfaces."""
+    if shape.counterbody is None:
+        return _body_operator(shape)
+    return PairOperator.of(shape.body, shape.counterbody, shape.grid, shape.directions)
+
+
+def _body_operator(shape: Shape) -> SurfaceOperator | PrescribedSurface:
+    """Operator of the body alone."""
+    operator = surface_operator(OperatorRequest(shape.body, shape.grid, shape.directions))
+    return operator if shape.surface is None else PrescribedSurface(shape.surface, operator)
+
+
+def check_window(body: Body, pressure: FloatArray) -> None:
+    """Raise if the contact reaches an edge of the grid that is not an end of the body."""
+    low, high = body.extent
+    edges = {"y_min": pressure[:, 0], "y_max": pressure[:, -1]}
+    if np.isinf(low):
+        edges["x_min"] = pressure[0]
+    if np.isinf(high):
+        edges["x_max"] = pressure[-1]
+    for name, values in edges.items():
+        if values.any():
+            raise WindowError(
+                f"the contact reaches the grid's edge {name} (pressure {values.max():.3g} Pa there): the window is too "
+                f"narrow for the load; widen it along {name[0]} or lower the load"
+            )

@@ -1,0 +1,171 @@
+"""Prescribed load or approach, and the material lines of the bodies to which approach and tilt refer."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.counterbody import Counterbody
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.displacement import displacement_under
+from contactstudy.fields.loads import TopLoad
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.field import Points
+
+
+class Prescribed(NamedTuple):
+    """Either the load, at a given position or with a given inclination, or the approach."""
+
+    load: float | None = None  # normal load, N
+    load_position: float | None = None
+    """Position x on which the load acts, metres; None: the shape keeps its inclination."""
+    approach: float | None = None  # how far the shape is pressed down from first touch, metres
+
+    def checked(self, gap: FloatArray, grid: Grid) -> Prescribed:
+        """Return the same as floats, or raise if the values do not go together or with the initial gap (x, y)."""
+        load, position, approach = self
+        if (load is None) == (approach is None):
+            raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
+        if approach is not None:
+            lowered = checks.finite("approach", approach, "metres")
+            if position is not None:
+                raise InvalidInputError(
+                    "load_position", position, "None where the approach is prescribed", "prescribe the load instead"
+                )
+            if lowered <= gap.min():
+                raise InvalidInputError("approach", lowered, f"more than the least gap, {gap.min():g} m")
+            return Prescribed(approach=lowered)
+        total = checks.positive("load", load, "N")
+        if position is None:
+            return Prescribed(total)
+        at = checks.finite("load_position", position, "metres")
+        columns = grid.x[np.isfinite(gap).any(axis=1)]
+        if not columns[0] < at < columns[-1]:
+            raise InvalidInputError(
+                "load_position",
+                at,
+                f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there",
+            )
+        return Prescribed(total, at)
+
+    @property
+    def lowered(self) -> float:
+        """How far the shape is lowered before the iteration, metres."""
+        return 0.0 if self.approach is None else self.approach
+
+    def resultants(self, grid: Grid) -> Resultants:
+        """Return what the pressure on the cells has to sum up to."""
+        if self.load is None:
+            return Resultants(None)
+        lever = None if self.load_position is None else (grid.x[:, None] - self.load_position) / self.largest_arm(grid)
+        return Resultants(self.load / grid.cell_area, lever)
+
+    def largest_arm(self, grid: Grid) -> float:
+        """Return the largest distance of a cell from where the load acts, metres."""
+        assert self.load_position is not None
+        return float(np.abs(grid.x - self.load_position).max())
+
+
+LINE_POINTS = 16  # points of the least-squares line along a body. Accuracy.
+ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
+
+
+class RigidMotion(NamedTuple):
+    """Displacement ``level + tilt x`` of a line along x into its body: metres and radians."""
+
+    level: float = 0.0
+    tilt: float = 0.0
+
+    def height(self, x: FloatArray) -> FloatArray:
+        """Displacement (m) at positions x (m): array (x, 1)."""
+        return np.asarray(self.level + self.tilt * x[:, None])
+
+
+def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], position: float) -> RigidMotion:
+    """Motion of a body's reference line under loads (Pa): least-squares slope, and displacement below a position."""
+    if not np.isfinite(body.depth):
+        return RigidMotion()
+    low, high = np.clip(body.extent, *grid.x_range)
+    x = low + (high - low) * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS
+    top = {load: TopLoad(cells) for load, cells in loads.items()}
+    line = np.append(x, np.clip(position, low, high))
+    place = Points(line, np.zeros(1), np.array([body.depth]))
+    displacement = displacement_under(body, top, grid, place)[2, :, 0, 0]
+    tilt = float(np.polynomial.polynomial.polyfit(x, displacement[:-1], 1)[1])
+    return RigidMotion(float(displacement[-1]) - tilt * position, tilt)
+
+
+class LineMotions(NamedTuple):
+    """Motions of the reference lines: of the first body, and the sum over both bodies, each into its body."""
+
+    body: RigidMotion
+    total: RigidMotion
+
+
+def line_motions(
+    body: Body, counterbody: Counterbody | None, grid: Grid, loads: Mapping[Load, FloatArray], position: float
+) -> LineMotions:
+    """Motions of the reference lines of a contact under loads on the first body (Pa), whose pressure acts at x."""
+    first = line_motion(body, grid, loads, position)
+    if counterbody is None:
+        return LineMotions(first, first)
+    reaction = {
+        load: (1 if load is Load.NORMAL else -1) * counterbody.load_on(grid, cells) for load, cells in loads.items()
+    }
+    start = counterbody.start
+    second = line_motion(counterbody.body, counterbody.own_grid(grid), reaction, position - start)
+    total = RigidMotion(first.level + second.level - second.tilt * start, first.tilt + second.tilt)
+    return LineMotions(first, total)
+
+
+class Referred(NamedTuple):
+    """A contact and the motions of its reference lines."""
+
+    iterate: ContactIterate
+    motions: LineMotions
+
+
+SolveReferred = Callable[[RigidMotion, FloatArray | None], ContactIterate]
+"""Contact on a gap less a motion of the lines, from a first guess of the pressure."""
+
+
+def solve_referred(
+    solve: SolveReferred,
+    motions_of: Callable[[FloatArray], LineMotions],
+    *,
+    held: tuple[bool, bool],
+    length: float,
+    tolerance: float,
+    start: FloatArray | None,
+) -> Referred:
+    """Solve a contact whose approach or tilt is prescribed relative to the reference lines."""
+    # The operator is symmetric only relative to the body far away: the motion of the lines enters the gap, by a fixed-
+    # point iteration with Aitken's relaxation.
+    weights = np.array([1.0, length])
+    trial, previous = np.zeros(2), np.zeros(2)
+    relaxation, applications = 1.0, 0
+    guess = start
+    for number in range(ROUNDS):
+        iterate = solve(RigidMotion(*trial), guess)
+        applications += iterate.applications
+        guess = iterate.pressure
+        motions = motions_of(guess)
+        motion = np.array(motions.total)
+        residual = np.where(held, motion - trial, 0.0)
+        moved = float(np.linalg.norm(weights * motion))
+        error = float(np.linalg.norm(weights * residual)) / moved if moved else 0.0
+        if error <= tolerance:
+            return Referred(replace(iterate, applications=applications), motions)
+        change = weights * (residual - previous)
+        if number and change.any():
+            relaxation *= -float(weights * previous @ change) / float(change @ change)
+        trial, previous = trial + relaxation * residual, residual
+    return Referred(replace(iterate, applications=applications, converged=False), motions)

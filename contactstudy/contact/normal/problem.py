@@ -1,0 +1,193 @@
+"""One contact to solve: its first guess from coarser cells, and its solution with or without coupled friction."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants, solve_complementarity
+from contactstudy.kernels.load import Load
+
+COUPLED_ROUNDS = 60  # rounds of a coupled contact after which it counts as not converged. Speed.
+ROUND_ACCURACY = 0.03  # part of a round's change to which the next one is solved. Speed.
+ROUGH_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
+NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
+COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
+
+GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3
+"""Part of the cells below the level of a first guess, and a depth over the gap's range added to it. Speed."""
+
+OPENING_POWER = 2 / 3
+"""Power of the opening that is linear in the distance from a contact's edge (Johnson, section 5.1). Speed."""
+
+
+class ContactOperator(Protocol):
+    """What the contact needs of one body or of two."""
+
+    def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
+        """Displacement (m) of the cell centres under `loads` (Pa)."""
+        ...
+
+    def precondition(self, gap: FloatArray) -> FloatArray:
+        """Roughly the pressure that sinks the cells by `gap`."""
+        ...
+
+    @property
+    def coarse(self) -> ContactOperator:
+        """The operator on cells of twice the size, roughly."""
+        ...
+
+
+@dataclass(frozen=True, eq=False)
+class ContactProblem:
+    """A contact to solve, checked."""
+
+    grid: Grid
+    gap: FloatArray
+    """(x, y): initial gap, metres, less the approach if that is prescribed; infinite where there is nothing to
+    touch."""
+    resultants: Resultants  # what the pressure has to sum up to
+    friction: float  # coefficient of the traction along +y
+    tolerance: float  # tolerance of the iteration
+    max_iterations: int  # bound on the iterations
+
+    def level(self, motion: tuple[float, ...]) -> FloatArray:
+        """Height of the shape after its rigid `motion`, metres: broadcasts to (x, y)."""
+        level = np.zeros((1, 1))
+        for amount, each in zip(motion, self.resultants.motions, strict=True):
+            level = level + amount * each
+        return level
+
+    @property
+    def joins_in_twos(self) -> bool:
+        """Whether the cells can be joined in twos, along x and along y."""
+        return self.grid.cells_x % 2 == 0 and self.grid.cells_y % 2 == 0
+
+    def coarser(self) -> ContactProblem:
+        """Return the same contact on cells joined in twos."""
+        grid = self.grid.coarsened()
+        cells = self.gap.reshape(grid.cells_x, 2, grid.cells_y, 2)
+        possible = np.isfinite(cells)
+        shares = possible * self.grid.weights.reshape(-1, 2, 1, 1)
+        total = shares.sum(axis=(1, 3))
+        mean = (np.where(possible, cells, 0.0) * shares).sum(axis=(1, 3)) / np.where(total > 0, total, 1.0)
+        lever = self.resultants.lever
+        if lever is not None:
+            weights = self.grid.weights.reshape(-1, 2)
+            lever = ((weights * lever.reshape(-1, 2)).sum(axis=1) / weights.sum(axis=1))[:, None]
+        resultants = Resultants(None if self.resultants.total is None else self.resultants.total / 4, lever)
+        return replace(
+            self, grid=grid, gap=np.where(total > 0, mean, np.inf), resultants=resultants, tolerance=COARSE_TOLERANCE
+        )
+
+
+def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArray:
+    """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
+    gap = problem.gap
+    possible = np.isfinite(gap)
+    if gap.size >= NESTED_CELLS and problem.joins_in_twos:
+        coarse = problem.coarser()
+        squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
+        finer = between_columns(_refined(squared.T).T, coarse.grid.x, problem.grid.x)
+        guess = np.sqrt(np.maximum(np.where(possible, finer, 0.0), 0.0))
+    else:
+        heights = _levelled(problem)
+        under = heights[possible]
+        sinks = problem.resultants.total is not None
+        level = np.quantile(under, GUESSED_CONTACT) + GUESSED_DEPTH * np.ptp(under) if sinks else 0.0
+        guess = np.sqrt(np.maximum(level - np.where(possible, heights, np.inf), 0.0))
+    return np.asarray(guess if guess.any() else possible.astype(np.float64))
+
+
+def _levelled(problem: ContactProblem) -> FloatArray:
+    """Gap less its mean slope along the axis, where the shape is free to tilt."""
+    lever = problem.resultants.lever
+    if lever is None:
+        return problem.gap
+    facing = np.isfinite(problem.gap).any(axis=1)
+    lowest, arm = problem.gap[facing].min(axis=1), lever[facing, 0]
+    slope = np.polynomial.polynomial.polyfit(arm, lowest, 1)[1] if arm.size > 1 else 0.0
+    return problem.gap - slope * lever
+
+
+def _continued_square(operator: ContactOperator, problem: ContactProblem, found: ContactIterate) -> FloatArray:
+    """Squared pressure, continued smoothly below zero outside the contact."""
+    # Near an edge the squared pressure and the opening to the power 2/3 are linear in the distance from it (Johnson,
+    # Contact Mechanics, section 5.1): interpolated to finer cells the zero puts the edge within a cell.
+    from scipy.ndimage import binary_dilation
+
+    squared = found.pressure**2
+    contact = squared > 0
+    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: found.pressure})
+    opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(found.motion), 0.0))
+    opening = opened**OPENING_POWER
+    inner = contact & binary_dilation(~contact)
+    outer = (opening > 0) & binary_dilation(contact)
+    if not inner.any() or not outer.any():
+        return np.asarray(squared)
+    return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))
+
+
+def _refined(values: FloatArray) -> FloatArray:
+    """Values on cells of half the size along the first axis, by linear interpolation between the centres."""
+    before, after = np.vstack([values[:1], values[:-1]]), np.vstack([values[1:], values[-1:]])
+    halves = np.stack([0.75 * values + 0.25 * before, 0.75 * values + 0.25 * after], axis=1)
+    return halves.reshape(-1, values.shape[1])
+
+
+def between_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:
+    """Values (x, y) at other positions along x, linear between the centres and constant beyond them."""
+    if centres.size == 1:
+        return np.repeat(values, x.size, axis=0)
+    right = np.clip(np.searchsorted(centres, x), 1, centres.size - 1)
+    part = np.clip((x - centres[right - 1]) / (centres[right] - centres[right - 1]), 0.0, 1.0)[:, None]
+    return np.asarray((1 - part) * values[right - 1] + part * values[right])
+
+
+def solve_normal(operator: ContactOperator, problem: ContactProblem, start: FloatArray | None = None) -> ContactIterate:
+    """Contact without the displacement from friction."""
+    # The unknowns are forces on the cells, pressure times weight: conjugate to displacements in the plain product.
+    weights = problem.grid.weights
+    guess = _first_guess(operator, problem) if start is None else start
+    found = solve_complementarity(
+        lambda forces: operator({Load.NORMAL: forces / weights}),
+        lambda gap: weights * operator.precondition(gap),
+        problem.gap,
+        problem.resultants,
+        weights * guess,
+        tolerance=problem.tolerance,
+        max_iterations=problem.max_iterations,
+    )
+    return replace(found, pressure=found.pressure / weights)
+
+
+def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
+    """Contact with the displacement from friction: the traction of one round shapes the gap of the next."""
+    # The rounds contract like ``f (1 - 2 nu) / (2 (1 - nu))``; each is solved only as far as the last change requires.
+    tolerance = max(problem.tolerance, ROUGH_TOLERANCE)
+    iterate = solve_normal(operator, replace(problem, tolerance=tolerance))
+    scale = float(np.ptp(operator({Load.NORMAL: iterate.pressure})))
+    applications = iterate.applications + 1
+    bent: FloatArray = np.zeros_like(iterate.pressure)
+    change = ROUGH_TOLERANCE
+    for _ in range(COUPLED_ROUNDS):
+        previous, bent_before = iterate.pressure, bent
+        bent = operator({Load.ALONG_Y: problem.friction * previous})
+        applications += 1
+        # What the friction of this pressure bends the surface otherwise than that of the last one.
+        unsettled = float(np.ptp((bent - bent_before)[previous > 0])) / scale
+        if max(tolerance, change) <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
+            return ContactIterate(previous, iterate.motion, applications, True, iterate.history)
+        tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
+        iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)
+        applications += iterate.applications
+        if not iterate.converged:
+            break
+        weights = problem.grid.weights
+        change = float((weights * np.abs(iterate.pressure - previous)).sum() / (weights * iterate.pressure).sum())
+    return ContactIterate(iterate.pressure, iterate.motion, applications, False, iterate.history)

@@ -1,0 +1,1 @@
+"""Columns of cells that follow the pressure to a stated accuracy, and the law of singular ends."""

@@ -1,0 +1,159 @@
+"""The shape that is pressed, seen along the axis, and the columns under it: the first ones, and how they are split."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from contactstudy.checks import BoolArray, FloatArray
+
+FIRST_COLUMN = 0.1
+"""Width of the first columns at either end, over the half-width. Accuracy: wider ones miss a sharp end in a face."""
+
+WIDEST = 16  # least number of columns over the length. Accuracy.
+BENT = 0.1  # depth, over ``a**2 / 2R``, by which the shape may leave its chord inside a first column. Accuracy.
+
+PART = np.linspace(0.0, 1.0, 257)
+"""Sampling points of the shape in a column. Accuracy: in the widest first columns they are 1/4096 of the length apart,
+and narrower ridges are missed."""
+
+MISSED = 0.02
+"""Depth, over ``a**2 / 2R``, by which the shape may come below the displaced top in a column that is open. Accuracy: a
+crest that is missed then carries 0.14 of the Hertz pressure at most."""
+
+NARROWEST_BENT = 0.1  # width over the half-width below which a first column is not split for its shape. Speed.
+STEEPEST = 2.6  # largest ratio of neighbouring widths. Accuracy.
+MOST_COLUMNS = 600  # columns at which the refinement ends, whatever is settled
+
+
+@dataclass(frozen=True, eq=False)
+class AxialShape:
+    """What the refinement knows of the shape that is pressed."""
+
+    start: float  # where it can be pressed, metres
+    stop: float
+    half_width: float  # Hertz half-width ``a``, metres
+    depth: float  # depth ``a**2 / 2R`` to which a cylinder sinks, metres
+    height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane that the shape touches, metres
+    room: tuple[float, float]
+    """How far the face of the body goes on beyond either end, metres; 0 or less where it does not."""
+    exponents: tuple[float, float] = (np.nan, np.nan)
+    """Exponent ``m`` of the pressure ``K d**-m`` at either end, if that is a sharp one on a face that goes on; NaN
+    where theory knows none."""
+    fades: bool = False
+    """Whether the pressure falls towards a common end like a small power of the distance, which no columns settle."""
+    corners: tuple[float, ...] = ()  # positions of convex corners, metres: edges of columns
+    nodes: FloatArray = field(default_factory=lambda: np.zeros(0))
+    """Positions between which the shape is smooth, metres, increasing: a column does not overlook them."""
+
+    @cached_property
+    def node_heights(self) -> FloatArray:
+        """Heights at the nodes, metres."""
+        return self.height(self.nodes)
+
+    def sharp(self, side: int) -> bool:
+        """Whether an end is singular if it is pressed."""
+        return self.exponents[side] > 0
+
+
+def first_edges(shape: AxialShape) -> FloatArray:
+    """Columns that double from either end, halved where the shape bends."""
+    length = shape.stop - shape.start
+    width = min(FIRST_COLUMN * shape.half_width, length / (4 * WIDEST))
+    widths = [width]
+    while sum(widths) < 0.5 * length:
+        widths.append(min(2 * widths[-1], length / WIDEST))
+    side = np.append(0.0, np.cumsum(widths)) * (0.5 * length / sum(widths))
+    edges = shape.start + np.concatenate([side, length - side[-2::-1]])
+    edges[-1] = shape.stop
+    if shape.corners:
+        edges = split(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
+    while True:
+        marks = _bent(shape, edges) & (np.diff(edges) > NARROWEST_BENT * shape.half_width)
+        if not marks.any() or edges.size > MOST_COLUMNS:
+            return edges
+        edges = split(edges, marks)
+
+
+def _bent(shape: AxialShape, edges: FloatArray) -> BoolArray:
+    """Columns inside which the shape leaves its chord, where it is low enough to be pressed for certain."""
+    heights = _heights(shape, edges)
+    lowest = _lowest(shape, edges, heights)
+    return np.asarray(_curved(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth))
+
+
+def _heights(shape: AxialShape, edges: FloatArray) -> FloatArray:
+    """Heights of the shape at points along each column: array (column, point)."""
+    # Just inside: the shape may step at its ends.
+    inside = np.clip(PART, 1e-9, 1 - 1e-9)
+    return shape.height((edges[:-1, None] + np.diff(edges)[:, None] * inside).ravel()).reshape(-1, PART.size)
+
+
+def _curved(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> BoolArray:
+    """Columns inside which the shape leaves its chord."""
+    rise = heights[:, -1] - heights[:, 0]
+    deviations = np.abs(heights - heights[:, :1] - rise[:, None] * PART).max(axis=1)
+    if shape.nodes.size:
+        column = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
+        fraction = (shape.nodes - edges[column]) / np.diff(edges)[column]
+        np.maximum.at(deviations, column, np.abs(shape.node_heights - heights[column, 0] - rise[column] * fraction))
+    return np.asarray(deviations > BENT * shape.depth)
+
+
+def _lowest(shape: AxialShape, edges: FloatArray, heights: FloatArray) -> FloatArray:
+    """Least height inside each column, nodes included."""
+    lowest = heights.min(axis=1)
+    if shape.nodes.size:
+        column = np.clip(np.searchsorted(edges, shape.nodes, side="right") - 1, 0, edges.size - 2)
+        np.minimum.at(lowest, column, shape.node_heights)
+    return np.asarray(lowest)
+
+
+def _with_edges(edges: FloatArray, corners: tuple[float, ...]) -> FloatArray:
+    """Edges with the corners among them; an edge closer to a corner than a quarter of its column moves there."""
+    for corner in corners:
+        nearest = int(np.abs(edges - corner).argmin())
+        inner = 0 < nearest < edges.size - 1
+        if inner and abs(edges[nearest] - corner) < 0.25 * np.diff(edges)[nearest - 1 : nearest + 1].min():
+            edges[nearest] = corner
+        else:
+            edges = np.sort(np.append(edges, corner))
+    return edges
+
+
+def overlooked(shape: AxialShape, edges: FloatArray, pressed: BoolArray, opening: FloatArray) -> BoolArray:
+    """Columns inside which a solved contact misses details of the shape: a pressed shape off its chord, or a crest."""
+    # An open column counts where the shape comes below the displaced top, except beside a contact, which ends inside
+    # it.
+    heights = _heights(shape, edges)
+    level = heights.mean(axis=1) - opening
+    deepest = heights.argmin(axis=1)
+    beside = np.zeros_like(pressed)
+    beside[1:] |= pressed[:-1] & (deepest[1:] == 0)
+    beside[:-1] |= pressed[1:] & (deepest[:-1] == PART.size - 1)
+    lowest = _lowest(shape, edges, heights)
+    beside &= lowest >= heights.min(axis=1)
+    missed = ~pressed & ~beside & (level - lowest > MISSED * shape.depth)
+    wide = np.diff(edges) > NARROWEST_BENT * shape.half_width
+    return np.asarray(wide & (missed | (pressed & _curved(shape, edges, heights))))
+
+
+def split(edges: FloatArray, marks: BoolArray) -> FloatArray:
+    """Halve marked columns, and every column that is then much wider than a neighbour."""
+    edges = np.sort(np.concatenate([edges, centres_of(edges)[marks]])) if marks.any() else edges
+    while True:
+        widths = np.diff(edges)
+        steep = np.zeros(widths.size, dtype=bool)
+        steep[:-1] |= widths[:-1] > STEEPEST * widths[1:]
+        steep[1:] |= widths[1:] > STEEPEST * widths[:-1]
+        if not steep.any():
+            return edges
+        edges = np.sort(np.concatenate([edges, centres_of(edges)[steep]]))
+
+
+def centres_of(edges: FloatArray) -> FloatArray:
+    """Centres of the columns between `edges`."""
+    return np.asarray(0.5 * (edges[1:] + edges[:-1]))

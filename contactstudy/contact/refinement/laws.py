@@ -1,0 +1,323 @@
+"""Laws of singular ends and convex corners, and the pressures and loads at the ends of a contact.
+
+A sharp rigid end inside the face of a body presses like a flat punch: ``p = K / sqrt(d)`` at the distance d. At a sharp
+elastic end the exponent is smaller and follows from the two materials; without a theory it is fitted. The pressure has
+an intensity K and no peak. An edge of small radius ``r0`` bounds it to ``p_max = 1.0734 (K**2 E* / r0)**(1/3)``, the
+limit for ``r0`` much smaller than the half-width.
+
+Where the slope of the gap jumps by s > 0, the pressure is ``p = E* s / (2 pi) ln(d0 / d)``. A blend radius rho replaces
+the jump by an arc of width ``b = rho s`` and bounds the pressure to ``E* s / (2 pi) [ln(2 d0 / b) + 1]`` for b much
+smaller than d0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.peaks import section_maxima
+from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement.columns import centres_of
+from contactstudy.errors import InvalidInputError
+
+RIGID = 0.5  # exponent at a sharp rigid end
+LEAST_GROWTH = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
+
+LASTING_STEPS = 0.5
+"""Least ratio of the sum of the last two steps to the sum of the two preceding ones of a logarithm. Accuracy."""
+
+NEAREST, FARTHEST = 3.0, 64.0
+"""Distances, over the outermost column's width, between which the intensity is fitted. Accuracy."""
+
+FEWEST = 3  # least number of columns of a fitted intensity
+
+LEAST_ROOM, NARROW_ERROR = 0.5, 0.08
+"""Largest reach of the fit over the room beyond an end, and the additional error over K beyond this reach. Accuracy:
+measured as 5 % at 2.5 times the room, 0.8 % at 0.6."""
+
+STEP_ERROR = 3e-3
+"""Error over the intensity from the steps of the pressure. Accuracy: measured as the residual of every fit."""
+
+ELASTIC_SHARE = 1.5
+"""Error of the intensity of an elastic end over its change when both limits of the fit double. Accuracy: unlike a rigid
+end its next power is not a whole number."""
+
+EDGE_FACTOR = 1.0734  # factor of the peak at an edge of small radius, computed for a half-space
+
+
+class Sample(NamedTuple):
+    """Width of the outermost column and the largest pressure on it."""
+
+    width: float
+    pressure: float
+
+
+@dataclass(frozen=True)
+class EndLaw:
+    """Law of the pressure at a singular end."""
+
+    kind: str  # "power" or "logarithm"
+    exponent: float  # ``m`` of ``p = K d**-m``: of theory or fitted, before the fit NaN; 0 for a logarithm
+    intensity: float = np.nan  # ``K`` and its estimated error, Pa m**m; NaN for a logarithm
+    intensity_error: float = np.nan
+    fitted: bool = False  # whether the exponent is fitted
+
+    def with_intensity(self, edges: FloatArray, pressure: FloatArray, room: float) -> EndLaw:
+        """Law with the intensity fitted to the pressure (column, y) at distances much smaller than the `room`."""
+        # A lifted end has the intensity 0, a contact too narrow for a fit that of the outermost column, with infinite
+        # errors.
+        if self.kind != "power":
+            return self
+        # Friction moves the contact along y, by different distances at the ends.
+        row = pressure[:, int(pressure[0].argmax())]
+        if row[0] <= 0:
+            return replace(self, intensity=0.0, intensity_error=np.inf)
+        width, exponent, fitted = edges[1], self.exponent, bool(np.isnan(self.exponent))
+        if fitted:
+            from scipy.optimize import minimize_scalar
+
+            bounds = (LEAST_GROWTH, RIGID)
+            optimum = minimize_scalar(lambda m: _fit(edges, row, width, m)[1], bounds=bounds, method="bounded")
+            exponent = float(optimum.x)
+        fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
+        if not np.isfinite(fits).all():  # pressed on too few columns
+            outermost = (1 - exponent) * row[0] * width**exponent
+            return EndLaw(self.kind, exponent, float(outermost), np.inf, fitted)
+        share = 1.0 if exponent == RIGID else ELASTIC_SHARE
+        error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
+        if 0 < room < NEAREST * width:  # the columns do not resolve the law
+            error = np.inf
+        elif FARTHEST * width > LEAST_ROOM * room:
+            error += NARROW_ERROR * fits[0]
+        return EndLaw(self.kind, exponent, fits[0], error, fitted)
+
+
+def elastic_exponent(edge: float, face: float) -> float:
+    """Exponent ``m`` of the pressure at a sharp edge of 90 degrees on a wider face, without friction."""
+    # Williams (J. Appl. Mech. 19 (1952) 526), Dundurs and Lee (J. Elasticity 2 (1972) 109), with ``s = 1 - m``: k_e
+    # sin(pi s) / (2 (sin(pi s / 2)**2 - s**2)) + k_f cot(pi s) = 0.
+    from scipy.optimize import brentq
+
+    def slopes(s: float) -> float:
+        quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
+        return float(edge * quarter + face / np.tan(np.pi * s))
+
+    return 1 - float(brentq(slopes, 0.5, 1 - 1e-9)) if edge > 0 else RIGID
+
+
+def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
+    """Law of a pressed end; None if its pressure is finite."""
+    # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
+    if not np.isnan(exponent):
+        return EndLaw("power", exponent) if samples[-1].pressure > 0 else None
+    if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
+        return None
+    if min(sample.pressure for sample in samples[-3:]) <= 0:
+        return None
+    growth = [
+        np.log(after.pressure / before.pressure) / np.log(before.width / after.width)
+        for before, after in pairwise(samples[-3:])
+    ]
+    if min(growth) > LEAST_GROWTH:
+        return EndLaw("power", exponent)
+    steps = [
+        (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
+    ]
+    if len(steps) >= 4 and sum(steps[-2:]) > LASTING_STEPS * sum(steps[-4:-2]) > 0:
+        return EndLaw("logarithm", 0.0)
+    return None
+
+
+def _fit(edges: FloatArray, row: FloatArray, width: float, exponent: float) -> tuple[float, float]:
+    """Least-squares K of the columns' means of ``K d**-m (1 + c d)``, relative to each, and the residual."""
+    low, high = edges[:-1], edges[1:]
+    used = (low >= 0.999 * NEAREST * width) & (high <= 1.001 * FARTHEST * width) & (row > 0)
+    low, high, values = low[used], high[used], row[used]
+    if values.size < FEWEST:
+        return np.nan, np.inf
+    powers = [1 - exponent, 2 - exponent]
+    # eq. (41)
+    means = [(high**power - low**power) / (power * (high - low)) for power in powers]
+    matrix = np.stack(means, axis=1) / values[:, None]
+    coefficients = np.linalg.lstsq(matrix, np.ones(values.size), rcond=None)[0]
+    return float(coefficients[0]), float(np.sqrt(np.mean((matrix @ coefficients - 1) ** 2)))
+
+
+def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
+    """Peak pressure at an end with an edge of small radius.
+
+    Parameters
+    ----------
+    intensity : float
+        ``K`` of the sharp end, ``p = K / sqrt(d)``, Pa m**0.5.
+    modulus : float
+        Contact modulus ``E*``, Pa.
+    edge_radius : float
+        Radius ``r0`` of the edge, metres; much smaller than the half-width.
+
+    Returns
+    -------
+    float
+        Pa.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not positive.
+
+    Examples
+    --------
+    >>> round(edge_peak(1e7, 231e9, 1e-5) / 1e9, 3)
+    14.189
+    """
+    k = checks.positive("intensity", intensity, "Pa m**0.5")
+    modulus = checks.positive("modulus", modulus, "Pa")
+    radius = checks.positive("edge_radius", edge_radius, "metres")
+    return float(EDGE_FACTOR * (k**2 * modulus / radius) ** (1 / 3))  # eq. (42)
+
+
+CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0
+"""Distances, over the width of the columns at the corner, between which d0 is fitted. Accuracy."""
+
+WIDEST_BLEND = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
+
+
+@dataclass(frozen=True)
+class CornerLaw:
+    """Logarithmic pressure at a convex corner."""
+
+    x: float  # position, metres
+    slope: float  # jump ``s`` of the slope
+    intensity: float  # ``E* s / (2 pi)``, Pa
+    distance: float
+    """``d0`` and its estimated error, metres; NaN without `distance` where the contact ends at the corner."""
+    distance_error: float
+    end: EndLaw | None = None
+    """Law of the pressure where the contact ends at the corner: too steep a chamfer is not pressed, and the corner
+    is a sharp end."""
+
+
+def corner_law(
+    corner: tuple[float, float], modulus: float, exponent: float, edges: FloatArray, pressure: FloatArray
+) -> CornerLaw | None:
+    """Law of a corner (position, jump of the slope) from the pressure (column, y); None where it is not pressed."""
+    # The mean of ``ln d`` over a column determines d0 from its pressure; the mean of both sides removes odd terms.
+    x, slope = corner
+    intensity = modulus * slope / (2 * np.pi)  # eq. (42a)
+    index = int(np.abs(edges - x).argmin())
+    if not 0 < index < edges.size - 1 or not pressure[index - 1 : index + 1].any():
+        return None
+    outward = (edges[index:] - x, pressure[index:]), (x - edges[index::-1], pressure[index - 1 :: -1])
+    pressed = [bool(values[0].any()) for _, values in outward]
+    if not all(pressed):
+        room = max(float(distances[-1]) for distances, _ in outward)
+        end = EndLaw("power", exponent).with_intensity(*outward[pressed.index(True)], room)
+        return CornerLaw(x, slope, intensity, np.nan, np.nan, end)
+    centre = int((pressure[index - 1] + pressure[index]).argmax())
+    sides = [(distances, values[:, centre]) for distances, values in outward]
+    width = max(float(distances[1]) for distances, _ in sides)
+    fits = [[_log_distance(*side, width * factor, intensity) for side in sides] for factor in (1.0, 2.0)]
+    logs = np.mean(fits, axis=1)
+    if not np.isfinite(logs).all():
+        return CornerLaw(x, slope, intensity, np.nan, np.inf)
+    distance = float(np.exp(logs[0]))
+    return CornerLaw(x, slope, intensity, distance, distance * abs(float(np.expm1(logs[1] - logs[0]))))
+
+
+def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:
+    """Logarithm of d0 on one side: the value at distance 0 of the line fitted to those of the columns."""
+    low, high = edges[:-1], edges[1:]
+    near = (low >= 0.999 * CORNER_NEAREST * width) & (high <= 1.001 * CORNER_FARTHEST * width) & (row > 0)
+    low, high, row = low[near], high[near], row[near]
+    if row.size < 2:
+        return np.nan
+    mean_log = (high * np.log(high) - low * np.log(low)) / (high - low) - 1
+    return float(np.polynomial.polynomial.polyfit(0.5 * (low + high), row / intensity + mean_log, 1)[0])
+
+
+def corner_peak(intensity: float, distance: float, slope: float, blend_radius: float) -> float:
+    """Peak pressure at a convex corner with a small blend radius.
+
+    Parameters
+    ----------
+    intensity : float
+        ``E* s / (2 pi)``, Pa: `corner_intensity` of a result.
+    distance : float
+        ``d0``, metres: `corner_distance` of a result.
+    slope : float
+        Jump ``s`` of the slope: `corner_slope` of a result.
+    blend_radius : float
+        Radius ``rho`` of the blend, metres.
+
+    Returns
+    -------
+    float
+        Pa.
+
+    Raises
+    ------
+    InvalidInputError
+        If an argument is not positive, or the blend is wider than a tenth of d0.
+
+    Examples
+    --------
+    >>> round(corner_peak(1.3e9, 50e-6, 0.035, 20e-6) / 1e9, 2)
+    7.75
+    """
+    strength = checks.positive("intensity", intensity, "Pa")
+    distance = checks.positive("distance", distance, "metres")
+    width = checks.positive("blend_radius", blend_radius, "metres") * checks.positive("slope", slope)
+    if width > WIDEST_BLEND * distance:
+        most = WIDEST_BLEND * distance / slope
+        raise InvalidInputError("blend_radius", blend_radius, f"at most {most:.3g} m", "solve the blended profile")
+    return float(strength * (np.log(2 * distance / width) + 1))  # eq. (42b)
+
+
+Pair = tuple[float, float]
+Laws = tuple[EndLaw | None, EndLaw | None]
+
+
+def read_ends(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
+    """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
+    top = section_maxima(pressure)
+    along_y = float(top.max() / pressure.max()) - 1
+    half = 0.5 * (edges[-1] - edges[0])
+    peaks, ends = [], []
+    for side in (0, 1):
+        distances, row = from_end(side, edges, top)
+        end = _extrapolated(distances, row)
+        half_row = row[centres_of(distances) < half]
+        # Where the pressure rises through the middle, the largest of a half lies there.
+        largest = max(float(half_row.max()), float(np.interp(half, centres_of(distances), row)))
+        # Only where the pressure rises to the end is the largest one beyond the outermost column's mean.
+        peaks.append(np.inf if laws[side] else max(largest, end) if half_row.argmax() == 0 else largest)
+        ends.append(np.inf if laws[side] else end)
+    return (peaks[0], peaks[1]), (ends[0], ends[1]), along_y
+
+
+def end_loads(edges: FloatArray, pressure: FloatArray, half_width: float) -> Pair:
+    """Load on the last half-width at either end, over the width of a cell along y."""
+    sums = pressure.sum(axis=1)
+    loads = []
+    for side in (0, 1):
+        distances, row = from_end(side, edges, sums)
+        loads.append(float(row @ np.diff(np.minimum(distances, half_width))))
+    return loads[0], loads[1]
+
+
+def from_end(side: int, edges: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Distances of the edges from an end of the shape, and the values counted from there."""
+    return (edges - edges[0], values) if side == 0 else (edges[-1] - edges[::-1], values[::-1])
+
+
+def _extrapolated(edges: FloatArray, row: FloatArray) -> float:
+    """Pressure at the end, from the means of the three outermost columns."""
+    if row[0] <= 0:
+        return 0.0
+    sums = np.cumsum(row[:3] * np.diff(edges[:4]))
+    positions = edges[1:4]
+    return max(float(np.linalg.solve(np.stack([positions, positions**2, positions**3], axis=1), sums)[0]), 0.0)

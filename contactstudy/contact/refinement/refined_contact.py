@@ -1,0 +1,456 @@
+"""Contact of a case on columns that are refined until peak and end pressures are accurate."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe, without_error
+from contactstudy.bodies import hertz
+from contactstudy.bodies.models import EndedBody
+from contactstudy.cache import ArrayKey, cached
+from contactstudy.case.case import LARGEST_HALF_WIDTH, SMALLEST_HALF_WIDTH, Case
+from contactstudy.case.gridding import columns_of
+from contactstudy.case.motion import Rolling, Sliding
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
+from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.contact.normal.problem import ContactProblem, solve_normal
+from contactstudy.contact.refinement.columns import AxialShape
+from contactstudy.contact.refinement.laws import RIGID, CornerLaw, corner_law, elastic_exponent
+from contactstudy.contact.refinement.refinement import (
+    POLISHED,
+    ColumnPressure,
+    RefinedColumns,
+    refine_columns,
+    replace_pressure,
+    rough_columns,
+    with_data_error,
+)
+from contactstudy.errors import WindowError
+from contactstudy.kernels.load import Load
+from contactstudy.profiles.base import as_shape
+from contactstudy.threads import one_blas_thread
+
+WINDOWS = (2.0, 3.0, 5.0, 8.0, 12.0)  # Half-widths of the window over that of the Hertz contact, tried in turn. Speed.
+
+ROOM, COUPLED_ROOM, MOVED_ROOM = 1.1, 1.4, 1.5
+"""Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
+which also solve the contact on half of the cells and depend on two cells ahead. Speed."""
+
+WINDOW_STEP = 2 ** (1 / 6)
+"""Ratio of consecutive windows: similar cases share a window and the kernels of the ends. Speed."""
+
+SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
+
+CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
+"""Numbers of cells along y: the first sufficient one, and the number of the first contact. Accuracy."""
+
+CORNER_SHARE = 0.2
+"""Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
+pressure at the corner grows by 3 % with each halving of its width."""
+
+BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
+"""Part of the peak between its cells along y times the square of their number across the contact, and the share of the
+accuracy for this part. Accuracy."""
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedContact:
+    """A contact on refined columns, their values and errors, and the law of a corner."""
+
+    contact: Contact
+    refined: RefinedColumns
+    corner: CornerLaw | None = None
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        shape = self.contact.shape
+        arrays = (self.contact.pressure, self.contact.displacement, self.refined.pressure, shape.gap.values)
+        return sum(array.nbytes for array in arrays)
+
+
+def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
+    """Contact of a case, on columns that are refined to an accuracy of peak and end pressures."""
+    if not isinstance(case.motion, Sliding):
+        # No creepage or shift changes the columns.
+        case = replace(case, friction=0.0, motion=Rolling())
+    request = _Request(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
+    return _cached_contact(request) if _is_immutable(case) else _refine_contact(request)
+
+
+class _Request(NamedTuple):
+    """Request of a refined contact: its friction is 0 unless it is coupled."""
+
+    case: Case
+    accuracy: float
+    tolerance: float
+
+
+def _is_immutable(part: object) -> bool:
+    """Whether a part of a case is compared by constant values: profiles of users may be mutable."""
+    if is_dataclass(part):
+        frozen = bool(getattr(type(part), "__dataclass_params__").frozen)  # noqa: B009 - mypy does not know it
+        return frozen and all(_is_immutable(getattr(part, field.name)) for field in fields(part))
+    if isinstance(part, tuple):
+        return all(_is_immutable(item) for item in part)
+    return part is None or isinstance(part, (str, int, float, np.number, np.bool_))
+
+
+def _refine_contact(request: _Request) -> RefinedContact:
+    """Refine in the narrowest window that contains the contact."""
+    case, accuracy, tolerance = request
+    *narrower, widest = WINDOWS
+    for window in narrower:
+        with contextlib.suppress(WindowError):
+            return _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
+    return _refine_in_window(case, widest * case.hertz_half_width, accuracy, tolerance)
+
+
+_cached_contact = cached("refined contacts", lambda refined: refined.nbytes)(_refine_contact)
+
+
+def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance: float) -> RefinedContact:
+    """Contact in a window that a rough contact determines."""
+    shape = _axial_shape(case)
+    with one_blas_thread():
+        # The half-width depends only weakly on the end correction, which is the expensive part.
+        body = case.body
+        mirrored = replace(body, model="mirror") if isinstance(body, EndedBody) and body.model == "exact" else body
+        first = _ColumnSolver(replace(case, body=mirrored), half_window, ROUGH_CELLS_Y)
+        rough = rough_columns(first, shape)
+        rows = np.flatnonzero(rough.pressure.any(axis=0))
+        cells = first.grid(rough.edges)
+        reach = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
+        # Coupled friction moves the contact along y.
+        window = _window_half_width(case, reach)
+        peak_cells = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
+        cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
+        solver = _ColumnSolver(case, window, cells_y)
+        # The splittings of the outermost columns determine the law of an end: begin with few columns.
+        refined = refine_columns(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
+        refined = _with_data_error(solver, refined, shape)
+    contact = solver.contact(refined.edges, refined.pressure, tolerance)
+    if contact.shape.coupled_friction or contact.motions.total.tilt:
+        refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
+    return RefinedContact(contact, refined, _strongest_corner(case, refined))
+
+
+def _strongest_corner(case: Case, refined: RefinedColumns) -> CornerLaw | None:
+    """Law of the pressed convex corner with the largest intensity; None without one."""
+    if as_shape(case.roller.profile).second_interpolation() is not None:
+        return None
+    corners = zip(*(values.tolist() for values in case.slope_jumps), strict=True)
+    exponent = RIGID if case.roller.body is None else np.nan
+    laws = [
+        corner_law(corner, case.modulus, exponent, refined.edges, refined.pressure)
+        for corner in corners
+        if corner[1] > 0
+    ]
+    return max(filter(None, laws), key=lambda law: law.intensity, default=None)
+
+
+def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: AxialShape) -> RefinedColumns:
+    """Add the error of measured points, the change under their second interpolation; infinite at unresolved corners."""
+    case = solver.case
+    other = as_shape(case.roller.profile).second_interpolation()
+    if other is None:
+        return refined
+    solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other)))
+    refined = with_data_error(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
+    corners = case.slope_jumps
+    errors = list(refined.peak_errors)
+    for x, jump in zip(*corners, strict=True):
+        column = int(np.clip(np.searchsorted(refined.edges, x) - 1, 0, refined.edges.size - 2))
+        side = int(x > 0.5 * (shape.start + shape.stop))
+        if jump * case.modulus > CORNER_SHARE * refined.peaks[side] and refined.pressure[column].any():
+            errors[side] = np.inf
+    return replace(refined, peak_errors=(errors[0], errors[1]))
+
+
+def _window_half_width(case: Case, reach: float) -> float:
+    """Half-width of the window of a contact up to `reach`, metres, on a scale that similar cases share."""
+    room = COUPLED_ROOM if case.coupled else ROOM
+    if not isinstance(case.motion, Sliding):
+        room = MOVED_ROOM
+    least = room * reach / case.hertz_half_width
+    return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
+
+
+def _cell_number_y(part: float, accuracy: float) -> int:
+    """Least number of cells along y that resolve a peak; the contact covers a `part` of the window there."""
+    needed = np.sqrt(BETWEEN_CELLS / (SHARE_OF_Y * accuracy)) / part
+    return next((cells for cells in CELLS_Y if cells >= needed), CELLS_Y[-1])
+
+
+def refined_values(settled: RefinedContact) -> xr.Dataset:
+    """Labelled values with their errors; at a singular end the law instead of the pressure."""
+    refined = settled.refined
+    values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
+    dy = settled.contact.shape.grid.dy
+    for name, side in (("first", 0), ("last", 1)):
+        law = refined.laws[side]
+        values |= {
+            f"peak_pressure_{name}": refined.peaks[side],
+            f"peak_pressure_{name}_error": refined.peak_errors[side],
+            f"end_pressure_{name}": refined.ends[side],
+            f"end_pressure_{name}_error": refined.end_errors[side],
+            f"end_load_{name}": dy * refined.loads[side],
+            f"end_load_{name}_error": dy * refined.load_errors[side],
+        }
+        if law is not None:
+            values |= {
+                f"end_exponent_{name}": law.exponent,
+                f"end_intensity_{name}": law.intensity,
+                f"end_intensity_{name}_error": law.intensity_error,
+            }
+    sharper = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
+    if sharper is not None:
+        values |= {
+            "end_exponent": sharper.exponent,
+            "end_intensity": sharper.intensity,
+            "end_intensity_error": sharper.intensity_error,
+        }
+    if settled.corner is not None:
+        corner = settled.corner
+        values |= {
+            "corner_x": corner.x,
+            "corner_slope": corner.slope,
+            "corner_intensity": corner.intensity,
+        }
+        if corner.end is None:
+            values |= {"corner_distance": corner.distance, "corner_distance_error": corner.distance_error}
+        else:
+            values |= {
+                "end_exponent": corner.end.exponent,
+                "end_intensity": corner.end.intensity,
+                "end_intensity_error": corner.end.intensity_error,
+            }
+    result = xr.Dataset(values)
+    if settled.corner is not None and settled.corner.slope > SMALL_SLOPE:
+        result["corner_intensity"].attrs["comment"] = f"a slope above {SMALL_SLOPE} is beyond small strains"
+    if any(law and law.fitted for law in refined.laws):
+        result = without_error(result, *(str(name) for name in result if str(name).startswith("end_exponent")))
+    for key, intensity in result.items():
+        if str(key).startswith("end_intensity"):
+            exponent = float(result[str(key).replace("intensity", "exponent").removesuffix("_error")])
+            intensity.attrs["units"] = f"Pa m{exponent:.3g}"
+    if not refined.settled:
+        result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
+    return describe(result)
+
+
+def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None) -> Shape:
+    """Contact of a case to solve on cells; default: the load or approach of the case."""
+    gap = case.gap(grid)
+    prescribed = (prescribed or prescribed_load(case)).checked(gap, grid)
+    return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+
+
+def prescribed_load(case: Case) -> Prescribed:
+    """Load or approach that a case prescribes."""
+    if case.approach is not None:
+        return Prescribed(approach=case.approach)
+    return Prescribed(case.normal_load, case.load_position)
+
+
+def replace_contact(settled: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
+    """RefinedColumns contact with another pressure on the same columns, from friction or finer cells along y."""
+    refined = settled.refined
+    pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
+    refined = replace_pressure(refined, pressure, _axial_shape(case))
+    return RefinedContact(contact, refined, _strongest_corner(case, refined))
+
+
+@dataclass(frozen=True)
+class _ColumnSolver:
+    """Solver of a case on columns: the `solve` of `refine_columns`."""
+
+    case: Case
+    half_window: float
+    cells_y: int
+
+    def grid(self, edges: FloatArray) -> Grid:
+        """Cells of the body, with columns under the roller between `edges`."""
+        return columns_of(self.case, edges, (-self.half_window, self.half_window), self.cells_y)
+
+    def shape(self, edges: FloatArray) -> Shape:
+        """Contact to solve."""
+        return contact_shape(self.case, self.grid(edges))
+
+    def contact(self, edges: FloatArray, pressure: FloatArray, tolerance: float) -> Contact:
+        """Contact relative to the reference lines, from a pressure (column, y)."""
+        shape = self.shape(edges)
+        return contact_of(shape, Settings(tolerance), ArrayKey(_padded(pressure, shape.grid, edges)))
+
+    def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        """Contact without coupled friction, which changes the pressure by a few percent and no columns."""
+        shape = self.shape(edges)._replace(coupled_friction=0.0)
+        grid = shape.grid
+        gap = shape.gap.values
+        columns = _roller_columns(grid, edges)
+        guess = _padded(start, grid, edges) if start is not None and start.any() else None
+        problem = ContactProblem(grid, gap, shape.prescribed.resultants(grid), 0.0, tolerance, 500)
+        operator = contact_operator(shape)
+        iterate = solve_normal(operator, problem, guess)
+        check_window(shape.body, iterate.pressure)
+
+        def opening() -> FloatArray:
+            opened = gap + operator({Load.NORMAL: iterate.pressure}) - problem.level(iterate.motion)
+            return np.asarray(opened[columns].min(axis=1))
+
+        return ColumnPressure(iterate.pressure[columns], opening)
+
+
+def _roller_columns(grid: Grid, edges: FloatArray) -> slice:
+    """Columns of a grid under the roller, between `edges`."""
+    first = int(np.abs(grid.x_edges - edges[0]).argmin())
+    return slice(first, first + edges.size - 1)
+
+
+def _padded(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
+    """Pressure (column, y) between `edges` on all cells of a grid."""
+    padded = np.zeros(grid.shape)
+    padded[_roller_columns(grid, edges)] = pressure
+    return padded
+
+
+def _face_beyond(distance: float, near: float) -> float:
+    """Length of the face beyond an end; 0 at a flush or overhanging roller."""
+    return distance if distance > near else 0.0
+
+
+def _exponent(case: Case, distance: float, near: float) -> float:
+    """Exponent of the pressure at an end, at a distance from the end of the face; NaN without a theory."""
+    body, roller = case.body, case.roller.body
+    of_body = 1 / body.material.plane_strain_modulus
+    of_roller = 0.0 if roller is None else 1 / roller.material.plane_strain_modulus
+    has_ends = isinstance(roller, EndedBody)
+    if distance > near:
+        return elastic_exponent(of_roller if has_ends else 0.0, of_body)
+    # The body's own edge is pressed where the roller overhangs, or is a half-space.
+    pressed = of_roller > 0 and (distance < -near or not has_ends)
+    return elastic_exponent(of_body, of_roller) if pressed and getattr(body, "model", "") == "exact" else np.nan
+
+
+def _axial_shape(case: Case) -> AxialShape:
+    """Axial shape of a case."""
+    start, stop = case.contact_range
+    low, high = case.body.extent
+    half_width = case.hertz_half_width
+    near = 1e-9 * (stop - start)
+    distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
+    corners = case.slope_jumps
+    resolved = as_shape(case.roller.profile).second_interpolation() is None
+    return AxialShape(
+        start,
+        stop,
+        half_width,
+        half_width**2 / (2 * case.roller.radius),
+        case.lowest,
+        (_face_beyond(distances[0], near), _face_beyond(distances[1], near)),
+        exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
+        # The factor of the body's image is not that of the roller's.
+        corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),
+        nodes=case.nodes,
+        fades=case.roller.body is not None and isinstance(case.body, EndedBody) and case.body.model == "mirror-factor",
+    )
+
+
+POWER, POWERS = 1.2, (1.0, 2.0)
+"""Exponent of the load as a power of the depth from first touch: the first one, and its bounds. A line contact has
+10/9, a point contact 3/2. Speed."""
+
+DEEPER, SHALLOWER, ROUNDS = 0.05, 0.005, 12
+"""Parts of the depth by which a contact may be deeper or shallower than the approach with the same columns and window,
+and the largest number of corrections of the load. Speed."""
+
+ABOVE = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
+
+ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4
+"""Accuracy and tolerance of contacts that determine a load, or how a load turns the reference lines. Speed."""
+
+ROOMIER = 1.5  # factor on the window for half as many cells along y, which reach farther beyond the contact. Speed.
+
+SLICES, WIDTH_PART = 200, 0.3
+"""Slices of the first guess of a load, and their half-width over the half-width of the undeformed overlap. Speed."""
+
+
+class ApproachContact(NamedTuple):
+    """A contact at an approach."""
+
+    case: Case  # the case under the load of the approach
+    refined: RefinedContact  # the contact
+
+
+def contact_at_approach(case: Case, accuracy: float, tolerance: float) -> ApproachContact:
+    """Contact of a case that prescribes its approach, on columns that are refined to an accuracy."""
+    assert case.approach is not None
+    rough = search_load(_with_mirrored_ends(case), case.approach, _slice_load(case), ROUGHLY, ROUGH_TOLERANCE)
+    return search_load(case, case.approach, rough.case.normal_load, accuracy, tolerance)
+
+
+def search_load(case: Case, approach: float, load: float, accuracy: float, tolerance: float) -> ApproachContact:
+    """Contact of a case at an approach, from a first guess of its load."""
+    power, last = POWER, (0.0, 0.0)
+    for _ in range(ROUNDS):
+        loaded = replace(case, load=load, max_pressure=None, approach=None)
+        refined = refine_contact(loaded, accuracy, tolerance)
+        shape = refined.contact.shape
+        touch = float(shape.gap.values.min())
+        depth, prescribed_depth = refined.contact.approach - touch, approach - touch
+        if 1 - SHALLOWER <= depth / prescribed_depth <= 1 + DEEPER:
+            break
+        if 0 < last[1] != depth:
+            power = float(np.clip(np.log(load / last[0]) / np.log(depth / last[1]), *POWERS))
+        last = (load, depth)
+        load *= ABOVE * (prescribed_depth / depth) ** power
+    prescribed = Prescribed(approach=approach).checked(shape.gap.values, shape.grid)
+    contact = contact_of(shape._replace(prescribed=prescribed), Settings(tolerance))
+    case = replace(loaded, load=contact.carried)
+    return ApproachContact(case, replace_contact(refined, contact, case))
+
+
+def approach_load_error(contact: ApproachContact) -> float:
+    """Error of the load of an approach, N: its changes on coarser columns and half the cells along y, without ends."""
+    refined, grid = contact.refined.refined, contact.refined.contact.shape.grid
+    case = _with_mirrored_ends(contact.case)
+    window = ROOMIER * grid.y_range[0], ROOMIER * grid.y_range[1]
+    rows = int(ROOMIER * grid.cells_y)
+
+    def solve(edges: FloatArray, cells_y: int, prescribed: Prescribed | None) -> Contact:
+        shape = contact_shape(case, columns_of(case, edges, window, cells_y), prescribed)
+        return contact_of(shape._replace(coupled_friction=0.0), Settings(ROUGH_TOLERANCE))
+
+    fine = solve(refined.edges, rows, None)
+    deep = Prescribed(approach=fine.approach)
+    coarser = solve(refined.first, rows, deep), solve(refined.edges, rows // 2, deep)
+    return sum(abs(contact.carried - fine.carried) for contact in coarser)
+
+
+def _with_mirrored_ends(case: Case) -> Case:
+    """Case with the mirror model of its ends."""
+    body, roller = case.body, case.roller
+    if isinstance(body, EndedBody) and body.model == "exact":
+        body = replace(body, model="mirror")
+    return replace(case, body=body, roller=replace(roller, ends="none"))
+
+
+def _slice_load(case: Case) -> float:
+    """Load of independent slices whose widths are a part of the undeformed overlap, N."""
+    assert case.approach is not None
+    start, stop = case.contact_range
+    x = np.linspace(start, stop, SLICES + 1)
+    depth = np.maximum(case.approach - case.lowest(x), 0.0)
+    radius, modulus = case.roller.radius, case.modulus
+    half_width = np.minimum(WIDTH_PART * np.sqrt(2 * radius * depth), LARGEST_HALF_WIDTH * radius)
+    per_length = np.pi * modulus * half_width**2 / (4 * radius)  # Johnson, Contact Mechanics (1985), 4.43
+    load = float(per_length.mean()) * (stop - start)
+    least = hertz.line_load(SMALLEST_HALF_WIDTH * modulus, radius, modulus) * (stop - start)
+    return max(load, least)

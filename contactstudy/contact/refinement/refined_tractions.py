@@ -1,0 +1,145 @@
+"""Stick and slip on the columns of a refined contact, with as many cells along y as the forces need.
+
+The columns are the columns of the normal contact. The tractions are solved on half of its cells along y, then on all,
+and on twice as many until forces and creepages change by less than the accuracy. Their error is of first order in the
+cells at most, so the last change bounds the error of the cells along y; the error of the columns is added.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
+from contactstudy.case.case import Case
+from contactstudy.case.motion import Rolling, Shift
+from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, contact_shape, replace_contact
+from contactstudy.contact.rolling.frictional_contact import (
+    AMPLITUDES,
+    FrictionalContact,
+    FrictionRequest,
+    frictional_contact,
+)
+from contactstudy.contact.rolling.tractions import CoarseTractions
+
+COLUMNS_SHARE = 0.5
+"""Error of the columns, over the least error of the pressure; relative to full sliding's force and moment, and to work
+and creepages themselves. Accuracy: without it one in ten of these errors was too small."""
+
+COARSE_STEPS = 60
+"""Bound on the Newton steps on half of the cells along y, whose tractions are a guess. Speed: in a few shifts the
+active sets cycle there, and converge on finer cells."""
+
+
+class RefinedTractions(NamedTuple):
+    """A contact with stick and slip, and its errors."""
+
+    contact: FrictionalContact  # pressure and tractions
+    normal: RefinedContact  # the normal contact with its errors
+    errors: Mapping[str, float]  # errors of forces, moment, work and unknown rigid motions, as named in results
+    accurate: bool  # whether the last changes were within the accuracy
+
+    def error_dataset(self) -> xr.Dataset:
+        """Labelled errors."""
+        result = xr.Dataset({f"{name}_error": error for name, error in self.errors.items()})
+        units = self.contact.dataset()["friction_work"].attrs["units"]
+        result["friction_work_error"].attrs["units"] = units
+        if not self.accurate:
+            for error in result.values():
+                error.attrs["comment"] = "above the accuracy: the largest number of cells along y was reached"
+        return describe(result)
+
+
+def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> RefinedTractions:
+    """Tractions of a case on the columns of its normal contact."""
+    rows = normal.contact.shape.grid.cells_y
+    last = _contact_on_rows(case, normal, rows // 2, None)
+    # FASTSIM's error is that of its model: its strips do not become accurate on finer cells.
+    most_rows = rows if isinstance(case.motion, Rolling) and case.motion.model == "fastsim" else CELLS_Y[-1]
+    while True:
+        contact = _contact_on_rows(case, normal, rows, last)
+        changes, scales = _values(contact) - _values(last), _scales(case, contact)
+        free = [name not in _prescribed_names(case) for name in scales]
+        accurate = bool((np.abs(changes) <= accuracy * np.array(list(scales.values())))[free].all())
+        if accurate or rows >= most_rows:
+            break
+        rows, last = 2 * rows, contact
+    # Forces and moments may be small differences of large ones; work and rigid motions are not.
+    sizes = [
+        size if name in ("force_x", "force_y", "moment_z") else min(size, abs(float(value)))
+        for (name, size), value in zip(scales.items(), _values(contact), strict=True)
+    ]
+    column_error = COLUMNS_SHARE * normal.refined.least_error
+    errors = {
+        name: abs(float(change)) + column_error * size
+        for name, size, change, is_free in zip(scales, sizes, changes, free, strict=True)
+        if is_free
+    }
+    return RefinedTractions(contact, replace_contact(normal, contact.contact, case), errors, accurate)
+
+
+def _contact_on_rows(
+    case: Case, normal: RefinedContact, rows: int, last: FrictionalContact | None
+) -> FrictionalContact:
+    """Contact on the columns with a number of cells along y, from a contact on half as many."""
+    assert isinstance(case.motion, Shift | Rolling)
+    contact = normal.contact
+    grid = contact.shape.grid
+    if rows != grid.cells_y:
+        grid = Grid.between(grid.x_edges, grid.y_range, rows)
+    friction = case.friction_on(grid.x)
+    coarse = None
+    if last is not None:
+        bound = np.asarray(friction * last.contact.pressure)
+        coarse = CoarseTractions(last.contact.shape.grid, bound, last.tractions)
+    request = FrictionRequest(
+        motion=case.motion,
+        friction=friction,
+        middle=case.roller_middle,
+        coupled=case.coupled,
+        coarse=coarse,
+        max_steps=COARSE_STEPS if last is None else None,
+    )
+    return frictional_contact(contact_shape(case, grid, contact.shape.prescribed), contact.settings, request)
+
+
+def _values(contact: FrictionalContact) -> FloatArray:
+    """Values to refine, in the order of `_scales`."""
+    tractions = contact.tractions
+    forces = (tractions.force_x, tractions.force_y, tractions.moment_z, tractions.work)
+    return np.array([*forces, *tractions.rigid.values()])
+
+
+def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
+    """Scales of the accuracy of each value, by its name in results."""
+    # Forces and moment: full sliding's. Creepages ``f a / R`` (Johnson, Contact Mechanics (1985), 8.45) and shifts ``f
+    # a**2 / R``, or their size if it is larger.
+    pressure, grid = contact.contact.pressure, contact.contact.shape.grid
+    loads = case.friction_on(grid.x) * pressure * grid.weights * grid.cell_area
+    arms = np.hypot((grid.x - case.roller_middle)[:, None], grid.y)
+    slip = float(np.max(case.friction_on(grid.x))) * case.hertz_half_width / case.roller.radius
+    force, moment = float(loads.sum()), float((loads * arms).sum())
+    rolling = isinstance(case.motion, Rolling)
+    usual = {"x": slip, "y": slip, "spin": slip * force / moment if moment else 0.0}
+    if not rolling:
+        usual = {name: size * case.hertz_half_width for name, size in usual.items()}
+    names = AMPLITUDES[rolling]
+    rigid = {name: max(abs(amplitude), usual[name]) for name, amplitude in contact.tractions.rigid.items()}
+    largest = max(abs(rigid["x"]), abs(rigid["y"]), rigid.get("spin", 0.0) * moment / force if force else 0.0)
+    return {"force_x": force, "force_y": force, "moment_z": moment, "friction_work": force * largest} | {
+        names[name]: size for name, size in rigid.items()
+    }
+
+
+def _prescribed_names(case: Case) -> set[str]:
+    """Names in results of the values that a case's motion prescribes."""
+    motion = case.motion
+    assert isinstance(motion, Shift | Rolling)
+    names = AMPLITUDES[isinstance(motion, Rolling)]
+    forces = {"x": "force_x", "y": "force_y", "spin": "moment_z"}
+    return {forces[name] if name in motion.modes else names[name] for name in names}

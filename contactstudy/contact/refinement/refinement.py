@@ -1,0 +1,353 @@
+"""Where the pressure jumps from column to column, so that these are split."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.normal.problem import between_columns
+from contactstudy.contact.refinement.columns import MOST_COLUMNS, AxialShape, centres_of, first_edges, overlooked, split
+from contactstudy.contact.refinement.laws import EndLaw, Laws, Sample, end_loads, from_end, law_of, read_ends
+
+POWERS = (2.0, 16.0)  # powers of the pressure whose jumps are marked. Accuracy.
+LESSER_HALF = 0.1  # least pressure of a half, over the largest, that jumps in this half are measured by. Accuracy.
+
+
+def pressure_jumps(edges: FloatArray, pressure: FloatArray) -> FloatArray:
+    """Per column: largest step of the pressure's powers to a neighbour, over the peak of its half or its own crest."""
+    jumps = [_jumps(edges, pressure, power) for power in POWERS]
+    return np.asarray(np.max([*jumps, _crest_jumps(pressure)], axis=0))
+
+
+def _crest_jumps(pressure: FloatArray) -> FloatArray:
+    """Per column with a pressure above both neighbours: the larger step of its square, over this square."""
+    # A narrow crest beside a contact's end may be lower than the peak of its half, by which jumps are measured.
+    top = pressure.max(axis=1)
+    own, lowest = top[1:-1], np.minimum(top[:-2], top[2:])
+    crest = (own > top[:-2]) & (own > top[2:]) & (own > LESSER_HALF * top.max())
+    steps = np.zeros_like(top)
+    steps[1:-1][crest] = 1 - (lowest[crest] / own[crest]) ** POWERS[0]
+    return np.asarray(steps)
+
+
+def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
+    """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
+    left = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
+    top = np.where(left, pressure[left].max(), pressure[~left].max())
+    top = np.maximum(top, LESSER_HALF * pressure.max())
+    steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
+    return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (top / pressure.max()) ** power)
+
+
+LOGGER = logging.getLogger(__name__)
+
+FIRST_THETA, SHRINK, LOOSEST = 0.5, 0.7, 0.26
+"""Threshold of the jumps at first, its reduction, and the largest at which the refinement may end. Accuracy."""
+
+SECOND_THETA = SHRINK * FIRST_THETA  # threshold to which columns are refined roughly. Speed.
+
+THETA_PER_ERROR = 50.0
+"""Threshold over the least error that is stated with it. Accuracy: at 100 it covered 96 to 99 % of the ends."""
+
+END_STEP = 4.0  # weight of the step that is left between a pressed end and the line through its two columns. Accuracy.
+
+LAST_COLUMNS = 0.25
+"""Width over the half-width of the columns within one half-width of the contact's ends along x. Accuracy."""
+
+END_COLUMN = 0.012  # width over the half-width of the outermost column at a pressed end of the body. Accuracy.
+
+SHARPEST, SMALLEST = 2e-3, 2e-4
+"""Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
+
+CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
+DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
+ROUGH, POLISHED = 1e-2, 1e-5  # tolerances of the contact at the levels and where values are read. Speed and accuracy.
+
+
+class ColumnPressure(NamedTuple):
+    """A contact on some columns."""
+
+    pressure: FloatArray  # (column, y): pressure, Pa
+    opening: Callable[[], FloatArray]
+    """Least gap of each column under load, metres: array (column). It takes one more application of the operator."""
+
+
+Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
+"""From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
+
+
+@dataclass(frozen=True, eq=False)
+class RefinedColumns:
+    """Columns on which a contact is settled."""
+
+    edges: FloatArray  # edges of the columns, metres
+    pressure: FloatArray  # (column, y): pressure, Pa
+    peaks: tuple[float, float]
+    """Largest pressure of either half and its estimated error, Pa; both infinite at a singular end."""
+    peak_errors: tuple[float, float]
+    ends: tuple[float, float]
+    """Pressure at either end of the shape and its estimated error, Pa; 0 where it is not pressed."""
+    end_errors: tuple[float, float]
+    loads: tuple[float, float]
+    """Load on the last half-width at either end of the shape and its estimated error, over the width of a cell along
+    y, N/m."""
+    load_errors: tuple[float, float]
+    laws: tuple[EndLaw | None, EndLaw | None]  # law of a singular end
+    settled: bool  # whether every error that is stated is within the accuracy
+    first: FloatArray  # edges of the columns of the first threshold, metres
+    least_error: float  # least error that is stated on these columns, over the value
+
+    @property
+    def peak(self) -> float:
+        """Largest pressure, Pa."""
+        return max(self.peaks)
+
+    @property
+    def peak_error(self) -> float:
+        """Estimated error of the largest pressure, Pa."""
+        return max(error for peak, error in zip(self.peaks, self.peak_errors, strict=True) if peak == self.peak)
+
+
+class RoughColumns(NamedTuple):
+    """A contact on the columns of the first thresholds: edges, pressure (column, y), and laws of its singular ends."""
+
+    edges: FloatArray
+    pressure: FloatArray
+    laws: Laws
+
+    def singular(self, shape: AxialShape) -> bool:
+        """Whether an end has a law, or will have one: a sharp one that is pressed."""
+        return any(self.laws) or any(shape.sharp(side) and self.pressure[-side].any() for side in (0, 1))
+
+
+def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
+    """Columns on which to begin, whose peak is within some percent; `refine_columns` says what is raised."""
+    state = _Refinement(solve, shape, first_edges(shape))
+    for theta in (FIRST_THETA, SECOND_THETA):
+        state.refine(theta)
+    return RoughColumns(state.edges, state.pressure, (state.laws[0], state.laws[1]))
+
+
+def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> RefinedColumns:
+    """Refine columns, from the edges `begin` of a rough contact, until peak and end pressures settle to `accuracy`."""
+    state = _Refinement(solve, shape, first_edges(shape) if begin is None else begin)
+    theta = FIRST_THETA if begin is None else SECOND_THETA
+    while True:
+        state.refine(theta)
+        state.read()
+        if len(state.peaks) > 1:
+            refined = state.result(theta, accuracy)
+            if (theta <= LOOSEST and refined.settled) or state.edges.size > MOST_COLUMNS:
+                return refined
+        theta *= SHRINK
+
+
+@dataclass(eq=False)
+class _Refinement:
+    """Where the refinement stands."""
+
+    solve: Solve
+    shape: AxialShape
+    edges: FloatArray
+    pressure: FloatArray = field(init=False)
+    first: FloatArray | None = None
+    peaks: list[tuple[float, float]] = field(default_factory=list)
+    ends: list[tuple[float, float]] = field(default_factory=list)
+    loads: list[tuple[float, float]] = field(default_factory=list)
+    along_y: float = 0.0
+    laws: list[EndLaw | None] = field(default_factory=lambda: [None, None])
+    samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
+
+    def __post_init__(self) -> None:
+        self.pressure = self.solve(self.edges, None, ROUGH).pressure
+        self._sample()
+
+    def refine(self, theta: float) -> None:
+        """Split columns until none is marked."""
+        while True:
+            while self.edges.size <= MOST_COLUMNS and (marks := self._marks(theta)).any():
+                self._split(marks)
+            self.pressure, opening = self.solve(self.edges, self.pressure, POLISHED)
+            marks = overlooked(self.shape, self.edges, np.asarray(self.pressure.any(axis=1)), opening())
+            if not marks.any() or self.edges.size > MOST_COLUMNS:
+                break
+            self._split(marks)
+        if self.first is None:
+            self.first = self.edges
+
+    def _split(self, marks: BoolArray) -> None:
+        """Split marked columns and solve the contact on them roughly."""
+        finer = split(self.edges, marks)
+        guess = np.sqrt(between_columns(self.pressure**2, centres_of(self.edges), centres_of(finer)))
+        self.edges = finer
+        self.pressure = self.solve(finer, guess, ROUGH).pressure
+        LOGGER.info("refined to %d columns", finer.size - 1)
+        self._sample()
+
+    def _sample(self) -> None:
+        """Note the outermost columns wherever they have been split, and decide on their law."""
+        for side, samples in enumerate(self.samples):
+            edges, pressure = from_end(side, self.edges, self.pressure)
+            width = float(edges[1])
+            if not samples or width < 0.99 * samples[-1].width:
+                samples.append(Sample(width, float(pressure[0].max())))
+                if self.laws[side] is None and width <= SHARPEST * self.shape.half_width:
+                    self.laws[side] = law_of(samples, self.shape.exponents[side])
+
+    def _marks(self, theta: float) -> BoolArray:
+        """Columns to split."""
+        edges, pressure, a = self.edges, self.pressure, self.shape.half_width
+        widths, largest = np.diff(edges), pressure.max()
+        jumps = pressure_jumps(edges, pressure)
+        for side, (i, j) in enumerate(((0, 1), (-1, -2))):
+            if self.laws[side] is None and pressure[i].max() > 0:
+                step = np.abs(pressure[i] - pressure[j]).max() * widths[i] / (widths[i] + widths[j]) / largest
+                jumps[i] = max(jumps[i], END_STEP * step)
+                rises = pressure[i].max() >= self._half(side).max()
+                sharp = self.shape.sharp(side) or self.shape.room[side] > 0 or rises
+                if widths[i] > (SHARPEST if sharp else END_COLUMN) * a:
+                    jumps[i] = np.inf
+        touched = np.flatnonzero(pressure.any(axis=1))
+        for end in (edges[touched[0]], edges[touched[-1] + 1]):
+            near = (edges[:-1] < end + a) & (edges[1:] > end - a)
+            jumps[near & (widths > LAST_COLUMNS * a)] = np.inf
+        marks: BoolArray = (jumps > theta) & (widths > 2 * SMALLEST * a)
+        for corner in self.shape.corners:
+            index = int(np.abs(edges - corner).argmin())
+            if pressure[index - 1 : index + 1].any():
+                distances = np.maximum(edges[:-1] - corner, corner - edges[1:])
+                near = distances < a
+                marks[near] = widths[near] > np.maximum(SHARPEST * a, CORNER_GROWTH * distances[near])
+        for side, outermost in enumerate(((0, 1), (-1, -2))):
+            if self.laws[side] is not None:
+                marks[list(outermost)] = False
+        return marks
+
+    @property
+    def length(self) -> float:
+        """Length along the axis that can be pressed, metres."""
+        return float(self.edges[-1] - self.edges[0])
+
+    def _half(self, side: int) -> FloatArray:
+        left = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
+        own: FloatArray = self.pressure[left if side == 0 else ~left]
+        return own
+
+    def read(self) -> None:
+        """Note the peak of either half, and the pressure and the load at either end."""
+        peaks, ends, self.along_y = read_ends(self.edges, self.pressure, (self.laws[0], self.laws[1]))
+        self.peaks.append(_infinite_at_corners(peaks, self.shape, self.edges, self.pressure))
+        self.ends.append(ends)
+        self.loads.append(end_loads(self.edges, self.pressure, self.shape.half_width))
+
+    def _unknown_law(self, side: int) -> bool:
+        """Whether the pressure at an end, sharp or fading at the end of the face, does not settle and has no law."""
+        fades = self.shape.fades and self.shape.room[side] == 0
+        unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
+        return unsettled and bool(self.pressure[-side].any())
+
+    def result(self, theta: float, accuracy: float) -> RefinedColumns:
+        """Values with their errors."""
+        finite = [value for value in self.peaks[-1] if 0 < value < np.inf]  # a half may have no contact
+        scale = max(finite, default=float(self.pressure.max()))
+        floor = scale * (theta / THETA_PER_ERROR + self.along_y)
+        peak_errors = [_change_error([peaks[side] for peaks in self.peaks], floor) for side in (0, 1)]
+        first, last = (_change_error([ends[side] for ends in self.ends], floor) for side in (0, 1))
+        for side in (0, 1):
+            if self._unknown_law(side):
+                first, last = (np.inf, last) if side == 0 else (first, np.inf)
+                if self._half(side).max() <= self.pressure[-side].max():
+                    peak_errors[side] = np.inf
+        errors = [error for error in (*peak_errors, first, last) if np.isfinite(error)]
+        # Over a half-width under the mean load per length.
+        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
+        load_errors = [_change_error([loads[side] for loads in self.loads], usual * floor / scale) for side in (0, 1)]
+        settled = max(errors, default=floor) <= accuracy * scale and max(load_errors) <= accuracy * usual
+        laws = [
+            law.with_intensity(*from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
+            for side, law in enumerate(self.laws)
+        ]
+        return RefinedColumns(
+            self.edges,
+            self.pressure,
+            self.peaks[-1],
+            (peak_errors[0], peak_errors[1]),
+            self.ends[-1],
+            (first, last),
+            self.loads[-1],
+            (load_errors[0], load_errors[1]),
+            (laws[0], laws[1]),
+            settled,
+            self.edges if self.first is None else self.first,
+            floor / scale,
+        )
+
+
+def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
+    """Return the values of another pressure on the same columns, which the coupled friction has changed a little."""
+    # The errors grow with the peak. The pressure of an end that only friction presses is its error.
+    peaks, ends, _ = read_ends(refined.edges, pressure, refined.laws)
+    peaks = _infinite_at_corners(peaks, shape, refined.edges, pressure)
+    largest = max(peaks)
+    factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())
+    first, last = (
+        law.with_intensity(*from_end(side, refined.edges, pressure), shape.room[side]) if law else None
+        for side, law in enumerate(refined.laws)
+    )
+    end_errors = [
+        factor * error if before > 0 else now
+        for before, error, now in zip(refined.ends, refined.end_errors, ends, strict=True)
+    ]
+    return replace(
+        refined,
+        pressure=pressure,
+        peaks=peaks,
+        peak_errors=(factor * refined.peak_errors[0], factor * refined.peak_errors[1]),
+        ends=ends,
+        end_errors=(end_errors[0], end_errors[1]),
+        loads=end_loads(refined.edges, pressure, shape.half_width),
+        laws=(first, last),
+    )
+
+
+def with_data_error(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
+    """Return the values with errors of measured points: from the pressure of their second interpolation."""
+    other = replace_pressure(refined, pressure, shape)
+
+    def errors(name: str) -> tuple[float, float]:
+        pairs = zip(*(getattr(state, name) for state in (refined, other)), strict=True)
+        first, last = (abs(value - moved) if np.isfinite(value) else 0.0 for value, moved in pairs)
+        errors = getattr(refined, f"{name.removesuffix('s')}_errors")
+        return errors[0] + DATA_ERROR * first, errors[1] + DATA_ERROR * last
+
+    return replace(refined, peak_errors=errors("peaks"), end_errors=errors("ends"), load_errors=errors("loads"))
+
+
+def _infinite_at_corners(
+    peaks: tuple[float, float], shape: AxialShape, edges: FloatArray, pressure: FloatArray
+) -> tuple[float, float]:
+    """Peaks of either half, infinite where a convex corner is pressed."""
+    middle = 0.5 * (edges[0] + edges[-1])
+    first, last = peaks
+    for corner in shape.corners:
+        index = int(np.abs(edges - corner).argmin())
+        if pressure[index - 1 : index + 1].any():
+            first, last = (np.inf if corner <= middle else first), (np.inf if corner >= middle else last)
+    return first, last
+
+
+def _change_error(values: list[float], floor: float) -> float:
+    """Error of the last of some values; infinite for one that is, 0 for a pressure that stays 0."""
+    last = values[-1]
+    if not np.isfinite(last):
+        return np.inf
+    if not any(values[-3:]):
+        return 0.0
+    back = [abs(last - value) for value in values[-3:-1] if np.isfinite(value)]
+    half = 0.5 * max(back, default=np.inf)
+    return max(half, floor)  # eq. (40)

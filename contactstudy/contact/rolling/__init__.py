@@ -1,0 +1,1 @@
+"""Stick and slip under Coulomb friction, in steady rolling and in shifts."""

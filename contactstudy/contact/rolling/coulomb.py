@@ -1,0 +1,359 @@
+"""Coulomb's law of friction on the cells of a contact, by a semi-smooth Newton method.
+
+With the tractions ``q`` (two components on each cell), the bound ``g = f p`` and the slip ``s = w - B q`` the law
+reads: ``|q| <= g`` everywhere; ``s = 0`` where ``|q| < g``; ``q = g s / |s|`` where ``s`` is not 0. ``w`` is the slip
+of rigid surfaces and ``B`` the compliance. For a set of slipping cells and their directions ``n`` the unknowns are
+``q`` where cells stick and, where they slip, the part ``a`` of ``q = g n + a n'`` across ``n``:
+
+    stick:  w - B q = 0,        slip:  n' (w - B q) - (s n / g) a = 0,
+
+a linear system with the matrix ``T' B T + D`` and ``D >= 0``. Then sticking cells with tractions above the bound begin
+to slip, and slipping cells with slip against their traction begin to stick. Rigid slips with prescribed resultants are
+further unknowns.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.checks import BoolArray, FloatArray
+
+Operator = Callable[[FloatArray], FloatArray]
+
+GUESS_TOLERANCE = 1e-6  # part of the bound by which the traction of a slipping cell of a guess may miss it. Speed.
+DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
+
+CONTINUATION_STEPS, SHORTEST_STEP = 40, 1e-3
+"""Newton steps without convergence after which resultants are raised by steps, and the least step over the whole way.
+Speed."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class CoulombProblem:
+    """Coulomb's law on the cells of a contact."""
+
+    relief: Operator  # ``B``: slip (2, cell) that tractions (2, cell) relieve
+    inverse: Operator  # approximate inverse of ``B``
+    bound: FloatArray  # (cell): largest traction, Pa; positive
+    rigid: FloatArray  # (2, cell): prescribed slip of rigid surfaces
+    modes: FloatArray  # (mode, 2, cell): rigid slips of unknown amplitude
+    works: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
+    resultants: FloatArray  # (mode): prescribed resultants
+    shares: FloatArray
+    """(cell): areas of the cells over their mean: they make the linear systems symmetric and their residual a mean."""
+    tolerance: float = 1e-6
+    """Violation, over the largest bound and the largest rigid slip, at which the iteration stops."""
+    max_steps: int = 40  # bound on the Newton steps
+    symmetric: bool = False  # whether B is symmetric, so that the tractions minimise an energy
+
+    def slip(self, traction: FloatArray, amplitudes: FloatArray) -> FloatArray:
+        """Slip (2, cell) under tractions."""
+        return self.rigid_slip(amplitudes) - self.relief(traction)
+
+    def rigid_slip(self, amplitudes: FloatArray) -> FloatArray:
+        """Slip (2, cell) of rigid surfaces."""
+        return np.asarray(self.rigid + np.tensordot(amplitudes, self.modes, axes=1))
+
+    def slip_scale(self, amplitudes: FloatArray) -> float:
+        """Largest rigid slip, the scale of violations."""
+        return max(float(np.hypot(*self.rigid_slip(amplitudes)).max(initial=0.0)), np.finfo(float).tiny)
+
+
+@dataclass(frozen=True, eq=False)
+class CoulombSolution:
+    """Tractions under Coulomb's law."""
+
+    traction: FloatArray  # (2, cell): tractions, Pa, and slip
+    slip: FloatArray
+    sticks: BoolArray  # (cell): sticking cells
+    amplitudes: FloatArray  # (mode): amplitudes of the unknown rigid slips
+    steps: int  # Newton steps
+    converged: bool  # whether the tolerance was reached
+
+
+class Guess(NamedTuple):
+    """Start of the iteration: tractions (2, cell), slipping on their bound, and amplitudes (mode) of rigid slips."""
+
+    traction: FloatArray
+    amplitudes: FloatArray
+
+
+def law_violation(
+    traction: FloatArray, slip: FloatArray, bound: FloatArray, sticks: BoolArray, scale: float
+) -> tuple[float, float]:
+    """Violations of law (43): of the bound, over the largest bound, and of the slip, over `scale`."""
+    # A sticking cell counts its slip, another the component across the traction and against it.
+    size = np.hypot(*traction)
+    largest = float(bound.max(initial=0.0))
+    excess = float(np.maximum(size - bound, 0.0).max(initial=0.0)) / largest if largest else 0.0  # eq. (43)
+    direction = traction / np.where(size > 0, size, 1.0)
+    parallel = (slip * direction).sum(axis=0)
+    across = slip[0] * direction[1] - slip[1] * direction[0]
+    violation = np.where(sticks, np.hypot(*slip), np.hypot(across, np.minimum(parallel, 0.0)))
+    return excess, float(violation.max(initial=0.0)) / scale
+
+
+def solve_with_continuation(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+    """Solve Coulomb's law; where Newton's method does not converge, raise prescribed resultants step by step."""
+    # Near full sliding few cells stick. Resultants between two admissible ones are admissible: a solution exists on the
+    # line.
+    if not len(problem.modes) or problem.max_steps <= CONTINUATION_STEPS:
+        return solve_coulomb(problem, start)
+    solution = solve_coulomb(replace(problem, max_steps=CONTINUATION_STEPS), start)
+    if solution.converged:
+        return solution
+    no_modes = problem.modes[:0]
+    first = solve_coulomb(replace(problem, modes=no_modes, works=no_modes, resultants=problem.resultants[:0]))
+    steps = solution.steps + first.steps
+    resultants = (problem.works * first.traction).sum(axis=(1, 2))
+    guess, reached, step = Guess(first.traction, np.zeros(len(problem.modes))), 0.0, 0.5
+    while reached < 1 and step > SHORTEST_STEP and steps < problem.max_steps:
+        part = min(1.0, reached + step)
+        raised = (1 - part) * resultants + part * problem.resultants
+        solution = solve_coulomb(replace(problem, resultants=raised, max_steps=CONTINUATION_STEPS), guess)
+        steps += solution.steps
+        if solution.converged:
+            reached, step, guess = part, 2 * step, Guess(solution.traction, solution.amplitudes)
+        else:
+            step *= 0.5
+    return replace(solution, steps=steps, converged=solution.converged and reached == 1)
+
+
+def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> CoulombSolution:
+    """Solve Coulomb's law by a semi-smooth Newton method."""
+    bound = problem.bound
+    traction = np.zeros_like(problem.rigid)
+    sticks = np.ones(bound.size, bool)
+    amplitudes = np.zeros(len(problem.modes))
+    slip = problem.rigid.copy()
+    if start is not None:
+        size, amplitudes = np.hypot(*start.traction), start.amplitudes
+        sticks = size < (1 - GUESS_TOLERANCE) * bound
+        traction = start.traction * np.where(sticks, 1.0, bound / np.where(size > 0, size, 1.0))
+        slip = problem.slip(traction, amplitudes)
+    steps, converged, accuracy, violation = 0, False, 0.1, np.inf
+    visited, share, diagonal = {sticks.tobytes()}, 1.0, _diagonal(problem)
+    while steps < problem.max_steps and not converged:
+        steps += 1
+        active_set = sticks
+        traction, amplitudes = _NewtonSystem(problem, traction, slip, sticks, diagonal).solve(
+            traction, slip, amplitudes, accuracy
+        )
+        size = np.hypot(*traction)
+        begins_slip = (size > bound) & sticks
+        if len(problem.modes):
+            begins_slip = _largest_excess(begins_slip, size / bound, sticks)
+        begins_slip = _first_share(begins_slip, share)
+        traction = traction * np.where(~sticks | begins_slip, bound / np.where(size > 0, size, 1.0), 1.0)
+        slip = problem.slip(traction, amplitudes)
+        begins_stick = _first_share(~sticks & ((slip * traction).sum(axis=0) < 0), share)
+        sticks = (sticks & ~begins_slip) | begins_stick
+        scale = problem.slip_scale(amplitudes)
+        missing = np.abs((problem.works * traction).sum(axis=(1, 2)) - problem.resultants)
+        largest = np.abs(problem.works).sum(axis=1) @ bound if len(problem.works) else np.ones(0)
+        last = violation
+        violation = max(
+            *law_violation(traction, slip, bound, sticks, scale), float((missing / largest).max(initial=0.0))
+        )
+        converged = violation <= problem.tolerance
+        unchanged = np.array_equal(sticks, active_set)
+        # The linear systems are solved more accurately where the last step did not reduce the violation. Speed.
+        accuracy = 1e-2 if unchanged or violation > 0.8 * last else 0.1
+        if not unchanged:
+            # A repeated active set halves the share of cells that may change at once, in the limit to one (Murty).
+            share = 0.5 * share if sticks.tobytes() in visited else min(1.0, 2 * share)
+            visited.add(sticks.tobytes())
+        if problem.symmetric and steps % DESCENT_INTERVAL == 0 and not converged:
+            start = Guess(limit_tractions(traction, bound), amplitudes)
+            traction, amplitudes = balance_tractions(problem, start, scale)
+            slip, share = problem.slip(traction, amplitudes), 1.0
+            sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
+    return CoulombSolution(traction, slip, sticks, amplitudes, steps, converged)
+
+
+def _first_share(cells: BoolArray, share: float) -> BoolArray:
+    """First cells of a set, a share of their number and at least one."""
+    if share == 1:
+        return cells
+    numbers = np.flatnonzero(cells)
+    first = np.zeros_like(cells)
+    first[numbers[: max(1, int(share * numbers.size))]] = True
+    return first
+
+
+def _largest_excess(exceeds: BoolArray, excess: FloatArray, sticks: BoolArray) -> BoolArray:
+    """At most half of the sticking cells, those farthest above their bound; of a single cell, that cell."""
+    # If all began to slip at once, the rigid slip of a prescribed resultant would be nearly undetermined.
+    most = (int(sticks.sum()) + 1) // 2
+    if exceeds.sum() <= most:
+        return exceeds
+    least = np.partition(excess[exceeds], -most)[-most]
+    return np.asarray(exceeds & (excess >= least))
+
+
+class _NewtonSystem:
+    """Linear system of one Newton step."""
+
+    def __init__(
+        self,
+        problem: CoulombProblem,
+        traction: FloatArray,
+        slip: FloatArray,
+        sticks: BoolArray,
+        diagonal: FloatArray,
+    ) -> None:
+        self._problem, self._sticks, self._diagonal = problem, sticks, diagonal
+        self._root = np.sqrt(problem.shares)
+        size = np.hypot(*traction)
+        direction = np.where(sticks, 0.0, traction / np.where(size > 0, size, 1.0))
+        across = np.stack([-direction[1], direction[0]])
+        # Unknowns: both components where cells stick, else the component across.
+        self._first = np.where(sticks, np.array([[1.0], [0.0]]), across)
+        self._second = np.where(sticks, np.array([[0.0], [1.0]]), 0.0)[:, sticks]
+        parallel = np.maximum((slip * direction).sum(axis=0), 0.0)
+        self._turning = np.where(sticks, 0.0, parallel / problem.bound)
+
+    def _tractions(self, unknowns: FloatArray) -> FloatArray:
+        """Change of the tractions (2, cell) from the unknowns."""
+        cells = self._sticks.size
+        traction = self._first * unknowns[:cells]
+        traction[:, self._sticks] += self._second * unknowns[cells:]
+        return np.asarray(traction / self._root)
+
+    def _components(self, slip: FloatArray) -> FloatArray:
+        """Components of a slip (2, cell) conjugate to the unknowns."""
+        slip = self._root * slip
+        first = (self._first * slip).sum(axis=0)
+        second = (self._second * slip[:, self._sticks]).sum(axis=0)
+        return np.concatenate([first, second])
+
+    def solve(
+        self, traction: FloatArray, slip: FloatArray, amplitudes: FloatArray, accuracy: float
+    ) -> tuple[FloatArray, FloatArray]:
+        """Tractions and amplitudes of the rigid slips that reduce the residual to a part `accuracy`."""
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        problem = self._problem
+        turning = np.concatenate([self._turning, np.zeros(int(self._sticks.sum()))])
+        count, shape = turning.size, (len(problem.modes), turning.size)
+        # Spin (1/m) and moment (N m) in the units of slip, for one residual of all unknowns.
+        sizes = np.hypot(problem.modes[:, 0], problem.modes[:, 1]).max(axis=1, initial=np.finfo(float).tiny)
+        modes = np.array([self._components(mode) for mode in problem.modes]).reshape(shape) / sizes[:, None]
+        works = np.array([self._components(work / problem.shares) for work in problem.works]).reshape(shape)
+        unit = (np.abs(works).sum(axis=1) + np.finfo(float).tiny) / float(self._diagonal.mean())
+        works = works / unit[:, None]
+        diagonal = np.concatenate([self._diagonal, self._diagonal[self._sticks]])
+        damping = np.sqrt(diagonal / (diagonal + turning))
+
+        def invert(slip: FloatArray) -> FloatArray:
+            return np.asarray(damping * self._components(problem.inverse(self._tractions(damping * slip))))
+
+        inverse_modes = np.array([invert(mode) for mode in modes]).reshape(modes.shape)
+        schur = works @ inverse_modes.T
+
+        def multiply(unknowns: FloatArray) -> FloatArray:
+            tractions, rigid = unknowns[:count], unknowns[count:]
+            relief = self._components(problem.relief(self._tractions(tractions))) + turning * tractions
+            return np.concatenate([relief - rigid @ modes, works @ tractions])
+
+        def precondition(residual: FloatArray) -> FloatArray:
+            tractions = invert(residual[:count])
+            if not len(modes):
+                return tractions
+            rigid = np.linalg.lstsq(schur, residual[count:] - works @ tractions, rcond=None)[0]
+            return np.concatenate([tractions + rigid @ inverse_modes, rigid])
+
+        missing = (problem.resultants - (problem.works * traction).sum(axis=(1, 2))) / unit
+        residual = np.concatenate([self._components(slip), missing])
+        # Preconditioned from the right: the residual is that of the system. 60 directions, 5 restarts. Speed.
+        shape = (residual.size, residual.size)
+        operator = LinearOperator(shape, lambda vector: multiply(precondition(vector)), dtype=float)
+        change = precondition(gmres(operator, residual, rtol=accuracy, atol=0.0, restart=60, maxiter=5)[0])
+        return traction + self._tractions(change[:count]), amplitudes + change[count:] / sizes
+
+
+def _diagonal(problem: CoulombProblem) -> FloatArray:
+    """Slip that a traction relieves in its cell, per traction: array (cell), one value for each width of cells."""
+    diagonal = np.empty_like(problem.bound)
+    for share in np.unique(problem.shares):
+        cells = problem.shares == share
+        unit = np.zeros_like(problem.rigid)
+        largest = int(np.where(cells, problem.bound, 0.0).argmax())
+        unit[1, largest] = 1.0
+        diagonal[cells] = abs(1.0 / problem.inverse(unit)[1, largest])
+    return diagonal
+
+
+def balance_tractions(problem: CoulombProblem, start: Guess, scale: float) -> tuple[FloatArray, FloatArray]:
+    """Tractions under a shift as the minimum of ``q B q / 2 - w q`` for ``|q| <= g``, and the unknown rigid slips."""
+    # A descent along the slip of this convex energy, projected onto the bound, cannot cycle. Steps: Barzilai and
+    # Borwein, IMA J. Numer. Anal. 8 (1988) 141; Birgin, Martinez and Raydan, SIAM J. Optim. 10 (2000) 1196. The rigid
+    # slips of prescribed resultants maximise the least energy less their work.
+    from scipy.optimize import minimize
+
+    traction, amplitudes = start
+    bound, shares, works = problem.bound, problem.shares, problem.works
+
+    def minimize_energy(amplitudes: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+        nonlocal traction
+        rigid = problem.rigid_slip(amplitudes)
+        traction, slip = descend_energy(problem.relief, rigid - problem.relief(traction), traction, bound, shares)
+        return traction, slip, rigid
+
+    if not amplitudes.size:
+        return minimize_energy(amplitudes)[0], amplitudes
+    area = float((works[0] / shares).max())
+    largest = np.abs(works).sum(axis=1) @ bound
+    unit = scale * float(largest.max())
+
+    def dual_energy(scaled: FloatArray) -> tuple[float, FloatArray]:
+        tractions, slip, rigid = minimize_energy(scale * scaled)
+        energy = 0.5 * area * float((shares * tractions * (rigid + slip)).sum()) - float(
+            scale * scaled @ problem.resultants
+        )
+        return energy / unit, ((works * tractions).sum(axis=(1, 2)) - problem.resultants) * scale / unit
+
+    # The gradient is the missing resultants over full sliding. Speed.
+    optimum = minimize(dual_energy, amplitudes / scale, jac=True, method="BFGS", options={"gtol": 1e-5})
+    amplitudes = np.asarray(scale * optimum.x)
+    return minimize_energy(amplitudes)[0], amplitudes
+
+
+def limit_tractions(traction: FloatArray, bound: FloatArray) -> FloatArray:
+    """Tractions (2, cell), projected onto their bound where they exceed it."""
+    size = np.hypot(*traction)
+    return np.asarray(traction * np.where(size > bound, bound / np.where(size > 0, size, 1.0), 1.0))
+
+
+def descend_energy(
+    relief: Operator,
+    slip: FloatArray,
+    traction: FloatArray,
+    bound: FloatArray,
+    shares: FloatArray,
+    max_steps: int = 500,
+) -> tuple[FloatArray, FloatArray]:
+    """Descend from tractions (2, cell) within their bound and their slip; return both at the minimum."""
+
+    def product(first: FloatArray, second: FloatArray) -> float:
+        return float((shares * first * second).sum())
+
+    relieved = relief(slip)
+    curvature = product(slip, relieved)
+    length = product(slip, slip) / curvature if curvature > 0 else 0.0
+    for _ in range(max_steps):
+        change = limit_tractions(traction + length * slip, bound) - traction
+        if float(np.abs(change).max()) <= 1e-7 * float(bound.max()):  # Speed.
+            break
+        relieved = relief(change)
+        curvature = product(change, relieved)
+        # The energy is least on the way to the projected point, or at it.
+        part = min(1.0, product(slip, change) / curvature) if curvature > 0 else 1.0
+        traction, slip = traction + part * change, slip - part * relieved
+        if curvature > 0:
+            length = product(change, change) / curvature
+    return traction, slip

@@ -1,0 +1,126 @@
+"""FASTSIM: Kalker's strips, the quick fix of vehicle dynamics, for comparison.
+
+Each strip along the rolling direction is displaced by ``u = L q`` under the local traction alone. Three flexibilities
+L, of both creepages and of the spin, make the forces of vanishing creepages on an ellipse equal to the exact theory
+(J. J. Kalker, Vehicle System Dynamics 11 (1982) 1), through his coefficients (Three-Dimensional Elastic Bodies in
+Rolling Contact (1990), table E.3).
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.bodies.material import Material
+from contactstudy.case.motion import Rolling
+from contactstudy.checks import FloatArray
+from contactstudy.contact.rolling.surfaces import Surfaces, Tractions, motion_names, prescribed_amplitude
+
+POISSONS = (0.0, 0.25, 0.5)
+
+TABLE = (  # Half-width along rolling over that across, and c11, c22, c23 for the three Poisson's ratios
+    (0.1, (2.51, 3.31, 4.85), (2.51, 2.52, 2.53), (0.334, 0.473, 0.731)),
+    (0.2, (2.59, 3.37, 4.81), (2.59, 2.63, 2.66), (0.483, 0.603, 0.809)),
+    (0.3, (2.68, 3.44, 4.80), (2.68, 2.75, 2.81), (0.607, 0.715, 0.889)),
+    (0.4, (2.78, 3.53, 4.82), (2.78, 2.88, 2.98), (0.720, 0.823, 0.977)),
+    (0.5, (2.88, 3.62, 4.83), (2.88, 3.01, 3.14), (0.827, 0.929, 1.07)),
+    (0.6, (2.98, 3.72, 4.91), (2.98, 3.14, 3.31), (0.930, 1.03, 1.18)),
+    (0.7, (3.09, 3.81, 4.97), (3.09, 3.28, 3.48), (1.03, 1.14, 1.29)),
+    (0.8, (3.19, 3.91, 5.05), (3.19, 3.41, 3.65), (1.13, 1.25, 1.40)),
+    (0.9, (3.29, 4.01, 5.12), (3.29, 3.54, 3.82), (1.23, 1.36, 1.51)),
+    (1.0, (3.40, 4.12, 5.20), (3.40, 3.67, 3.98), (1.33, 1.47, 1.63)),
+    (1 / 0.8, (3.65, 4.36, 5.42), (3.65, 3.99, 4.39), (1.58, 1.75, 1.94)),
+    (1 / 0.6, (4.06, 4.78, 5.80), (4.06, 4.50, 5.04), (2.01, 2.23, 2.50)),
+    (1 / 0.4, (4.84, 5.57, 6.57), (4.84, 5.48, 6.31), (2.88, 3.24, 3.70)),
+    (1 / 0.2, (6.96, 7.78, 8.82), (6.96, 8.14, 9.79), (5.72, 6.63, 7.89)),
+    (1 / 0.1, (10.7, 11.7, 12.9), (10.7, 12.8, 16.0), (12.2, 14.6, 18.0)),
+)
+
+
+def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
+    """Kalker's c11, c22 and c23 of an ellipse, at the border of the table above its range, asymptotes below."""
+    from scipy.interpolate import PchipInterpolator
+
+    if ratio < TABLE[0][0]:
+        turning = np.pi * np.sqrt(ratio) / (3 * (1 - poisson)) * (1 + poisson * (np.log(16 / ratio) - 5))
+        return np.array([np.pi**2 / (4 * (1 - poisson)), np.pi**2 / 4, turning])
+    ratios = np.log([row[0] for row in TABLE])
+    logarithm = float(np.clip(np.log(ratio), ratios[0], ratios[-1]))
+    coefficients = []
+    for number in (1, 2, 3):
+        values = PchipInterpolator(ratios, np.array([row[number] for row in TABLE]))(logarithm)
+        coefficients.append(
+            np.polynomial.polynomial.polyval(poisson, np.polynomial.polynomial.polyfit(POISSONS, values, 2))
+        )
+    return np.array(coefficients)
+
+
+class Pair(NamedTuple):
+    """Shear modulus and Poisson's ratio of the mean compliance of two bodies."""
+
+    shear: float
+    poisson: float
+
+    @classmethod
+    def of(cls, materials: list[Material]) -> Pair:
+        """Mean compliances of the bodies; a rigid body contributes 0."""
+        compliance = 0.5 * sum(1 / material.shear_modulus for material in materials)
+        coupling = 0.5 * sum(material.poisson / material.shear_modulus for material in materials)
+        return cls(1 / compliance, coupling / compliance)
+
+
+def flexibilities(half_widths: tuple[float, float], pair: Pair) -> dict[str, float]:
+    """Flexibilities L, m/Pa, of the creepages along x and y and of the spin."""
+    across, along = half_widths
+    c11, c22, c23 = creep_coefficients(along / across, pair.poisson)
+    return {
+        "x": 8 * along / (3 * pair.shear * c22),
+        "y": 8 * along / (3 * pair.shear * c11),
+        "spin": np.pi * along * np.sqrt(along / across) / (4 * pair.shear * c23),
+    }
+
+
+def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Tractions:
+    """Tractions of FASTSIM's strips under their bound (x, y)."""
+    grid, weights = surfaces.grid, surfaces.weights
+    rows, columns = np.flatnonzero(bound.any(axis=1)), np.flatnonzero(bound.any(axis=0))
+    half_widths = 0.5 * float(grid.widths[rows].sum()), 0.5 * columns.size * grid.dy
+    rigid = {name: prescribed_amplitude(motion, name) for name in motion_names(motion)}
+    compliance = flexibilities(half_widths, Pair.of(surfaces.materials))
+    turning = rigid["spin"] / compliance["spin"]
+    growth = np.zeros((2, *grid.shape))
+    growth[0] = rigid["x"] / compliance["x"] - turning * grid.y
+    growth[1] = rigid["y"] / compliance["y"] + turning * (grid.x - surfaces.middle)[:, None]
+    traction, lost = strip_tractions(bound, growth, grid.dy)
+    slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost
+    force_x, force_y, moment = (weights * traction).sum(axis=(1, 2, 3)).tolist()
+    return Tractions(
+        traction=traction,
+        slip=slip,
+        sticks=(bound > 0) & ~lost.any(axis=0),
+        rigid=rigid,
+        force_x=force_x,
+        force_y=force_y,
+        moment_z=moment,
+        work=float((traction * slip * surfaces.areas).sum()),
+    )
+
+
+def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:
+    """Tractions, and the loss of their growth to slip, (2, x, y): material enters strips at the leading edge."""
+    traction, lost = np.zeros_like(growth), np.zeros_like(growth)
+    last, last_growth = np.zeros(growth.shape[:2]), np.zeros(growth.shape[:2])
+    entered = np.zeros(bound.shape[0], bool)
+    for column in range(bound.shape[1] - 1, -1, -1):
+        inside, cell_growth = bound[:, column] > 0, growth[:, :, column]
+        # The first centre lies half a cell behind the edge; between two centres the growth is the mean of both.
+        added = np.where(entered, 0.5 * (cell_growth + last_growth) * dy, 0.5 * cell_growth * dy)
+        stuck = last + added
+        size = np.hypot(*stuck)
+        part = np.minimum(bound[:, column] / np.where(size > 0, size, 1.0), 1.0)
+        limited = np.where(inside, stuck * part, 0.0)
+        traction[:, :, column] = limited
+        lost[:, :, column] = np.where(inside & (part < 1), (stuck - limited) / np.where(entered, dy, 0.5 * dy), 0.0)
+        last, last_growth, entered = limited, cell_growth, inside
+    return traction, lost

@@ -1,0 +1,187 @@
+"""A contact with stick and slip: the pressure, then the tractions, in turn where the tractions change the pressure."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.variables import describe
+from contactstudy.cache import ArrayKey
+from contactstudy.case.motion import Rolling, Shift
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.normal.pair import PairOperator
+from contactstudy.contact.rolling.surfaces import TANGENTIAL, Surfaces, Tractions
+from contactstudy.contact.rolling.tractions import CoarseTractions, TractionSettings, solve_tractions
+from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
+from contactstudy.fields.loads import Loads, TopLoad
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.kernels.load import Load
+from contactstudy.threads import one_blas_thread
+
+ALL = (Load.NORMAL, *TANGENTIAL)
+
+ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact counts as not converged. Speed.
+
+LEAST_ACCURACY = 1e-5
+"""Part of the pressure to which coupled rounds settle at least, however coarse the tolerance. Accuracy."""
+
+
+AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
+    True: {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"},
+    False: {"x": "shift_x", "y": "shift_y"},
+}
+
+
+@dataclass(frozen=True, eq=False)
+class FrictionalContact:
+    """A contact with the tractions of a motion."""
+
+    contact: Contact  # pressure, gap and rigid motion
+    tractions: Tractions  # tractions and slip
+    rounds_converged: bool  # whether the rounds of pressure and tractions converged
+
+    @property
+    def loads(self) -> Loads:
+        """Loads on the body."""
+        along_x, along_y = self.tractions.traction
+        return {
+            Load.NORMAL: TopLoad(self.contact.pressure),
+            Load.ALONG_X: TopLoad(along_x),
+            Load.ALONG_Y: TopLoad(along_y),
+        }
+
+    @property
+    def converged(self) -> bool:
+        """Whether every iteration reached its tolerance."""
+        return self.rounds_converged and self.tractions.converged and self.contact.converged
+
+    def warn_unless_converged(self) -> None:
+        """Warn with the violations of the conditions, if an iteration did not converge."""
+        self.contact.warn_unless_converged()
+        tractions = self.tractions
+        if self.rounds_converged and tractions.converged:
+            return
+        reason = (
+            f"Newton's method stopped after {tractions.steps} steps (bound_error = {tractions.bound_error:.2g}, "
+            f"slip_error = {tractions.slip_error:.2g}, force_error = {tractions.force_error:.2g})"
+            if not tractions.converged
+            else f"pressure and tractions still change each other after {ROUNDS} rounds"
+        )
+        warnings.warn(
+            f"stick and slip did not converge: {reason}; raise max_iterations or change the grid",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+
+    def dataset(self) -> xr.Dataset:
+        """Label tractions, slip, resultants and the certificate, on x and y without coordinates."""
+        tractions, shape = self.tractions, self.contact.shape
+        fields = {
+            "traction_x": tractions.traction[0],
+            "traction_y": tractions.traction[1],
+            "slip_x": tractions.slip[0],
+            "slip_y": tractions.slip[1],
+            "stick": tractions.sticks,
+        }
+        rolling = "spin" in tractions.rigid
+        names, unit = AMPLITUDES[rolling], "1" if rolling else "m"
+        scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
+        for name in ("force_x", "force_y", "moment_z", "bound_error", "slip_error", "force_error"):
+            scalars[name] = getattr(tractions, name)
+        areas, pressed = shape.grid.weights, self.contact.pressure > 0
+        scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * pressed).sum())
+        scalars["friction_work"] = tractions.work
+        scalars["friction_steps"] = tractions.steps
+        result = xr.Dataset({name: (("x", "y"), values) for name, values in fields.items()} | scalars)
+        for name in ("slip_x", "slip_y"):
+            result[name].attrs["units"] = unit
+        result["friction_work"].attrs["units"] = "J/m" if rolling else "J"
+        assert shape.grid.shape == tractions.sticks.shape
+        return result
+
+
+def relative_operator(shape: Shape, directions: tuple[Load, ...]) -> PairOperator | SurfaceOperator:
+    """Operator from pressure and tractions to displacements of the surfaces relative to each other."""
+    if shape.counterbody is None:
+        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=directions))
+    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class FrictionRequest:
+    """Friction and motion of a contact."""
+
+    motion: Shift | Rolling  # motion of the shape against the body
+    friction: float | FloatArray  # (x, 1): coefficient of friction, not negative
+    middle: float  # position x about which spin and moment are counted, metres
+    coupled: bool  # whether the tractions also displace the surfaces normally and so change the pressure
+    start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
+    coarse: CoarseTractions | None = None  # tractions on coarser cells as a guess
+    max_steps: int | None = None  # bound on the Newton steps; default: the bound on the iterations
+
+
+def frictional_contact(shape: Shape, settings: Settings, request: FrictionRequest) -> FrictionalContact:
+    """Solve a contact with the tractions of a motion."""
+    motion = request.motion
+    friction = np.broadcast_to(np.asarray(request.friction, dtype=np.float64), shape.grid.shape)
+    if (friction < 0).any():
+        raise InvalidInputError(
+            "friction",
+            float(friction.min()),
+            ">= 0 with stick and slip",
+            "the direction of the traction follows from the slip",
+        )
+    with one_blas_thread():
+        operator = relative_operator(shape, ALL if request.coupled else TANGENTIAL)
+    materials = [shape.body.material]
+    if shape.counterbody is not None:
+        materials.append(shape.counterbody.body.material)
+    surfaces = Surfaces(operator, shape.grid, materials, request.middle)
+    traction_settings = TractionSettings(
+        tolerance=settings.tolerance,
+        max_steps=settings.max_iterations if request.max_steps is None else request.max_steps,
+        start=request.start,
+        coarse=request.coarse,
+    )
+
+    def tractions_under(pressure: FloatArray, last: Tractions | None = None) -> Tractions:
+        if isinstance(motion, Rolling) and pressure[:, -2:].any():
+            raise WindowError(
+                "the contact reaches the last two cells along +y, and the slip of rolling follows from the two cells "
+                "ahead: widen the window along y"
+            )
+        with one_blas_thread():
+            return solve_tractions(motion, surfaces, pressure, friction, replace(traction_settings, last=last))
+
+    contact = contact_of(shape, settings)
+    tractions, converged = tractions_under(contact.pressure), True
+    if request.coupled:
+        converged = False
+        tolerance = max(settings.tolerance, LEAST_ACCURACY)
+        for number in range(ROUNDS):
+            bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
+            last = contact.pressure
+            contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
+            # The first coupled pressure determines the sliding columns; otherwise the iteration oscillates.
+            tractions = tractions_under(contact.pressure, tractions if number else None)
+            change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
+            if change <= tolerance:
+                converged = True
+                break
+        body = surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=ALL))
+        loads = dict(zip(ALL, (contact.pressure, *tractions.traction), strict=True))
+        with one_blas_thread():
+            contact = replace(contact, shape=shape, displacement=body(loads))
+    return FrictionalContact(contact, tractions, converged)
+
+
+def with_tractions(result: xr.Dataset, contact: FrictionalContact) -> xr.Dataset:
+    """Labelled contact with tractions and slip in place of full sliding."""
+    complete = result.assign(contact.dataset().data_vars)
+    complete["converged"] = contact.converged
+    return describe(complete)

@@ -1,0 +1,147 @@
+"""Preconditioners: the half-space's tangential compliance, inverted wavenumber by wavenumber.
+
+On uniform cells along both axes; on graded cells along y alone, with a matrix along x for each wavenumber.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy import fft
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
+from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.load import Load, Response
+from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
+
+
+class TangentialInverse:
+    """Inverse of the tangential compliance, or of its reversed derivative along y, on uniform cells."""
+
+    def __init__(self, materials: list[Material], cells: IntArray, cell: tuple[float, float], *, rolling: bool) -> None:
+        first = cells.min(axis=1)
+        self._cells, self._root = tuple(cells - first[:, None]), _leading_root(cells, rolling=rolling)
+        size = cells.max(axis=1) - first + 1
+        self._shape = tuple(fft.next_fast_len(int(2 * number), real=True) for number in size)
+        xx, xy, yy = (self._compliance(materials, direction, load, cell) for direction, load in COMPONENTS)
+        if rolling:
+            derivative = _derivative(self._shape[1], cell[1])
+            xx, xy, yy = derivative * xx, derivative * xy, derivative * yy
+        determinant = xx * yy - xy * xy
+        # Single precision suffices for a preconditioner. Speed.
+        parts = (yy / determinant, -xy / determinant, xx / determinant)
+        self._inverse = tuple(part.astype(np.complex64) for part in parts)
+
+    def _offsets(self, number: int, step: float) -> FloatArray:
+        return np.asarray(step * np.arange(number // 2 + 1.0))
+
+    def _compliance(
+        self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
+    ) -> ComplexArray:
+        """Spectrum of the displacement in one direction under a load in another."""
+        response = Response(direction, load)
+        x, y = (self._offsets(number, step) for number, step in zip(self._shape, cell, strict=True))
+        kernel = np.zeros((x.size, y.size))
+        for material in materials:
+            normalised = surface_kernel(response, material.poisson, x, y, cell)
+            kernel += normalised / (4 * np.pi * material.shear_modulus)
+        period = _unfold(_unfold(kernel, self._shape[0], response.sign_x, 0), self._shape[1], response.sign_y, 1)
+        return np.asarray(fft.rfft2(period))
+
+    def __call__(self, slip: FloatArray) -> FloatArray:
+        """Approximate tractions (2, cell) that relieve a slip (2, cell)."""
+        slip = slip / self._root
+        scale = float(np.abs(slip).max()) or 1.0
+        spectra = []
+        for component in slip:
+            layer = np.zeros(self._shape, np.float32)
+            layer[self._cells] = component / scale
+            spectra.append(fft.rfft2(layer))
+        xx, xy, yy = self._inverse
+        solution = (xx * spectra[0] + xy * spectra[1], xy * spectra[0] + yy * spectra[1])
+        tractions = np.stack([fft.irfft2(spectrum, self._shape)[self._cells] for spectrum in solution]).astype(
+            np.float64
+        )
+        return scale * self._root * tractions
+
+
+class ColumnsInverse:
+    """Inverse of the tangential compliance, or of its reversed derivative along y, on cells of any width."""
+
+    # In the transform along y, with components along y times i, it is a real matrix for each wavenumber.
+
+    def __init__(self, materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool) -> None:
+        (first, start), (last, stop) = cells.min(axis=1), cells.max(axis=1)
+        self._cells, self._root = tuple(cells - np.array([[first], [start]])), _leading_root(cells, rolling=rolling)
+        edges, count = grid.x_edges[first : last + 2], int(stop - start + 1)
+        self._rows, self._padded = int(last - first + 1), 2 * count
+        self._widths = np.diff(edges)
+        columns = ColumnsRequest(edges, grid.dy, count, (-np.inf, np.inf))
+        xx, xy, yy = (
+            sum(
+                columns.kernel(Response(*pair), material.poisson) / (4 * np.pi * material.shear_modulus)
+                for material in materials
+            )
+            for pair in COMPONENTS
+        )
+        self._inverse = np.linalg.inv(np.block([[xx, -xy], [xy, yy]]))
+        self._derivative = _derivative(self._padded, grid.dy) if rolling else np.ones(count + 1, dtype=np.complex128)
+
+    def __call__(self, slip: FloatArray) -> FloatArray:
+        """Approximate tractions (2, cell) that relieve a slip (2, cell)."""
+        layers = np.zeros((2, self._rows, self._padded))
+        layers[:, *self._cells] = slip / self._root
+        spectra = fft.rfft(layers) / self._derivative
+        spectra[1] *= -1j
+        pairs = spectra.reshape(2 * self._rows, -1).T
+        solution = np.matmul(self._inverse, np.stack([pairs.real, pairs.imag], axis=-1))
+        spectra = (solution[..., 0] + 1j * solution[..., 1]).T.reshape(spectra.shape)
+        spectra[1] *= 1j
+        tractions = fft.irfft(spectra, self._padded)[:, *self._cells]
+        return np.asarray(self._root * tractions / self._widths[self._cells[0]])
+
+
+def tangential_inverse(
+    materials: list[Material], cells: IntArray, grid: Grid, *, rolling: bool
+) -> TangentialInverse | ColumnsInverse:
+    """Return the inverse for uniform or graded cells."""
+    if not grid.observes_means:
+        return TangentialInverse(materials, cells, (grid.dx, grid.dy), rolling=rolling)
+    return ColumnsInverse(materials, cells, grid, rolling=rolling)
+
+
+def _derivative(cells: int, dy: float) -> ComplexArray:
+    """Spectrum of the reversed derivative along y on so many cells, as from `RollingCells.derivative`."""
+    # Taken at b = 1/2, later than in the solver, which damps short waves; the constant has 1.5 times the derivative of
+    # the first wavenumber. Speed.
+    phase = 2 * np.pi * np.arange(cells // 2 + 1) / cells
+    derivative = -(np.exp(1j * phase) - 1.0) / dy
+    return np.asarray(derivative + 1.5 * phase[1] / dy)
+
+
+def _leading_root(cells: IntArray, *, rolling: bool) -> FloatArray:
+    """Root with which tractions begin behind the leading edge of each row: array (cell)."""
+    # The derivative along y is a Hilbert transform; its inverse on an interval is that on the line between this factor
+    # and its reciprocal.
+    if not rolling:
+        return np.ones(cells.shape[1])
+    row, column = cells
+    first, last = np.full(row.max() + 1, column.max()), np.zeros(row.max() + 1, dtype=np.int64)
+    np.minimum.at(first, row, column)
+    np.maximum.at(last, row, column)
+    return np.asarray(np.sqrt((last[row] + 0.5 - column) / (last[row] - first[row] + 1.0)))
+
+
+COMPONENTS = ((Load.ALONG_X, Load.ALONG_X), (Load.ALONG_X, Load.ALONG_Y), (Load.ALONG_Y, Load.ALONG_Y))
+
+
+def _unfold(kernel: FloatArray, number: int, sign: int, axis: int) -> FloatArray:
+    """Values at all offsets of a period, from the values at non-negative offsets."""
+    half = kernel.shape[axis]
+    back = np.flip(np.take(kernel, np.arange(1, number - half + 1), axis=axis), axis=axis)
+    return np.concatenate([kernel, sign * back], axis=axis)
+
+
+def contact_cells(mask: BoolArray) -> IntArray:
+    """Rows and columns (2, cell) of the cells of a mask (x, y)."""
+    return np.argwhere(mask).T

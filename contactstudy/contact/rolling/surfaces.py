@@ -1,0 +1,175 @@
+"""The surfaces in contact, the rigid motions between them, and the tractions and slip of a contact."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, Protocol
+
+import numpy as np
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies.material import Material
+from contactstudy.case.motion import Rolling, Shift
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.normal.pair import ScaledOperator
+from contactstudy.errors import InvalidInputError
+from contactstudy.kernels.load import Load
+
+TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)
+"""Directions of tractions and slip, in the order of every array of two components."""
+
+
+class RelativeOperator(Protocol):
+    """Displacements of the surfaces relative to each other."""
+
+    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
+        """Displacements (m) in `directions` under loads on the first body (Pa)."""
+        ...
+
+    @property
+    def coarse(self) -> RelativeOperator | ScaledOperator:
+        """Approximate operator on cells of twice the size; a scaled one has normal displacements only."""
+        ...
+
+
+class Surfaces(NamedTuple):
+    """Bodies and cells."""
+
+    operator: RelativeOperator  # displacements relative to each other
+    grid: Grid
+    materials: list[Material]  # of the elastic bodies
+    middle: float  # position x about which spin and moment are counted, metres
+
+    @property
+    def areas(self) -> FloatArray:
+        """Areas of the cells, square metres: array (x, y)."""
+        return np.broadcast_to(self.grid.cell_area * self.grid.weights, self.grid.shape)
+
+    @property
+    def weights(self) -> FloatArray:
+        """Weights of force along x, force along y and moment about z: array (3, 2, x, y)."""
+        grid = self.grid
+        weights = np.zeros((3, 2, *grid.shape))
+        weights[0, 0] = weights[1, 1] = 1.0
+        weights[2, 0], weights[2, 1] = -grid.y, (grid.x - self.middle)[:, None]
+        return weights * self.areas
+
+    def rigid_slip(self, name: str, x: FloatArray, y: FloatArray) -> FloatArray:
+        """Slip (2, ...) of a rigid motion of unit amplitude at positions."""
+        x, y = np.broadcast_arrays(x - self.middle, y)
+        if name == "spin":
+            return np.stack([-y, x])  # eq. (44)
+        slip = np.zeros((2, *x.shape))
+        slip["xy".index(name)] = 1.0
+        return slip
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Tractions:
+    """Tractions on the body, and the slip of the roller against it."""
+
+    traction: FloatArray  # (2, x, y): along x and y, Pa
+    slip: FloatArray
+    """(2, x, y): along x and y: per distance rolled, or metres in a shift; 0 outside the contact and where cells
+    stick."""
+    sticks: BoolArray  # (x, y): sticking cells of the contact
+    rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
+    force_x: float  # resultants on the body, N and N m
+    force_y: float
+    moment_z: float
+    work: float  # frictional work: per distance rolled, J/m, or of the shift, J
+    bound_error: float = 0.0
+    """Certificate, recomputed: traction above the bound, over the largest bound; slip where cells stick, and slip
+    across or against the traction elsewhere, over the rigid slip; error of prescribed resultants, over the
+    largest."""
+    slip_error: float = 0.0
+    force_error: float = 0.0
+    steps: int = 0  # Newton steps
+    converged: bool = True  # whether the tolerance was reached
+
+
+def motion_names(motion: Shift | Rolling) -> tuple[str, ...]:
+    """Names of the rigid motions."""
+    return ("x", "y", "spin") if isinstance(motion, Rolling) else ("x", "y")
+
+
+def prescribed_amplitude(motion: Shift | Rolling, name: str) -> float:
+    """Prescribed amplitude of a rigid motion; 0 where its force is prescribed."""
+    names = {"x": "x", "y": "y"}
+    if isinstance(motion, Rolling):
+        names = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
+    return getattr(motion, names[name]) or 0.0
+
+
+def prescribed_resultant(motion: Shift | Rolling, name: str) -> float:
+    """Prescribed force or moment."""
+    return float(getattr(motion, {"x": "force_x", "y": "force_y", "spin": "moment_z"}[name]))
+
+
+def zero_tractions(motion: Shift | Rolling, surfaces: Surfaces) -> Tractions:
+    """Tractions and slip where the friction is 0 everywhere."""
+    shape = surfaces.grid.shape
+    return Tractions(
+        traction=np.zeros((2, *shape)),
+        slip=np.zeros((2, *shape)),
+        sticks=np.zeros(shape, bool),
+        rigid={name: prescribed_amplitude(motion, name) for name in motion_names(motion)},
+        force_x=0.0,
+        force_y=0.0,
+        moment_z=0.0,
+        work=0.0,
+    )
+
+
+def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray) -> None:
+    """Raise if tractions within their bound (x, y) cannot make the prescribed resultants with these `weights`."""
+    modes = motion.modes
+    resultants = np.array([prescribed_resultant(motion, name) for name in modes])
+    if not modes or (bound.any() and not resultants.any()):
+        return
+    names = [{"x": "force_x", "y": "force_y", "spin": "moment_z"}[name] for name in modes]
+    works = weights[[("x", "y", "spin").index(name) for name in modes]]
+    largest = _largest_multiple(resultants, bound, works)
+    # At all of full sliding's force the rigid slip is undetermined.
+    if largest * (1 - 1e-9) > 1:
+        return
+    units = {"spin": "N m"}
+    limits = ", ".join(
+        f"{name} = {largest * value:.6g} {units.get(mode, 'N')}"
+        for name, mode, value in zip(names, modes, resultants, strict=True)
+    )
+    raise InvalidInputError(
+        ", ".join(names),
+        tuple(resultants.tolist()),
+        f"less than full sliding's {limits}",
+        "friction times the pressure carries no more; full sliding along y is the motion Sliding()",
+    )
+
+
+def _largest_multiple(resultants: FloatArray, bound: FloatArray, works: FloatArray) -> float:
+    """Largest multiple of the resultants that tractions within their bound (x, y) make."""
+    # Tractions along a slip ``d . works`` make the largest resultant along d: the multiple is the least over the
+    # directions d of a convex function, so a descent approaches it from above.
+    from scipy.optimize import minimize
+
+    pressed = bound > 0
+    bounds, works = bound[pressed], works[:, :, pressed]
+    sizes = np.array([float((bounds * np.hypot(*work)).sum()) for work in works])
+    able = sizes > 0
+    if resultants[~able].any() or not able.any():
+        return 0.0
+    works, target = works[able] / sizes[able, None, None], resultants[able] / sizes[able]
+    direction = target / (target @ target)
+    across = np.linalg.svd(direction[None, :])[2][1:]
+
+    def resultant(turn: FloatArray) -> tuple[float, FloatArray]:
+        slip = np.tensordot(direction + turn @ across, works, axes=1)
+        size = np.hypot(*slip)
+        gradient = (works * (bounds * slip / np.where(size > 0, size, 1.0))).sum(axis=(1, 2))
+        return float((bounds * size).sum()), across @ gradient
+
+    start = np.zeros(len(target) - 1)
+    if not start.size:
+        return resultant(start)[0]
+    return float(minimize(resultant, start, jac=True, method="BFGS").fun)

@@ -1,0 +1,300 @@
+"""Tractions of a contact under Coulomb friction: after a shift, or in steady rolling."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.case.motion import Rolling, Shift
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.pair import ScaledOperator
+from contactstudy.contact.rolling.coulomb import (
+    CoulombProblem,
+    CoulombSolution,
+    Guess,
+    law_violation,
+    solve_with_continuation,
+)
+from contactstudy.contact.rolling.fastsim import solve_strips
+from contactstudy.contact.rolling.leading_edge import RollingCells, neighbour_shares
+from contactstudy.contact.rolling.preconditioners import contact_cells, tangential_inverse
+from contactstudy.contact.rolling.surfaces import (
+    TANGENTIAL,
+    Surfaces,
+    Tractions,
+    check_forces,
+    motion_names,
+    prescribed_amplitude,
+    prescribed_resultant,
+    zero_tractions,
+)
+from contactstudy.kernels.load import Load
+
+NESTED_CELLS = 600  # least number of cells of a contact that is first solved on coarser cells. Speed.
+ROUGH_TOLERANCE = 1e-3  # tolerance on coarser cells, and of the solution that determines the sliding columns. Speed.
+LARGEST_STICKING = 0.999  # largest part of its bound of a sticking cell in a guess. Speed.
+
+
+class CoarseTractions(NamedTuple):
+    """A solution on coarser cells."""
+
+    grid: Grid  # cells; half as many along y, and along x half as many or the same
+    bound: FloatArray  # (x, y): bound on the traction, Pa
+    tractions: Tractions  # the solution
+
+
+@dataclass(frozen=True, kw_only=True)
+class TractionSettings:
+    """Settings of a traction problem."""
+
+    tolerance: float  # violation of Coulomb's law at which the iteration stops
+    max_steps: int  # bound on the Newton steps
+    start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
+    coarse: CoarseTractions | None = None
+    """Solution on coarser cells as a guess. Default: on many uniform cells it is computed first."""
+    last: Tractions | None = None
+    """Tractions under almost the same pressure as a guess, which also determine the sliding columns."""
+
+
+def solve_tractions(
+    motion: Shift | Rolling,
+    surfaces: Surfaces,
+    pressure: FloatArray,
+    friction: FloatArray,
+    settings: TractionSettings,
+) -> Tractions:
+    """Tractions under a pressure."""
+    grid = surfaces.grid
+    bound = friction * pressure
+    rolling = isinstance(motion, Rolling)
+    shares = neighbour_shares(grid.x, grid.widths, grid.dy)
+    cells = RollingCells.of(pressure, bound, shares) if rolling else _shift_cells(bound)
+    check_forces(motion, bound, surfaces.weights)
+    if not cells.unknown.size:
+        return zero_tractions(motion, surfaces)
+    if isinstance(motion, Rolling) and motion.model == "fastsim":
+        return solve_strips(motion, surfaces, bound)
+    displaced = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
+    if settings.start is not None:
+        for direction, initial in surfaces.operator.displaced(settings.start, TANGENTIAL).items():
+            displaced[direction] = displaced[direction] - initial
+
+    def solve(cells: RollingCells, tolerance: float, guess: Guess | None) -> Tractions:
+        problem = _coulomb_problem(motion, surfaces, bound, cells, displaced)
+        problem = replace(problem, tolerance=tolerance, max_steps=settings.max_steps)
+        solution = solve_with_continuation(problem, guess)
+        return _complete_tractions(problem, solution, motion, cells, surfaces)
+
+    steps, last = 0, settings.last
+    if last is None or not rolling:
+        coarse = settings.coarse
+        if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
+            coarse = _solve_coarse(motion, surfaces, pressure, bound, settings)
+        guess = None if coarse is None else guess_from_coarse(coarse, cells, bound, motion.modes)
+        last = solve(cells, max(settings.tolerance, ROUGH_TOLERANCE) if rolling else settings.tolerance, guess)
+        if not rolling:
+            return last
+        if not last.converged:
+            return _with_mean_slip(last, surfaces, displaced)
+        steps = last.steps
+    slides = np.asarray(bound.any(axis=1) & ~last.sticks.any(axis=1))
+    cells = RollingCells.of(pressure, bound, shares, slides)
+    tractions = solve(cells, settings.tolerance, guess_from_last(last, cells, bound, motion.modes))
+    return replace(_with_mean_slip(tractions, surfaces, displaced), steps=steps + tractions.steps)
+
+
+def _coulomb_problem(
+    motion: Shift | Rolling,
+    surfaces: Surfaces,
+    bound: FloatArray,
+    cells: RollingCells,
+    displaced: Mapping[Load, FloatArray],
+) -> CoulombProblem:
+    """Coulomb's law on the cells, with the displacement under the pressure and the initial tractions."""
+    grid, rolling = surfaces.grid, isinstance(motion, Rolling)
+
+    def elastic_slip(displacements: Mapping[Load, FloatArray]) -> FloatArray:
+        """Slip (2, unknown) due to displacements."""
+        if rolling:
+            return np.stack([cells.derivative(displacements[direction], grid.dy) for direction in TANGENTIAL])
+        return np.stack([-displacements[direction][tuple(cells.unknown)] for direction in TANGENTIAL])
+
+    def relief(traction: FloatArray) -> FloatArray:
+        on_grid = cells.on_grid(traction, grid.shape)
+        return -elastic_slip(surfaces.operator.displaced(dict(zip(TANGENTIAL, on_grid, strict=True)), TANGENTIAL))
+
+    names, modes, weights = motion_names(motion), motion.modes, surfaces.weights
+    row, column = cells.unknown
+    x, y = grid.x[row], grid.y[column] + cells.offset * grid.dy
+    unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in names}
+    rigid = elastic_slip(displaced) + sum(
+        (prescribed_amplitude(motion, name) * unit_slips[name] for name in names if name not in modes),
+        np.zeros((2, 1)),
+    )  # eq. (44)
+    works = np.array([cells.gather(weights[names.index(name)]) for name in modes])
+    return CoulombProblem(
+        relief=relief,
+        inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
+        bound=bound[tuple(cells.unknown)],
+        rigid=rigid,
+        modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
+        works=works.reshape(len(modes), *rigid.shape),
+        resultants=np.array([prescribed_resultant(motion, name) for name in modes]),
+        shares=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
+        symmetric=not rolling,
+    )
+
+
+def _solve_coarse(
+    motion: Shift | Rolling,
+    surfaces: Surfaces,
+    pressure: FloatArray,
+    bound: FloatArray,
+    settings: TractionSettings,
+) -> CoarseTractions | None:
+    """Solve on cells of twice the size; None on graded cells, or where these do not exist."""
+    grid = surfaces.grid
+    if grid.cells_x % 2 or grid.cells_y % 2 or not grid.uniform:
+        return None
+    operator = surfaces.operator.coarse
+    if isinstance(operator, ScaledOperator):
+        return None
+    coarse_pressure, coarse_bound = cell_means(pressure), cell_means(bound)
+    coarse = grid.coarsened()
+    start = settings.start
+    tractions = solve_tractions(
+        motion,
+        surfaces._replace(operator=operator, grid=coarse),
+        coarse_pressure,
+        coarse_bound / np.where(coarse_pressure > 0, coarse_pressure, 1.0),
+        TractionSettings(
+            tolerance=ROUGH_TOLERANCE,
+            max_steps=settings.max_steps,
+            start=None if start is None else {load: cell_means(values) for load, values in start.items()},
+        ),
+    )
+    return CoarseTractions(coarse, coarse_bound, tractions)
+
+
+def _complete_tractions(
+    problem: CoulombProblem,
+    solution: CoulombSolution,
+    motion: Shift | Rolling,
+    cells: RollingCells,
+    surfaces: Surfaces,
+) -> Tractions:
+    """Resultants and certificate of a solution, recomputed from its tractions."""
+    modes, grid, weights = motion.modes, surfaces.grid, surfaces.weights
+    cell_slip = problem.slip(solution.traction, solution.amplitudes)
+    scale = problem.slip_scale(solution.amplitudes)
+    bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
+    traction = cells.on_grid(solution.traction, grid.shape)
+    slip, sticks = np.zeros_like(traction), np.zeros(grid.shape, bool)
+    slip[:, cells.unknown[0], cells.unknown[1]] = np.where(solution.sticks, 0.0, cell_slip)
+    sticks[tuple(cells.unknown)] = solution.sticks
+    for row, column, number in zip(*cells.tied, cells.to, strict=True):
+        slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[number]
+    resultants = (weights * traction).sum(axis=(1, 2, 3))
+    prescribed = dict(zip(modes, problem.resultants, strict=True))
+    largest = (np.abs(weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2))
+    errors = [
+        abs(resultants[number] - prescribed[name]) / max(largest[number], 1e-300)
+        for number, name in enumerate(("x", "y", "spin"))
+        if name in prescribed
+    ]
+    unknown = dict(zip(modes, solution.amplitudes.tolist(), strict=True))
+    return Tractions(
+        traction=traction,
+        slip=slip,
+        sticks=sticks,
+        rigid={name: unknown.get(name, prescribed_amplitude(motion, name)) for name in motion_names(motion)},
+        force_x=float(resultants[0]),
+        force_y=float(resultants[1]),
+        moment_z=float(resultants[2]),
+        work=float((traction * slip * surfaces.areas).sum()),
+        bound_error=bound_error,
+        slip_error=slip_error,
+        force_error=float(max(errors, default=0.0)),
+        steps=solution.steps,
+        converged=solution.converged,
+    )
+
+
+def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping[Load, FloatArray]) -> Tractions:
+    """Tractions of rolling with the frictional work per distance, and the mean slip of each slipping cell."""
+    # Means over cells are central differences: by reciprocity the sum then equals the work of the rigid slip. The slip
+    # is scaled to that work; a cell inside which slip begins counts as sticking; beside a cell without pressure it is
+    # kept.
+    grid, traction = surfaces.grid, tractions.traction
+    moved = surfaces.operator.displaced(dict(zip(TANGENTIAL, traction, strict=True)), TANGENTIAL)
+    total = np.stack([displaced[direction] + moved[direction] for direction in TANGENTIAL])
+    mean = np.gradient(total, grid.dy, axis=2)  # eq. (44)
+    for name, amplitude in tractions.rigid.items():
+        mean += amplitude * surfaces.rigid_slip(name, grid.x[:, None], grid.y)
+    work = float((traction * mean * surfaces.areas).sum())
+    size = np.hypot(*traction)
+    direction = traction / np.where(size > 0, size, 1.0)
+    loaded = np.pad(size > 0, ((0, 0), (1, 1)))
+    parallel = (mean * direction).sum(axis=0)
+    inner = loaded[:, :-2] & loaded[:, 2:] & ~tractions.sticks & (parallel > 0)
+    slip = np.where(inner, parallel * direction, tractions.slip)
+    cells_work = float((traction * slip * surfaces.areas).sum())
+    scale = work / cells_work if min(work, cells_work) > 0 else 1.0
+    return replace(tractions, slip=slip * scale, work=work)
+
+
+def _shift_cells(bound: FloatArray) -> RollingCells:
+    """Cells of a shifted contact: all cells that carry a traction are unknown."""
+    unknown = contact_cells(bound > 0)
+    empty = np.zeros((2, 0), dtype=np.int64)
+    return RollingCells(unknown, np.zeros(unknown.shape[1]), empty, empty[0], np.zeros(0))
+
+
+def guess_from_coarse(coarse: CoarseTractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:
+    """Guess for finer cells with a bound (x, y)."""
+    row, column = cells.unknown
+    factor = bound.shape[0] // coarse.grid.cells_x
+    part = coarse.tractions.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
+    # Slipping cells have all of their bound; inside the stick zone the part is interpolated.
+    parents = row // factor, column // 2
+    fine = _halve_cells(part, 2)
+    if factor == 2:
+        fine = _halve_cells(fine, 1)
+    smooth = fine[:, row, column]
+    size = np.hypot(*smooth)
+    limited = smooth * np.minimum(1.0, LARGEST_STICKING / np.where(size > 0, size, 1.0))
+    sticks = coarse.tractions.sticks[parents]
+    traction = np.where(sticks, limited, part[:, parents[0], parents[1]]) * bound[row, column]
+    return Guess(traction, np.array([coarse.tractions.rigid[name] for name in modes]))
+
+
+def guess_from_last(last: Tractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:
+    """Guess from tractions on the same cells under a bound (x, y) that was almost the same."""
+    unknown = tuple(cells.unknown)
+    traction, limit = last.traction[:, *unknown], bound[unknown]
+    size = np.hypot(*traction)
+    limited = np.where(last.sticks[unknown], np.minimum(size, LARGEST_STICKING * limit), limit)
+    amplitudes = np.array([last.rigid[name] for name in modes])
+    return Guess(traction * (limited / np.where(size > 0, size, 1.0)), amplitudes)
+
+
+def cell_means(values: FloatArray) -> FloatArray:
+    """Means (x, y) over cells of twice the size."""
+    rows, columns = values.shape
+    return np.asarray(values.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3)))
+
+
+def _halve_cells(values: FloatArray, axis: int) -> FloatArray:
+    """Values (component, x, y) on cells of half the size along an axis, linear between the centres."""
+    first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
+    padded = np.concatenate([first, values, last], axis=axis)
+    count = values.shape[axis]
+    middle, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
+    halves = np.stack([0.75 * middle + 0.25 * low, 0.75 * middle + 0.25 * high], axis=axis + 1)
+    shape = list(values.shape)
+    shape[axis] *= 2
+    return halves.reshape(shape)

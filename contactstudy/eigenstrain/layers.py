@@ -1,0 +1,115 @@
+"""Residual stress of eigenstrains in layers of a half-space that change along y, and not along x.
+
+One wave along y makes of the plane problem in (y, z) one over depth, and of Airy's function
+``f(z) exp(i k y)`` with ``s_yy = f''``, ``s_zz = -k**2 f``, ``s_yz = -i k f'``; with no total strain along x the
+complementary energy (`stress_function`) is least where
+
+    (1 - nu**2) / E  int f'' h'' + 2 k**2 f' h' + k**4 f h
+        =  -int (e_yy + nu e_xx) h'' - k**2 (e_zz + nu e_xx) h + 2 i k e_yz h'
+
+for all h. Likewise for ``t_xy = g'``, ``t_xz = -i k g`` across the plane. With e_yz, e_xz over i all is real.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from contactstudy.bodies.material import Material
+from contactstudy.checks import FloatArray
+from contactstudy.eigenstrain.body import DEGREE, FAR, XX, XY, XZ, YY, YZ, ZZ, grown, towards_face
+from contactstudy.eigenstrain.stress_function import Splines
+
+
+@dataclass(frozen=True, eq=False)
+class LayerInfluence:
+    """Influence of endless layers: strains along x and y are zero, the stresses zz, xz and yz are zero."""
+
+    poisson: float
+    young: float
+
+    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
+        """Residual stresses (6, layer) from eigenstrains (6, layer)."""
+        e, nu = eigenstrain, self.poisson
+        stress = np.zeros_like(e)
+        modulus = self.young / (1 - nu**2)
+        stress[XX], stress[YY] = -modulus * (e[XX] + nu * e[YY]), -modulus * (e[YY] + nu * e[XX])
+        stress[XY] = -self.young / (1 + nu) * e[XY]
+        return stress
+
+
+@dataclass(frozen=True, eq=False)
+class PeriodicLayers:
+    """Layers whose eigenstrain is given at equal distances along y, on a closed path."""
+
+    material: Material
+    z_edges: FloatArray  # edges of the layers, metres
+    places: int  # places along y
+    step: float  # distance from one place to the next, metres; negative where y falls
+
+    @cached_property
+    def _waves(self) -> FloatArray:
+        """Wavenumbers along the way from 0 on, 1/m."""
+        return np.asarray(2 * np.pi * np.fft.rfftfreq(self.places, abs(self.step)))
+
+    @cached_property
+    def _elements(self) -> FloatArray:
+        """Edges of the elements over depth: the layers, and elements above and below."""
+        z = self.z_edges
+        above = towards_face(z[0], 0.0, z[1] - z[0])[::-1]
+        return np.concatenate([above, z, grown(z[-1], FAR * z[-1], z[-1] - z[-2])])
+
+    def _matrices(self, degree: int, order: int) -> FloatArray:
+        """Stresses (or their part over i) in the layers per eigenstrain, over minus the modulus, for every wave."""
+        splines = Splines(self._elements, degree, continuity=order - 1, vanishing=order)
+        products = [splines.products(derivative).toarray() for derivative in range(order + 1)]
+        parts = [splines.integrals(self.z_edges, derivative) for derivative in range(order + 1)]
+        heights = np.tile(np.diff(self.z_edges), order + 1)
+        matrices = np.zeros((self._waves.size, heights.size, heights.size))
+        # Without a change along y only strains in the layers' own plane are held.
+        uniform = np.arange(self.z_edges.size - 1)
+        matrices[0, uniform, uniform] = 1.0 if order == 2 else 2.0
+        for number, k in enumerate(self._waves[1:], 1):
+            if order == 2:  # yy, zz, yz
+                energy = products[2] + 2 * k**2 * products[1] + k**4 * products[0]  # eq. (504)
+                integrals = np.concatenate([parts[2], -(k**2) * parts[0], -k * parts[1]], axis=1)
+                counts = np.repeat([1.0, 1.0, 2.0], heights.size // 3)
+            else:  # xy, xz
+                energy = products[1] + k**2 * products[0]
+                integrals = np.concatenate([parts[1], k * parts[0]], axis=1)
+                counts = np.full(heights.size, 2.0)
+            scale = 1 / np.sqrt(np.diag(energy))[:, None]
+            solved = scale * np.linalg.solve(scale * energy * scale.T, scale * integrals)
+            matrices[number] = integrals.T @ solved * counts / heights[:, None]
+        return matrices
+
+    @cached_property
+    def _in_plane(self) -> FloatArray:
+        return -self.material.plane_strain_modulus * self._matrices(DEGREE, 2)
+
+    @cached_property
+    def _across(self) -> FloatArray:
+        return -self.material.shear_modulus * self._matrices(DEGREE - 1, 1)
+
+    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
+        """Residual stresses (6, place, column, layer) from eigenstrains of this shape; every column is on its own."""
+        e, nu = eigenstrain, self.material.poisson
+        stress = np.zeros_like(e)
+        stress[[YY, ZZ, YZ]] = self._apply(self._in_plane, np.stack([e[YY] + nu * e[XX], e[ZZ] + nu * e[XX], e[YZ]]))
+        stress[XX] = nu * (stress[YY] + stress[ZZ]) - self.material.young * e[XX]
+        if e[[XY, XZ]].any():
+            stress[[XY, XZ]] = self._apply(self._across, e[[XY, XZ]])
+        return stress
+
+    def _apply(self, matrices: FloatArray, strains: FloatArray) -> FloatArray:
+        """Stresses (part, place, column, layer) of strains of this shape; the last part is over i."""
+        parts, places, columns, layers = strains.shape
+        waves = np.fft.rfft(strains, axis=1)
+        waves[-1] *= -1j * np.sign(self.step)
+        waves = waves.transpose(1, 0, 3, 2).reshape(-1, parts * layers, columns)
+        products = matrices @ np.concatenate([waves.real, waves.imag], axis=2)
+        waves = (products[..., :columns] + 1j * products[..., columns:]).reshape(-1, parts, layers, columns)
+        waves[:, -1] *= 1j * np.sign(self.step)
+        return np.fft.irfft(waves.transpose(1, 0, 3, 2), n=places, axis=1)

@@ -1,0 +1,239 @@
+"""Arrays of the page's figures: pressure along the axis and on the top, stress in a plane, on equal pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis import measure, positions
+from contactstudy.analysis.axes import dimension_along
+from contactstudy.checks import Array, BoolArray, FloatArray
+from contactstudy.plots.singular import near_singular, singular_ends
+
+PIXELS = (360, 150)  # Pixels of an image, horizontal and vertical
+END_REGION = 8.0  # Length of the region near an end, over the Hertz half-width
+REGIONS = ("whole length", "near end I", "near end II")
+
+PLANES = ("y = 0, along the roller", "x, across the roller", "z, at a depth")
+"""Planes of the stresses; the first letter is the axis across the plane."""
+
+Span = tuple[float, float]
+
+
+class CaseFields:
+    """Fields of a case as arrays, each computed once; `load_stresses` returns the case with its six stresses."""
+
+    def __init__(self, dataset: xr.Dataset, load_stresses: Callable[[], xr.Dataset] | None = None) -> None:
+        self.dataset = dataset
+        self._load_stresses = load_stresses or (lambda: dataset)
+        self._stresses: dict[str, FloatArray] = {}
+
+    @property
+    def has_pressure(self) -> bool:
+        """Whether the case has surfaces."""
+        return "pressure" in self.dataset
+
+    @cached_property
+    def has_stress(self) -> bool:
+        """Whether the case has stresses."""
+        return "von_mises" in self.dataset and not bool(self.dataset["von_mises"].isnull().all())
+
+    @cached_property
+    def hertz(self) -> tuple[float, float] | None:
+        """Half-width and pressure of Hertz' line contact, or None."""
+        if "hertz_half_width" not in self.dataset:
+            return None
+        return float(self.dataset["hertz_half_width"]), float(self.dataset["hertz_max_pressure"])
+
+    @cached_property
+    def cells(self) -> tuple[FloatArray, FloatArray]:
+        """Positions of the cells along x and y."""
+        x, y = (positions(self.dataset["pressure"], axis).values for axis in "xy")
+        return x, y
+
+    @cached_property
+    def pressure(self) -> FloatArray:
+        """Pressure (x, y)."""
+        return _values(self.dataset["pressure"], "xy")
+
+    @cached_property
+    def axial_pressure(self) -> FloatArray:
+        """Largest pressure across y, along x."""
+        return np.asarray(self.pressure.max(axis=1))
+
+    @cached_property
+    def singular_ends(self) -> list[float]:
+        """Positions of singular ends."""
+        return singular_ends(self.dataset)
+
+    def near_singular(self, x: FloatArray) -> BoolArray:
+        """Positions too near to a singular end to be drawn."""
+        return near_singular(self.dataset, self.singular_ends, x)
+
+    @cached_property
+    def pressure_limit(self) -> float:
+        """Largest pressure that is drawn."""
+        return _limit(self.pressure, self.near_singular(self.cells[0]))
+
+    @cached_property
+    def points(self) -> dict[str, FloatArray]:
+        """Positions of the stresses along each axis."""
+        return {axis: positions(self.dataset["von_mises"], axis).values for axis in "xyz"}
+
+    def stress(self, name: str = "von_mises") -> FloatArray:
+        """Stress measure (x, y, z)."""
+        if name not in self._stresses:
+            source = self.dataset if name in self.dataset else self._load_stresses()
+            self._stresses[name] = _values(measure(source, name), "xyz")
+        return self._stresses[name]
+
+    def stress_limit(self, name: str = "von_mises") -> float:
+        """Largest value of a stress measure that is drawn."""
+        x = self.points["x"]
+        near = self.near_singular(x) if self.has_pressure else np.zeros(x.size, dtype=bool)
+        return _limit(self.stress(name), near)
+
+
+def _values(array: xr.DataArray, axes: str) -> FloatArray:
+    """Values of a field with its axes in this order."""
+    return np.asarray(array.transpose(*(dimension_along(array, axis) for axis in axes)).values)
+
+
+def _limit(values: FloatArray, near: BoolArray) -> float:
+    """Largest value away from singular ends, or of all values."""
+    drawn = values[~near] if near.any() and not near.all() else values
+    return float(np.nanmax(drawn, initial=0.0))
+
+
+class Scale(NamedTuple):
+    """Units of the page: size of a length and of a stress in SI, and their names on axes."""
+
+    length: float
+    stress: float
+    length_name: str
+    stress_name: str
+
+
+class Line(NamedTuple):
+    """Pressure along the axis, and positions of singular ends."""
+
+    x: FloatArray
+    pressure: FloatArray
+    singular: list[float]
+
+
+class Image(NamedTuple):
+    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the largest colour."""
+
+    values: Array
+    horizontal: Span
+    vertical: Span
+    limit: float
+    names: tuple[str, str]
+    position: str = ""
+
+
+def choose_scale(case: CaseFields, *, relative: bool) -> Scale:
+    """Return mm and MPa, or half-width and pressure of Hertz' line contact."""
+    if relative and case.hertz is not None:
+        return Scale(*case.hertz, "/a", "/p0")
+    return Scale(1e-3, 1e6, " (mm)", " (MPa)")
+
+
+def region_limits(case: CaseFields, name: str) -> Span:
+    """Return the limits of a region along the axis, metres."""
+    x, _ = case.cells
+    low, high = float(x.min()), float(x.max())
+    loaded = x[case.axial_pressure > 0]
+    if name == REGIONS[0] or not loaded.size or case.hertz is None:
+        return low, high
+    length = END_REGION * case.hertz[0]
+    if name == REGIONS[1]:
+        return max(low, loaded[0] - 0.25 * length), min(high, loaded[0] + 0.75 * length)
+    return max(low, loaded[-1] - 0.75 * length), min(high, loaded[-1] + 0.25 * length)
+
+
+def axial_line(case: CaseFields, scale: Scale) -> Line:
+    """Return the largest pressure across the contact along the axis, without the vicinity of singular ends."""
+    x, _ = case.cells
+    values = np.where(case.near_singular(x), np.nan, case.axial_pressure / scale.stress)
+    return Line(x / scale.length, values, [end / scale.length for end in case.singular_ends])
+
+
+def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
+    """Return the pressure on the top of the body."""
+    _, y = case.cells
+    spans = (limits, (float(y[0]), float(y[-1])))
+    return _image(case.pressure, case.cells, spans, case.pressure_limit, scale, "xy")
+
+
+def plane_image(
+    case: CaseFields, scale: Scale, limits: Span, kind: str, fraction: float, *, name: str = "von_mises"
+) -> Image | None:
+    """Return a stress measure in a plane at a fraction of its points; None without stresses or with too few points."""
+    if not case.has_stress:
+        return None
+    points, normal = case.points, kind[0]
+    horizontal, vertical = (axis for axis in "xyz" if axis != normal)
+    on_axis = points["y"][0] <= 0 <= points["y"][-1]
+    if min(points[horizontal].size, points[vertical].size) < 2 or (normal == "y" and not on_axis):
+        return None
+    first, last = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
+    position = 0.0 if normal == "y" else first + fraction * (last - first)
+    values = interpolate_plane(case.stress(name), points[normal], position, "xyz".index(normal))
+    spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
+    if horizontal == "x":
+        spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
+    axes = (points[horizontal], points[vertical])
+    image = _image(values, axes, (spans[0], spans[1]), case.stress_limit(name), scale, horizontal + vertical)
+    unit = scale.length_name.strip(" ()/")
+    return image._replace(position=f" at {normal} = {position / scale.length:.3g} {unit}")
+
+
+def _image(
+    values: FloatArray,
+    axes: tuple[FloatArray, FloatArray],
+    spans: tuple[Span, Span],
+    limit: float,
+    scale: Scale,
+    names: str,
+) -> Image:
+    """Image in the units of the page."""
+    pixels = to_pixels(values, axes, spans, PIXELS) / scale.stress
+    labels = {"x": "distance from the free end, x", "y": "position along rolling, y", "z": "depth, z"}
+    first, second = (f"{labels[name]}{scale.length_name}" for name in names)
+    (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
+    clipped = np.minimum(pixels, limit / scale.stress).astype(np.float32)
+    return Image(clipped, (left, right), (low, high), limit / scale.stress, (first, second))
+
+
+def to_pixels(
+    values: FloatArray, axes: tuple[FloatArray, FloatArray], spans: tuple[Span, Span], shape: tuple[int, int]
+) -> FloatArray:
+    """Return values (horizontal, vertical) at the centres of pixels (vertical, horizontal): linear, constant beyond."""
+    for axis, (points, span, count) in enumerate(zip(axes, spans, shape, strict=True)):
+        if points.size == 1:
+            values = np.repeat(values, count, axis=axis)
+            continue
+        centres = span[0] + (np.arange(count) + 0.5) * (span[1] - span[0]) / count
+        lower = np.clip(np.searchsorted(points, centres) - 1, 0, points.size - 2)
+        weight = np.clip((centres - points[lower]) / (points[lower + 1] - points[lower]), 0.0, 1.0)
+        weight = weight[:, None] if axis == 0 else weight
+        values = (1 - weight) * values.take(lower, axis) + weight * values.take(lower + 1, axis)
+    return np.ascontiguousarray(values.T)
+
+
+def interpolate_plane(values: FloatArray, points: FloatArray, position: float, axis: int) -> FloatArray:
+    """Return values in a plane across an axis: linear between points, constant beyond the outermost."""
+    lower = int(np.clip(np.searchsorted(points, position) - 1, 0, max(points.size - 2, 0)))
+    upper = min(lower + 1, points.size - 1)
+    step = points[upper] - points[lower]
+    weight = float(np.clip((position - points[lower]) / step, 0.0, 1.0)) if upper > lower else 0.0
+    first, last = (np.asarray(values.take(number, axis)) for number in (lower, upper))
+    if weight in (0.0, 1.0):  # a plane of points without the NaN of its neighbour
+        return last if weight else first
+    return (1 - weight) * first + weight * last

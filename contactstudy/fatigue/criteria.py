@@ -1,0 +1,406 @@
+"""Multiaxial fatigue criteria: Dang Van's, Crossland's and Findley's, and the endurance limits of a material.
+
+Sources: K. Dang Van, G. Cailletaud, J. F. Flavenot, A. Le Douaron, H. P. Lieurade, Criterion for high cycle fatigue
+failure under multiaxial loading, in: Biaxial and Multiaxial Fatigue, EGF 3 (1989) 459-478; B. Crossland, Effect of
+large hydrostatic pressures on the torsional fatigue strength of an alloy steel, Proc. Int. Conf. on Fatigue of Metals,
+IMechE (1956) 138-149; amplitude as the radius of the smallest hypersphere: I. V. Papadopoulos et al., A comparative
+study of multiaxial high-cycle fatigue criteria for metals, International Journal of Fatigue 19 (1997) 219-235; W. N.
+Findley, A theory for the effect of mean stress on fatigue of metals under combined torsion and axial load or bending,
+Journal of Engineering for Industry 81 (1959) 301-306; Findley's constants from two fully reversed limits as in the
+manuals of PragTic (Findley method) and COMSOL (Findley criterion).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from itertools import product
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import positions
+from contactstudy.arrays.variables import AXES, VARIABLES, describe
+from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.checks import Array
+from contactstudy.errors import InvalidInputError
+from contactstudy.fatigue.history import enclosing_balls, histories, of_points, over_history
+
+
+@dataclass(frozen=True, kw_only=True)
+class FatigueLimits:
+    """Amplitudes that the material endures for ever under fully reversed loading.
+
+    Parameters
+    ----------
+    bending : float
+        Limit ``sigma_w`` of the normal stress in bending or push-pull, Pa.
+    torsion : float
+        Limit ``tau_w`` of the shear stress in torsion, Pa.
+
+    Raises
+    ------
+    InvalidInputError
+        If a limit is not positive, or their ratio is not between 1/2 and 1, where Dang Van's and Findley's criteria
+        have a meaning (Crossland's criterion requires at least 1/sqrt(3)).
+
+    Warns
+    -----
+    MagnitudeWarning
+        If a limit is of a size that is mostly a mistake in the unit.
+
+    Examples
+    --------
+    >>> limits = FatigueLimits(bending=500e6, torsion=300e6)
+    >>> round(limits.dang_van_slope, 6), round(limits.crossland_slope, 6), round(limits.findley_slope, 6)
+    (0.3, 0.067949, 0.204124)
+    """
+
+    bending: float
+    torsion: float
+
+    def __post_init__(self) -> None:
+        for name in ("bending", "torsion"):
+            object.__setattr__(self, name, checks.positive(name, getattr(self, name), "Pa"))
+        if not 0.5 <= self.ratio < 1:
+            raise InvalidInputError(
+                "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
+            )
+        warn_doubtful_values(stacklevel=4, bending=self.bending, torsion=self.torsion)
+
+    @property
+    def ratio(self) -> float:
+        """Limit in torsion over limit in bending."""
+        return self.torsion / self.bending
+
+    @property
+    def dang_van_slope(self) -> float:
+        """``alpha = 3 (tau_w / sigma_w - 1/2)``: bending, shear s/2 and hydrostatic stress s/3, is on the limit."""
+        return 3 * (self.ratio - 0.5)
+
+    @property
+    def crossland_slope(self) -> float:
+        """``A = 3 tau_w / sigma_w - sqrt(3)``: bending, sqrt(J2) s/sqrt(3), hydrostatic s/3, is on the limit."""
+        slope = 3 * self.ratio - np.sqrt(3)
+        # A ratio of 1 / sqrt(3) gives zero up to rounding.
+        if slope < -1e-9:
+            raise InvalidInputError(
+                "torsion",
+                self.torsion,
+                f"at least the limit in bending over sqrt(3), {self.bending / np.sqrt(3):g} Pa, for Crossland",
+            )
+        return float(max(slope, 0.0))
+
+    @property
+    def findley_slope(self) -> float:
+        """``k`` that puts bending and torsion on the limit: ``k / sqrt(1 + k**2) = 2 tau_w/sigma_w - 1``."""
+        share = 2 * self.ratio - 1
+        return float(share / np.sqrt(1 - share**2))
+
+    @property
+    def findley_limit(self) -> float:
+        """``f = tau_w sqrt(1 + k**2)``, Pa: Findley's sum in torsion at the limit."""
+        return float(self.torsion * np.sqrt(1 + self.findley_slope**2))
+
+
+def _deviators(history: Array) -> tuple[Array, Array]:
+    """Deviators (point, instant, 5) in axes where their length is the tensor's, and hydrostatic stresses."""
+    xx, yy, zz, xy, xz, yz = np.moveaxis(history, -1, 0)
+    mean = (xx + yy + zz) / 3
+    root = np.sqrt(2.0)
+    # Ilyushin's axes: the sum of the squares is s:s.
+    vector = [np.sqrt(1.5) * (xx - mean), (yy - zz) / root, root * xy, root * xz, root * yz]
+    return np.stack(vector, axis=-1), mean
+
+
+def _largest_shear(deviator: Array) -> Array:
+    """Half of Tresca's stress of deviators in Ilyushin's axes."""
+    first, difference, xy, xz, yz = np.moveaxis(deviator, -1, 0)
+    root = np.sqrt(2.0)
+    xx = first / np.sqrt(1.5)
+    yy, zz = 0.5 * (-xx + root * difference), 0.5 * (-xx - root * difference)
+    rows = [np.stack(row, axis=-1) for row in ((xx, xy / root, xz / root), (xy / root, yy, yz / root))]
+    rows.append(np.stack((xz / root, yz / root, zz), axis=-1))
+    principal = np.linalg.eigvalsh(np.stack(rows, axis=-2))
+    return np.asarray(0.5 * (principal[..., 2] - principal[..., 0]))
+
+
+def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
+    """Results of a criterion with their names and units; with the utilisation of the sum."""
+    return xr.Dataset({name: of_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
+
+
+def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
+    """Dang Van's criterion ``max over time of tau(t) + alpha sigma_h(t) <= tau_w`` for every material point.
+
+    ``tau(t)`` is half of Tresca's stress of the deviator less the centre of the smallest hypersphere around its
+    history (the grains shake down elastically to that centre), ``sigma_h`` the hydrostatic stress, positive in
+    tension, ``alpha = 3 (tau_w / sigma_w - 1/2)``. The history is the field along y, and the unloaded state.
+
+    Parameters
+    ----------
+    stress : Dataset
+        The six components with the rolling direction y over the whole passage, see
+        :func:`contactstudy.fatigue.window_remainder`; residual stresses may be added to them beforehand.
+    limits : FatigueLimits
+        Of the material.
+
+    Returns
+    -------
+    Dataset
+        Without the rolling direction: `dang_van` (Pa), the largest of the sum; `utilisation` (1), that over
+        ``tau_w``; `dang_van_shear` and `dang_van_hydrostatic` (Pa), both terms at that instant, and `dang_van_y` (m),
+        where that is (NaN for the unloaded state). Their errors are not estimated (`error_kind`).
+
+    Raises
+    ------
+    InvalidInputError
+        If a component or the rolling direction is missing, or the limits are none.
+
+    Examples
+    --------
+    A cycle of pure shear of amplitude 1: the criterion is the amplitude.
+
+    >>> from contactstudy.arrays.variables import STRESSES
+    >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
+    >>> shear = xr.Dataset({name: 0 * wave for name in STRESSES} | {"tau_yz": wave})
+    >>> result = dang_van(shear, FatigueLimits(bending=1.8, torsion=1.0))
+    >>> round(float(result.dang_van), 9), round(float(result.utilisation), 9)
+    (1.0, 1.0)
+    """
+    checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
+    tensor, rolling = histories(stress)
+
+    def criterion(history: Array) -> tuple[Array, ...]:
+        deviator, mean = _deviators(history)
+        centre, _ = enclosing_balls(deviator)
+        shear = _largest_shear(deviator - centre[:, None])
+        total = shear + limits.dang_van_slope * mean
+        instant_index = total.argmax(axis=1)[:, None]
+        chosen = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (total, shear, mean)]
+        return (*chosen, instant_index[:, 0].astype(np.float64))
+
+    total, shear, mean, instant = over_history(criterion, stress, (None,) * 4)
+    values = {
+        "dang_van": total,
+        "utilisation": total / limits.torsion,
+        "dang_van_shear": shear,
+        "dang_van_hydrostatic": mean,
+        "dang_van_y": _position(tensor, rolling, instant),
+    }
+    return _to_dataset("dang_van", values)
+
+
+def _position(tensor: xr.DataArray, rolling: str, instant: xr.DataArray) -> xr.DataArray:
+    """Position along the rolling direction of the instants with these numbers; NaN for the unloaded state."""
+    instant = instant.compute()
+    loaded = instant < tensor.sizes[rolling]
+    number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
+    return positions(tensor, "y").isel({rolling: number}).where(loaded)
+
+
+def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
+    """Crossland's criterion ``sqrt(J2,a) + A sigma_h,max <= tau_w`` for every material point.
+
+    ``sqrt(J2,a)`` is the radius of the smallest hypersphere around the history of the deviator, over sqrt(2);
+    ``sigma_h,max`` the largest hydrostatic stress of the history, positive in tension, and not below zero since the
+    point is unloaded before and after; ``A = 3 tau_w / sigma_w - sqrt(3)``.
+
+    Parameters
+    ----------
+    stress : Dataset
+        As for :func:`dang_van`.
+    limits : FatigueLimits
+        Of the material, with a torsion limit of at least the bending limit over sqrt(3).
+
+    Returns
+    -------
+    Dataset
+        Without the rolling direction: `crossland` (Pa), the sum; `utilisation` (1), that over ``tau_w``;
+        `crossland_shear` and `crossland_hydrostatic` (Pa), the two terms without the factor. Their
+        errors are not estimated (`error_kind`).
+
+    Raises
+    ------
+    InvalidInputError
+        If a component or the rolling direction is missing, or the limits do not suit.
+
+    Examples
+    --------
+    A push-pull cycle at the limit in bending: on the limit.
+
+    >>> from contactstudy.arrays.variables import STRESSES
+    >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
+    >>> tension = xr.Dataset({name: 0 * wave for name in STRESSES} | {"sigma_xx": wave})
+    >>> round(float(crossland(tension, FatigueLimits(bending=1.0, torsion=0.65)).utilisation), 9)
+    1.0
+    """
+    checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
+    slope = limits.crossland_slope
+
+    def criterion(history: Array) -> tuple[Array, ...]:
+        deviator, mean = _deviators(history)
+        _, radius = enclosing_balls(deviator)
+        return radius / np.sqrt(2.0), mean.max(axis=1)
+
+    shear, mean = over_history(criterion, stress, (None, None))
+    total = shear + slope * mean
+    values = {
+        "crossland": total,
+        "utilisation": total / limits.torsion,
+        "crossland_shear": shear,
+        "crossland_hydrostatic": mean,
+    }
+    return _to_dataset("crossland", values)
+
+
+# Planes of the first search, evenly over a hemisphere (10 degrees apart), and shear directions in each
+NORMALS, DIRECTIONS = 200, 8
+STARTS = 4  # Best frames of the first search that are refined
+# Largest and smallest rotation of plane and direction in the refinement
+FIRST_TURN, LAST_TURN = np.radians(8.0), np.radians(1e-3)
+
+
+@cache
+def _frames() -> Array:
+    """Frames (number, 2, 3): a normal and a shear direction in its plane."""
+    number = np.arange(NORMALS) + 0.5
+    height = 1 - number / NORMALS
+    azimuth = np.pi * (1 + np.sqrt(5)) * number
+    radius = np.sqrt(1 - height**2)
+    normal = np.stack([radius * np.cos(azimuth), radius * np.sin(azimuth), height], axis=-1)
+    aside = np.cross(normal, np.where(np.abs(normal[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
+    aside /= np.linalg.norm(aside, axis=-1, keepdims=True)
+    upwards = np.cross(normal, aside)
+    angle = np.pi * np.arange(DIRECTIONS) / DIRECTIONS
+    direction = (
+        aside[:, None] * np.cos(angle)[None, :, None] + upwards[:, None] * np.sin(angle)[None, :, None]
+    ).reshape(-1, 3)
+    return np.stack([np.repeat(normal, DIRECTIONS, axis=0), direction], axis=1)
+
+
+def _resolvers(frames: Array) -> tuple[Array, Array]:
+    """Vectors (..., 6) that give shear ``n.sigma.m`` and normal stress ``n.sigma.n`` of the six components."""
+    normal, direction = frames[..., 0, :], frames[..., 1, :]
+
+    def resolver(first: Array, second: Array) -> Array:
+        (ax, ay, az), (bx, by, bz) = np.moveaxis(first, -1, 0), np.moveaxis(second, -1, 0)
+        mixed = (ax * by + ay * bx, ax * bz + az * bx, ay * bz + az * by)
+        return np.stack([ax * bx, ay * by, az * bz, *mixed], axis=-1)
+
+    # Off the diagonal, n.sigma.n counts each component twice; the resolver does so already.
+    return resolver(normal, direction), resolver(normal, normal)
+
+
+def _damage(history: Array, frames: Array, slope: float) -> tuple[Array, Array, Array]:
+    """Sum, shear amplitude and largest normal stress on one frame per point and candidate (point, candidate)."""
+    shear_of, normal_of = _resolvers(frames)
+    shear = np.einsum("ptc,pkc->pkt", history, shear_of)
+    largest = np.einsum("ptc,pkc->pkt", history, normal_of).max(axis=-1)
+    amplitude = 0.5 * (shear.max(axis=-1) - shear.min(axis=-1))
+    return amplitude + slope * largest, amplitude, largest
+
+
+def _search(history: Array, slope: float) -> Array:
+    """Best frames (point, start, 2, 3) of the first search."""
+    frames = _frames()
+    shear_of, normal_of = _resolvers(frames)
+    normal_of = normal_of[::DIRECTIONS]
+    best = np.empty((len(history), STARTS, 2, 3))
+    block = max(1, 2**24 // (history.shape[1] * len(frames)))  # Numbers held at once in the first search
+    for start in range(0, len(history), block):
+        part = history[start : start + block]
+        shear = part @ shear_of.T
+        amplitude = 0.5 * (shear.max(axis=1) - shear.min(axis=1))
+        largest = np.repeat((part @ normal_of.T).max(axis=1), DIRECTIONS, axis=1)
+        damage = amplitude + slope * largest
+        best[start : start + block] = frames[np.argpartition(damage, -STARTS, axis=1)[:, -STARTS:]]
+    return best
+
+
+def _turned(frames: Array, turn: Array) -> Array:
+    """Frames (frame, candidate, 2, 3): as they are, and turned by `turn` about 14 axes around each."""
+    from scipy.spatial.transform import Rotation
+
+    corners = np.array(list(product((-1.0, 1.0), repeat=3))) / np.sqrt(3)
+    axes = np.concatenate([np.eye(3), -np.eye(3), corners])
+    vectors = turn[:, None, None] * np.concatenate([np.zeros((1, 3)), axes])
+    turns = Rotation.from_rotvec(vectors.reshape(-1, 3)).as_matrix().reshape(len(frames), -1, 3, 3)
+    return np.asarray(np.einsum("fkij,fnj->fkni", turns, frames))
+
+
+def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
+    """Sum, shear amplitude, largest normal stress and normal of the worst plane of each history."""
+    frames = _search(history, slope).reshape(-1, 2, 3)
+    owner = np.repeat(np.arange(len(history)), STARTS)
+    turn = np.full(len(frames), FIRST_TURN)
+    active = np.arange(len(frames))
+    # Gains of rounding errors are none: where all planes are alike the search would wander for ever.
+    least = 1e-11 * np.abs(history).max(axis=(1, 2))  # Least gain of a turned plane over the largest stress: rounding
+    while active.size:
+        candidates = _turned(frames[active], turn[active])
+        damage, _, _ = _damage(history[owner[active]], candidates, slope)
+        best = np.where(damage.max(axis=1) > damage[:, 0] + least[owner[active]], damage.argmax(axis=1), 0)
+        frames[active] = candidates[np.arange(active.size), best]
+        turn[active[best == 0]] *= 0.5
+        active = active[turn[active] > LAST_TURN]
+    refined = frames.reshape(-1, STARTS, 2, 3)
+    damage_terms = _damage(history, refined, slope)
+    worst = damage_terms[0].argmax(axis=1)[:, None]
+    normal = np.take_along_axis(refined[:, :, 0], worst[..., None], axis=1)[:, 0]
+    normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
+    return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms), normal)
+
+
+def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
+    """Findley's criterion ``max over planes of tau_a + k sigma_n,max <= f`` for every material point.
+
+    On a plane, ``tau_a`` is half of the largest range of the shear stress resolved in one direction during the history,
+    and ``sigma_n,max`` the largest normal stress, positive in tension, and not below zero since the point is unloaded
+    before and after. The worst planes are searched over a hemisphere in steps of about 10 degrees, and turned until no
+    rotation by 0.001 degrees makes it worse. ``k`` and ``f`` follow from the limits.
+
+    Parameters
+    ----------
+    stress : Dataset
+        As for :func:`contactstudy.fatigue.dang_van`.
+    limits : FatigueLimits
+        Of the material.
+
+    Returns
+    -------
+    Dataset
+        Without the rolling direction: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
+        `findley_shear` and `findley_normal` (Pa), ``tau_a`` and ``sigma_n,max`` there; `findley_plane` (..., axis),
+        its unit normal with the components `axis` = x, y, z, turned towards larger depth. Their
+        errors are not estimated (`error_kind`).
+
+    Raises
+    ------
+    InvalidInputError
+        If a component or the rolling direction is missing, or the limits are none.
+
+    Examples
+    --------
+    A cycle of pure shear at the limit in torsion: on the limit.
+
+    >>> from contactstudy.arrays.variables import STRESSES
+    >>> wave = xr.DataArray([0.0, 1.0, 0.0, -1.0], dims="y", coords={"y": [0.0, 1.0, 2.0, 3.0]})
+    >>> shear = xr.Dataset({name: 0 * wave for name in STRESSES} | {"tau_yz": wave})
+    >>> round(float(findley(shear, FatigueLimits(bending=1.6, torsion=1.0)).utilisation), 9)
+    1.0
+    """
+    checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
+    total, shear, normal, plane = over_history(
+        lambda history: _worst_planes(history, limits.findley_slope), stress, (None, None, None, ("axis", 3))
+    )
+    values = {
+        "findley": total,
+        "utilisation": total / limits.findley_limit,
+        "findley_shear": shear,
+        "findley_normal": normal,
+        "findley_plane": plane,
+    }
+    result = xr.Dataset({name: of_points(name, value, VARIABLES["findley"]) for name, value in values.items()})
+    return describe(result.assign_coords(axis=list(AXES)))

@@ -1,0 +1,133 @@
+"""Tension at the trailing edge of a sliding contact, where the stress along y has a cusp.
+
+Outside the contact the tension falls like a square root of the distance from the edge (K. L. Johnson, Contact
+Mechanics, 1985, section 7.1), so positions near the edge do not reach it. The traction of a cross-section is a
+Chebyshev series ``sqrt(1 - t**2) sum c_n U_n(t)`` between its edges. In plane strain its tension is
+``2 sum (-1)**n c_n g**(n + 1)`` with ``g = 1 + d - sqrt((1 + d)**2 - 1)`` at the distance d from the edge over the
+half-width. The difference from the stress in the body is smooth, and extrapolated linearly from outside the contact.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis.axes import single_case
+from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
+from contactstudy.analysis.provenance import solved_case
+from contactstudy.arrays.variables import describe, require
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.positions import Positions
+from contactstudy.fields.stress import stress_field
+
+TERMS = 4  # terms of the Chebyshev series. Accuracy: the last one is part of the error.
+
+DISTANCES = np.array([0.35, 0.5, 0.7, 1.0])
+"""Distances from the edge, over the half-width, at which the field of the cells is accurate to 1e-3. Accuracy."""
+
+FEWEST_CELLS = 8  # least number of loaded cells across a section, for edges accurate to a few hundredths of a cell
+
+
+class _Section(NamedTuple):
+    """Traction of a cross-section: its trailing edge, half-width, series, and the width of its cells."""
+
+    edge: float
+    half_width: float
+    coefficients: FloatArray
+    cell: float
+
+    def plane_tension(self, distance: FloatArray | float) -> FloatArray:
+        """Tension of the series at distances from the edge over the half-width, Pa."""
+        g = (1 + np.asarray(distance)) - np.sqrt((1 + np.asarray(distance)) ** 2 - 1)
+        n = np.arange(TERMS)
+        return np.asarray(2 * ((-1.0) ** n * self.coefficients * g[..., None] ** (n + 1)).sum(axis=-1))
+
+
+def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
+    """Return the tension along y on the top of the body at the trailing edge of a sliding contact.
+
+    Parameters
+    ----------
+    result : Dataset
+        A result of :func:`contactstudy.solve` of one case in full sliding, with its inputs; stresses may be absent.
+    x : sequence of float, optional
+        Positions along the axis, metres, moved to the nearest column; default: the columns of the largest pressure of
+        either half and mid-length.
+
+    Returns
+    -------
+    Dataset
+        Along x: `edge_tension` (Pa), the stress sigma_yy at the edge, `edge_tension_error`, and `trailing_edge` (m),
+        the y of the edge; NaN for a section with less than 8 loaded cells. Mid-length of a long roller has
+        ``2 f p0``, and the stress that the normal load causes. The error contains the uncertainty of the edge, the last
+        term of the series, the extrapolation, and the relative error of `peak_pressure`.
+
+    Raises
+    ------
+    InvalidInputError
+        If the result has stick and slip, no friction, or no inputs.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller, solve
+    >>> body = FiniteLengthSpace(length=2e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=2e-3), max_pressure=1e9, friction=0.3)
+    >>> tension = edge_tension(solve(case, stresses=False), [1e-3]).edge_tension
+    >>> round(float(tension[0]) / (2 * 0.3 * 1e9), 1)
+    1.0
+    """
+    require(result, "pressure", "gap", "traction_y", argument="result")
+    if "stick" in result:
+        raise InvalidInputError("result", "a contact with stick and slip", "one in full sliding")
+    body, case = solved_case(result).body, single_case(result)
+    traction = case["traction_y"].transpose("x", "y").values
+    if not traction.any():
+        raise InvalidInputError("result", "a contact without friction", "one in full sliding")
+    centres, line = case["x"].values, case["pressure"].transpose("x", "y").values.max(axis=1)
+    if x is None:
+        half = centres.size // 2
+        columns = np.unique([int(line[:half].argmax()), half, half + int(line[half:].argmax())])
+    else:
+        columns = np.unique(np.abs(centres - np.atleast_1d(np.asarray(x, dtype=np.float64))[:, None]).argmin(axis=1))
+    edges, sign = contact_edges(case), float(np.sign(traction.sum()))
+    relative = 0.0
+    if "peak_pressure_error" in case and np.isfinite(float(case["peak_pressure"])):
+        relative = float(case["peak_pressure_error"] / case["peak_pressure"])
+    rows = []
+    for column in columns:
+        limits = float(edges["y_left"][column]), float(edges["y_right"][column])
+        if np.count_nonzero(traction[column]) < FEWEST_CELLS or not np.isfinite(limits).all():
+            rows.append((np.nan, np.nan, np.nan))
+            continue
+        section = _section(sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits)))
+        y = sign * (section.edge - section.half_width * DISTANCES)
+        field = stress_field(
+            body, case["pressure"], x=[float(centres[column])], y=y, z=[0.0], traction_y=case["traction_y"]
+        )
+        stress = field["sigma_yy"].sel(y=y).values.ravel()
+        smooth = stress - section.plane_tension(DISTANCES)
+        intercept = float(np.polyfit(DISTANCES, smooth, 1)[1])
+        tension = float(section.plane_tension(0.0)) + intercept
+        error = (
+            abs(intercept - smooth[0])
+            + 2 * abs(section.coefficients[-1])
+            + abs(tension) * (relative + EDGE_UNCERTAINTY * section.cell / section.half_width)
+        )
+        rows.append((tension, float(error), sign * section.edge))
+    names = ("edge_tension", "edge_tension_error", "trailing_edge")
+    values = {name: ("x", np.array(column)) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
+    return describe(xr.Dataset(values, coords={"x": centres[columns]}))
+
+
+def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:
+    """Chebyshev series of the traction of a section along +y, by least squares of the means of its cells."""
+    start, end = limits
+    half_width, middle, cell = 0.5 * (end - start), 0.5 * (start + end), abs(float(y[1] - y[0]))
+    points = (y[:, None] + cell * ((np.arange(40) + 0.5) / 40 - 0.5) - middle) / half_width
+    angles = np.arccos(np.clip(points, -1.0, 1.0))
+    # sqrt(1 - t**2) U_n(t) = sin((n + 1) arccos t)
+    means = np.stack([np.sin((n + 1) * angles).mean(axis=1) for n in range(TERMS)], axis=1)
+    return _Section(start, half_width, np.linalg.lstsq(means, traction, rcond=None)[0], cell)

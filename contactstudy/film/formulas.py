@@ -1,0 +1,86 @@
+"""Formulas for the film of line and point contacts, against which solutions are compared."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy.checks import FloatArray
+
+
+def moes_line(load: FloatArray | float, lubricant: FloatArray | float) -> FloatArray:
+    """Central film of a line contact, ``H = h / R (2 U)**-1/2``, by Moes' formula, eq. (410).
+
+    Parameters
+    ----------
+    load, lubricant : float or array
+        Moes' numbers ``M = w / (E' R) (2 U)**-1/2`` and ``L = alpha E' (2 U)**1/4``, with ``E' = 2 E*``.
+
+    Examples
+    --------
+    >>> round(float(moes_line(20.0, 10.0)), 3)
+    5.101
+    """
+    rigid, soft = 3.0 / np.asarray(load), 2.621 * np.asarray(load) ** -0.2
+    viscous = 1.287 * np.asarray(lubricant) ** (2 / 3)
+    elastic = 1.311 * np.asarray(load) ** -0.125 * np.asarray(lubricant) ** 0.75
+    s = (7 + 8 * np.exp(-2 * soft / rigid)) / 5
+    thin = (viscous**-3.5 + elastic**-3.5) ** (-2 * s / 7)
+    return np.asarray(((rigid ** (7 / 3) + soft ** (7 / 3)) ** (3 * s / 7) + thin) ** (1 / s))
+
+
+def nijenbanning(load: float, lubricant: float, ratio: float = 1.0) -> float:
+    """Central film of an elliptic contact by Nijenbanning, Venner and Moes (1994), eq. (411).
+
+    Parameters
+    ----------
+    load, lubricant : float
+        ``M = F / (E' Rx**2) (2 U)**-3/4`` and ``L``, with Rx the radius along rolling.
+    ratio : float
+        ``Rx / Ry``, at most 1.
+
+    Examples
+    --------
+    >>> round(nijenbanning(20.0, 10.0), 2)
+    4.71
+    """
+    rigid = 145 * (1 + 0.796 * ratio ** (14 / 15)) ** (-15 / 7) * load**-2 / ratio
+    soft = 3.18 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-14 / 25) * ratio ** (-1 / 15)
+    soft *= load ** (-2 / 15)
+    viscous = 1.29 * (1 + 0.691 * ratio) ** (-2 / 3) * lubricant ** (2 / 3)
+    elastic = 1.48 * (1 + 0.006 * np.log(ratio) + 0.63 * ratio ** (4 / 7)) ** (-7 / 20) * ratio ** (-1 / 24)
+    elastic *= load ** (-1 / 12) * lubricant**0.75
+    s = 1.5 * (1 + np.exp(-1.2 * soft / rigid))
+    first = (rigid**1.5 + (soft**-4 + (1.8 / ratio) ** -4) ** (-3 / 8)) ** (2 * s / 3)
+    return float((first + (viscous**-8 + elastic**-8) ** (-s / 8)) ** (1 / s))
+
+
+def dowson_higginson(speed: float, material: float, load: float) -> float:
+    """Least film of a line contact over R, ``2.65 U**0.7 G**0.54 W**-0.13``.
+
+    Examples
+    --------
+    >>> round(1e6 * dowson_higginson(1e-11, 5000.0, 1e-4), 1)
+    17.4
+    """
+    return float(2.65 * speed**0.7 * material**0.54 * load**-0.13)
+
+
+def thermal_reduction(pressure_ratio: float, loading: float, slide_roll_ratio: float) -> float:
+    """Film with the heat of shear in the inlet over the isothermal one (Gupta, Cheng, Zhu 1992), eq. (414).
+
+    Parameters
+    ----------
+    pressure_ratio : float
+        Largest pressure over E'.
+    loading : float
+        ``eta0 beta um**2 / k``.
+    slide_roll_ratio : float
+        Difference of the speeds over their mean.
+
+    Examples
+    --------
+    >>> thermal_reduction(5e-3, 0.0, 0.1), round(thermal_reduction(5e-3, 1.0, 0.1), 3)
+    (1.0, 0.728)
+    """
+    heated = 1 + 0.213 * (1 + 2.23 * abs(slide_roll_ratio) ** 0.83) * loading**0.64
+    return float((1 - 13.2 * pressure_ratio * loading**0.42) / heated)

@@ -1,0 +1,400 @@
+"""Film of a case on the cells of one level of refinement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies import hertz
+from contactstudy.bodies.lubricant import Lubricant
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import columns_of
+from contactstudy.case.motion import Sliding, SurfaceSpeeds
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.contact import Contact, Settings, contact_of, contact_operator
+from contactstudy.contact.refinement.refined_contact import contact_shape, refine_contact
+from contactstudy.film.asperities import Asperities
+from contactstudy.film.cells import JoinedCells, graded_edges, uniform_count
+from contactstudy.film.formulas import moes_line
+from contactstudy.film.newton import (
+    FilmProblem,
+    FilmSettings,
+    FilmSolution,
+    FilmState,
+    solve_from_dry,
+    solve_newton,
+    start_of,
+)
+from contactstudy.film.reynolds import FilmCells, Fluid, Law
+from contactstudy.kernels.load import Load
+from contactstudy.threads import one_blas_thread
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmResolution:
+    """Cells of the film. `inlet_length` is ``a (h_c R / a**2)**(2/3)``, over which the film forms.
+
+    Attributes
+    ----------
+    finest : float
+        Narrowest cells along y over the inlet length, on the coarsest level. Accuracy.
+    finest_share : float
+        Narrowest cells along y over the half-width, at most, on the coarsest level. Accuracy.
+    inner : float
+        Widest cells along y inside the contact over the half-width, on the coarsest level. Accuracy.
+    inner_inlet : float
+        Widest cells along y inside the contact over the inlet length, at most, on the coarsest level. Accuracy.
+    growth : float
+        Growth of the cells along y with the distance from the contact's edges. Accuracy.
+    columns : float
+        Narrowest columns over the half-width, on the coarsest level: at both ends of the contact. Accuracy.
+    columns_inlet : float
+        Narrowest columns over the inlet length, at most, on the coarsest level. Accuracy.
+    columns_growth : float
+        Growth of the columns with the distance from these ends, on the coarsest level. Accuracy.
+    widest_column : float
+        Widest columns over the half-width. Accuracy.
+    inlet, outlet : float
+        Distance of the window's ends from the contact's edges over the inlet length. Accuracy.
+    ratio : float
+        Ratio of the cells of one level to the next one's.
+    levels : int
+        Most levels.
+    most_cells : int
+        Most uniform cells along y. Speed.
+    dry_accuracy, dry_tolerance : float
+        Accuracy of the dry contact that sets the window, and tolerance of that from which the film starts. Speed.
+    """
+
+    finest: float = 0.55
+    finest_share: float = 0.12
+    inner: float = 0.16
+    inner_inlet: float = 2.5
+    growth: float = 0.12
+    columns: float = 0.12
+    columns_inlet: float = 0.8
+    columns_growth: float = 0.35
+    widest_column: float = 10.0
+    inlet: float = 25.0
+    outlet: float = 8.0
+    ratio: float = 2**0.5
+    levels: int = 5
+    most_cells: int = 4096
+    dry_accuracy: float = 0.05
+    dry_tolerance: float = 1e-5
+
+
+RESOLUTION = FilmResolution()
+"""Default cells."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmCase:
+    """A case and the scales of its film.
+
+    Attributes
+    ----------
+    case : Case
+        The case.
+    lubricant : Lubricant
+        Its lubricant.
+    speeds : SurfaceSpeeds
+        Speeds of its surfaces.
+    asperities : Asperities or None
+        Roughness; None: smooth surfaces.
+    resolution : FilmResolution
+        Cells.
+    inlet : float or None
+        Distance of the inlet's meniscus from the middle, metres; None: the inlet is fully flooded.
+    """
+
+    case: Case
+    lubricant: Lubricant
+    speeds: SurfaceSpeeds
+    asperities: Asperities | None
+    resolution: FilmResolution
+    inlet: float | None
+
+    @property
+    def speed(self) -> float:
+        """Magnitude of the entrainment speed, m/s."""
+        return abs(self.speeds.entrainment)
+
+    @property
+    def half_width(self) -> float:
+        """Hertz half-width, metres: the scale of lengths."""
+        return self.case.hertz_half_width
+
+    @property
+    def height(self) -> float:
+        """Scale of heights ``a**2 / R``, metres."""
+        return self.half_width**2 / self.case.roller.radius
+
+    @property
+    def pressure(self) -> float:
+        """Scale of pressures p0, Pa."""
+        return self.case.hertz_max_pressure
+
+    @cached_property
+    def dry(self) -> Contact:
+        """Dry contact on columns that are refined for its pressure."""
+        case = replace(self.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
+        return refine_contact(case, self.resolution.dry_accuracy, 1e-6).contact
+
+    @cached_property
+    def contact_ends(self) -> tuple[float, float]:
+        """First and last pressed x of the dry contact, over the half-width."""
+        edges, pressed = self.dry.shape.grid.x_edges, np.flatnonzero(self.dry.pressure.any(axis=1))
+        return edges[pressed[0]] / self.half_width, edges[pressed[-1] + 1] / self.half_width
+
+    @cached_property
+    def reach(self) -> float:
+        """Largest half-width of the dry contact over that of Hertz."""
+        grid = self.dry.shape.grid
+        pressed = self.dry.pressure.any(axis=0)
+        return float(np.abs(grid.y[pressed]).max() + 0.5 * grid.dy) / self.half_width
+
+    @property
+    def speed_number(self) -> float:
+        """Speed number ``U = eta0 um / (E' R)``."""
+        return self.lubricant.viscosity * self.speed / (2 * self.case.modulus * self.case.roller.radius)
+
+    def moes_load(self, line_load: float) -> float:
+        """Moes' load number of a load per length, N/m."""
+        return float(line_load / (2 * self.case.modulus * self.case.roller.radius * np.sqrt(2 * self.speed_number)))
+
+    @property
+    def moes_lubricant(self) -> float:
+        """Moes' lubricant number."""
+        return float(self.lubricant.pressure_viscosity * 2 * self.case.modulus * (2 * self.speed_number) ** 0.25)
+
+    @cached_property
+    def largest_line_load(self) -> float:
+        """Largest load per length of the dry contact, N/m, over columns of a half-width and more."""
+        grid = self.dry.shape.grid
+        line = self.dry.pressure.sum(axis=1) * grid.dy
+        # A sharp end's peak is narrower than the film's inlet there.
+        total = np.concatenate([[0.0], np.cumsum(line * grid.widths)])
+        span = min(2 * self.half_width, float(np.ptp(grid.x_edges)))
+        centres = np.linspace(grid.x_edges[0] + 0.5 * span, grid.x_edges[-1] - 0.5 * span, 401)
+        ends = np.interp(np.add.outer(np.array([0.5, -0.5]) * span, centres), grid.x_edges, total)
+        return float((ends[0] - ends[1]).max() / span)
+
+    @cached_property
+    def central_film(self) -> float:
+        """Central film by Moes' formula where the load per length is largest, metres: a scale."""
+        film = moes_line(self.moes_load(self.largest_line_load), self.moes_lubricant)
+        return float(film * self.case.roller.radius * np.sqrt(2 * self.speed_number))
+
+    @property
+    def inlet_length(self) -> float:
+        """Length over which the film forms, over the half-width."""
+        width = hertz.line_half_width(
+            hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
+            self.case.roller.radius,
+            self.case.modulus,
+        )
+        share = (self.central_film * self.case.roller.radius / width**2) ** (2 / 3)  # eq. (403)
+        return float(share * width / self.half_width)
+
+    @cached_property
+    def fluid(self) -> Fluid:
+        """Laws of the lubricant in the scales of the film."""
+        oil, scale = self.lubricant, self.pressure
+
+        def density(pressure: FloatArray) -> Law:
+            return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
+
+        def fluidity(pressure: FloatArray) -> Law:
+            rho = density(pressure)
+            thin = np.exp(-oil.log_viscosity(scale * pressure))
+            slope = rho.slope - rho.value * scale * oil.log_viscosity_slope(scale * pressure)
+            return Law(rho.value * thin, slope * thin)
+
+        radius, a = self.case.roller.radius, self.half_width
+        number = 12 * self.speed * oil.viscosity * radius**2 / (a**3 * scale)  # eq. (404)
+        return Fluid(density=density, fluidity=fluidity, speed=number)
+
+
+class FilmOnCells(NamedTuple):
+    """A solved film and its cells.
+
+    Attributes
+    ----------
+    problem : FilmProblem
+        What was solved.
+    solution : FilmSolution
+        The film.
+    grid : Grid
+        Uniform cells along y and columns over the whole body.
+    columns : slice
+        Columns of the grid under the roller.
+    joined : JoinedCells
+        Cells along y.
+    """
+
+    problem: FilmProblem
+    solution: FilmSolution
+    grid: Grid
+    columns: slice
+    joined: JoinedCells
+
+
+def cells_of(
+    film: FilmCase, level: int, places: tuple[float, ...]
+) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
+    """Return the cells of a level, with narrow columns at some `places` along x, over the half-width."""
+    resolution, scale = film.resolution, film.resolution.ratio**-level
+    start, stop = (end / film.half_width for end in film.case.contact_range)
+    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale
+    growth = resolution.columns_growth * scale**0.7
+
+    def width(x: float) -> float:
+        nearest = min(abs(x - place) for place in places)
+        widest = min(resolution.widest_column, 0.2 * (stop - start))
+        return float(min(first + growth * max(nearest - 2 * first, 0.0), widest))
+
+    x_edges = graded_edges(start, stop, width)
+    delta, reach = film.inlet_length, film.reach
+    low = -reach - resolution.inlet * delta
+    if film.inlet is not None:
+        low = max(low, -film.inlet / film.half_width)
+    high = reach + resolution.outlet * delta
+    finest = min(resolution.finest * delta, resolution.finest_share) * scale
+    count = min(uniform_count(high - low, finest), resolution.most_cells)
+    step = (high - low) / count
+
+    def size(begin: float, end: float) -> float:
+        y = low + 0.5 * (begin + end) * step
+        distance = max(0.0, min(abs(y + 1), abs(y - 1), abs(y - reach), abs(y + reach)) - delta)
+        inner = min(resolution.inner, resolution.inner_inlet * delta) * scale
+        widest = inner if abs(y) < reach else 0.25 + 0.1 * (abs(y) - reach)
+        return float(max(min(finest + resolution.growth * scale**0.5 * distance, widest) / step * 1.0001, 1.0))
+
+    joined = JoinedCells.of(count, size)
+    return FilmCells(x_edges=x_edges, y_edges=np.asarray(low + step * joined.edges)), joined, (low, high)
+
+
+def film_on_level(
+    film: FilmCase,
+    level: int,
+    places: tuple[float, ...],
+    settings: FilmSettings,
+    start: FilmOnCells | xr.Dataset | None = None,
+) -> FilmOnCells:
+    """Solve for the film on the cells of a level, from the dry contact or a film on other cells or of another speed.
+
+    Raises
+    ------
+    StepFailedError
+        If the iteration does not converge.
+    """
+    cells, joined, window = cells_of(film, level, places)
+    with one_blas_thread():
+        return _solved(film, cells, joined, window, settings, start)
+
+
+def _solved(
+    film: FilmCase,
+    cells: FilmCells,
+    joined: JoinedCells,
+    window: tuple[float, float],
+    settings: FilmSettings,
+    start: FilmOnCells | xr.Dataset | None,
+) -> FilmOnCells:
+    a, scale = film.half_width, film.pressure
+    case = replace(film.case, motion=Sliding(), friction=0.0, coupled=False, lubricant=None)
+    grid = columns_of(case, a * cells.x_edges, (a * window[0], a * window[1]), int(joined.edges[-1]))
+    first = int(np.abs(grid.x_edges - a * cells.x_edges[0]).argmin())
+    columns = slice(first, first + cells.shape[0])
+    shape = contact_shape(case, grid)
+    operator = contact_operator(shape)
+
+    def displaced(load: FloatArray) -> FloatArray:
+        spread = np.zeros(grid.shape)
+        spread[columns] = scale * load
+        loads: Mapping[Load, FloatArray] = {Load.NORMAL: spread}
+        return operator(loads)[columns] / film.height
+
+    dry = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
+    # The lines to which the motion of the roller refers move as in the dry contact.
+    gap = shape.gap.values - dry.motions.total.height(grid.x)
+    one = np.zeros((cells.shape[0], grid.cells_y))
+    one[:, 0] = 1.0
+    lever = None
+    if case.load_position is not None:
+        lever = cells.x - case.load_position / a
+        lever = lever / np.abs(lever).max()
+    rough = film.asperities
+    problem = FilmProblem(
+        cells=cells,
+        fluid=film.fluid,
+        gap=joined.centred(gap[columns]) / film.height,
+        displace=lambda pressure: joined.centred(displaced(joined.spread(pressure))),
+        column_stiffness=joined.stiffness(displaced(one)),
+        load=case.normal_load / (scale * a**2),
+        lever=lever,
+        central_film=film.central_film / film.height,
+        asperities=None if rough is None else rough.dimensionless(film.height, scale, case.modulus),
+        mean_height=None if rough is None else rough.mean_height(film.height),
+    )
+    if start is not None:
+        state = _between_cells(start, problem) if isinstance(start, FilmOnCells) else _of_result(film, start, problem)
+        return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, joined)
+    solution = solve_from_dry(problem, _dry_state(film, problem, dry, columns, joined), settings)
+    return FilmOnCells(problem, solution, grid, columns, joined)
+
+
+def _dry_state(film: FilmCase, problem: FilmProblem, dry: Contact, columns: slice, joined: JoinedCells) -> FilmState:
+    """Dry contact with the central film of the formula between the surfaces."""
+    pressure = joined.mean(dry.pressure[columns]) / film.pressure
+    distance = joined.centred(dry.gap[columns]) / film.height + problem.central_film
+    motion = np.zeros(len(problem.motions))
+    motion[0] = problem.central_film - dry.approach / film.height
+    if problem.lever is not None:
+        cells = problem.cells
+        assert film.case.load_position is not None
+        arm = np.abs(cells.x - film.case.load_position / film.half_width).max()
+        motion[1] = -dry.tilt * arm * film.half_width / film.height
+    return start_of(problem, pressure, motion, distance)
+
+
+def _between_cells(start: FilmOnCells, problem: FilmProblem) -> FilmState:
+    """Film on other cells, by lines between the centres."""
+    before, after = start.problem.cells, problem.cells
+    state = start.solution.state
+    pressure, distance = (
+        _interpolated(values, before.x, before.y, after) for values in (state.pressure, state.distance)
+    )
+    return start_of(problem, np.maximum(pressure, 0.0), state.motion.copy(), distance)
+
+
+def _of_result(film: FilmCase, result: xr.Dataset, problem: FilmProblem) -> FilmState:
+    """Film of another speed or lubricant, changed by the ratio of the formula's central films."""
+    turned = -1 if result["entrainment_speed"] < 0 else 1
+    fields = result[["pressure", "film_thickness"]].transpose("x", "y").dropna("x")
+    x, y = (fields[axis].values / film.half_width for axis in "xy")
+    pressure, distance = (
+        _interpolated(fields[name].values[:, ::turned] / scale, x, (turned * y)[::turned], problem.cells)
+        for name, scale in (("pressure", film.pressure), ("film_thickness", film.height))
+    )
+    number, load = float(result["moes_load"]), film.moes_load(film.largest_line_load)
+    former = moes_line(number, float(result["moes_lubricant"])) / number
+    ratio = float(moes_line(load, film.moes_lubricant) / load / former)
+    central = float(result["central_film"]) / film.height
+    distance = np.where(distance < central, ratio * distance, distance + (ratio - 1) * central)
+    carrying = pressure.ravel() > 0
+    rigid = (distance - problem.gap - problem.displace(pressure)).ravel()
+    motion = np.asarray(np.linalg.lstsq(problem.motions[:, carrying].T, rigid[carrying])[0], dtype=np.float64)
+    return start_of(problem, pressure, motion, distance)
+
+
+def _interpolated(values: FloatArray, x: FloatArray, y: FloatArray, cells: FilmCells) -> FloatArray:
+    along = np.stack([np.interp(cells.y, y, row) for row in values])
+    return np.stack([np.interp(cells.x, x, column) for column in along.T], axis=1)

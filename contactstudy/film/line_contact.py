@@ -1,0 +1,158 @@
+"""Film of a line contact in Moes' numbers: the special case that formulas and tables know."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.bodies.lubricant import Lubricant
+from contactstudy.checks import FloatArray
+from contactstudy.film.cells import graded_edges
+from contactstudy.film.formulas import moes_line
+from contactstudy.film.newton import (
+    SETTINGS,
+    FilmProblem,
+    FilmSettings,
+    FilmSolution,
+    solve_from_dry,
+    solve_newton,
+    start_of,
+)
+from contactstudy.film.reynolds import FilmCells, Fluid, Law
+
+BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
+"""A lubricant of Barus' law and constant density."""
+
+
+COARSEST = 0.35
+"""Narrowest cells, over the length on which the film forms, that are solved from the dry contact. Speed."""
+
+
+class LineFilm(NamedTuple):
+    """Film of a line contact.
+
+    Attributes
+    ----------
+    central, least : float
+        Films ``H = h / R (2 U)**-1/2``.
+    y, pressure, film : array
+        Position over a, pressure over p0, film h R / a**2.
+    moment : float
+        Moment of the pressure about the middle, per length, over ``p0 a**2``: ``-w delta``.
+    rolling : float
+        Moment ``t`` about the roller's axis of the shear by the pressure's gradient, per length, over ``p0 a**2``:
+        ``w delta = 2 t``.
+    solution : FilmSolution
+        The solution.
+    """
+
+    central: float
+    least: float
+    y: FloatArray
+    pressure: FloatArray
+    film: FloatArray
+    moment: float
+    rolling: float
+    solution: FilmSolution
+
+
+def line_stiffness(edges: FloatArray, centres: FloatArray) -> FloatArray:
+    """Displacement R / a**2 at the centres under pressures over p0 between edges over a, up to a constant."""
+    distance = centres[:, None] - edges[None, :]
+    primitive = distance * (np.log(np.abs(distance)) - 1)
+    return np.asarray(np.diff(primitive, axis=1) / np.pi)
+
+
+def solve_line(
+    load: float,
+    lubricant: float,
+    *,
+    finest: float = 0.2,
+    inlet: float | None = None,
+    oil: Lubricant = BARUS,
+    max_pressure: float | None = None,
+    settings: FilmSettings = SETTINGS,
+    start: LineFilm | None = None,
+) -> LineFilm:
+    """Solve for the film of a line contact.
+
+    Parameters
+    ----------
+    load, lubricant : float
+        Moes' numbers M and L.
+    finest : float
+        Narrowest cells over the length on which the film forms.
+    inlet : float, optional
+        Distance of the inlet from the middle over a; default: so far that it no longer matters.
+    oil : Lubricant
+        Laws of viscosity and density; its viscosity is of no influence, and for Barus' law its coefficient neither.
+    max_pressure : float, optional
+        p0, Pa, for laws other than Barus'; its pressure-viscosity coefficient then follows from L.
+    start : LineFilm, optional
+        Film on coarser cells. Default: of cells twice as wide, unless these are the coarsest; there the dry contact.
+    """
+    if start is None and finest < COARSEST:
+        start = solve_line(
+            load, lubricant, finest=2 * finest, inlet=inlet, oil=oil, max_pressure=max_pressure, settings=settings
+        )
+    reduced = lubricant * np.sqrt(load / (2 * np.pi))  # alpha p0
+    scale = reduced / oil.pressure_viscosity if max_pressure is None else max_pressure
+    if max_pressure is not None:
+        oil = oil.replaced(pressure_viscosity=reduced / max_pressure)
+
+    def density(pressure: FloatArray) -> Law:
+        return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
+
+    def fluidity(pressure: FloatArray) -> Law:
+        rho, thin = density(pressure), np.exp(-oil.log_viscosity(scale * pressure))
+        return Law(rho.value * thin, (rho.slope - rho.value * scale * oil.log_viscosity_slope(scale * pressure)) * thin)
+
+    film = float(moes_line(load, lubricant)) * np.pi / (8 * load)
+    delta = film ** (2 / 3)
+    first = -inlet if inlet is not None else -1 - 40 * delta
+    narrow = min(finest * delta, finest * 0.25)
+
+    def size(y: float) -> float:
+        distance = max(0.0, min(abs(y + 1), abs(y - 1)) - delta)
+        return float(min(narrow + 0.5 * finest * distance, 0.25 * finest + 0.1 * max(0.0, abs(y) - 1)))
+
+    edges = graded_edges(first, 1 + 8 * delta, size)
+    cells = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=edges, open_ends=False)
+    y, stiffness = cells.y, line_stiffness(edges, cells.y)
+    problem = FilmProblem(
+        cells=cells,
+        fluid=Fluid(density=density, fluidity=fluidity, speed=3 * np.pi**2 / (8 * load**2)),
+        gap=0.5 * y[None] ** 2,
+        displace=lambda pressure: pressure @ stiffness.T,
+        column_stiffness=stiffness[None],
+        load=0.5 * np.pi,
+        lever=None,
+        central_film=film,
+    )
+    if start is not None:
+        pressure, film_start = (np.interp(y, start.y, values)[None] for values in (start.pressure, start.film))
+        state = start_of(problem, pressure, start.solution.state.motion, film_start)
+        solution = solve_newton(problem, state, settings, steady=True)
+    else:
+        hertz = np.sqrt(np.maximum(1 - y**2, 0.0))[None]
+        sunk = problem.gap + problem.displace(hertz)
+        motion = np.array([film - sunk[0, np.abs(y).argmin()]])
+        state = start_of(problem, hertz, motion, np.maximum(sunk + motion[0], film))
+        solution = solve_from_dry(problem, state, settings)
+    height = solution.film[0]
+    cell = int(height.argmin())
+    near = slice(cell - 1, cell + 2)
+    bend, slope, _ = np.polyfit(y[near] - y[cell], height[near], 2)
+    number = 8 * load / np.pi
+    pressure = solution.fluid_pressure[0]
+    return LineFilm(
+        number * float(np.interp(0.0, y, height)),
+        number * float(height[cell] - slope**2 / (4 * bend)),
+        y,
+        pressure,
+        height,
+        float((pressure * y * cells.lengths).sum()),
+        0.5 * float((0.5 * (height[1:] + height[:-1]) * np.diff(pressure)).sum()),  # eq. (415)
+        solution,
+    )

@@ -1,0 +1,488 @@
+"""Semi-smooth Newton method for the film: pressure, rigid motion and cavitation at once, on arrays."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy import linalg, sparse
+
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.errors import ContactStudyError
+from contactstudy.film.reynolds import FilmCells, Flow, Fluid, Law
+
+LOGGER = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilmSettings:
+    """Settings of the iteration.
+
+    Attributes
+    ----------
+    tolerance : float
+        Tolerance: net outflow of a cell over the flow ``um h_c``, and load over the prescribed one. Accuracy.
+    steps : tuple of float
+        Pseudo-time steps, in a / um, before the steady state. Speed.
+    newton_steps : int
+        Bound on the Newton steps of one pseudo-time step, and, three times as many, of the steady state. Speed.
+    linear_tolerance : float
+        Tolerance of the linear systems. Speed.
+    linear_steps : int
+        Bound on the steps of one linear system. Speed.
+    largest_closing : float
+        Largest relative decrease of the film of a cell in one step. Speed.
+    largest_change : float
+        Change of the pressure in one step, over p0. Speed.
+    closed, nearly_closed : float
+        Film over the central one below which an iteration ends, and below which a failure counts as a closed film.
+    speed_ratio, speed_steps : float, int
+        Ratio and number of higher speeds that are solved first where the dry contact is too far. Speed.
+    """
+
+    tolerance: float = 1e-8
+    steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
+    newton_steps: int = 12
+    linear_tolerance: float = 1e-2
+    linear_steps: int = 60
+    largest_closing: float = 0.6
+    largest_change: float = 0.3
+    closed: float = 1e-6
+    nearly_closed: float = 1e-3
+    speed_ratio: float = 4.0
+    speed_steps: int = 4
+
+
+SETTINGS = FilmSettings()
+"""Default settings."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmProblem:
+    """A film to solve, in the units of `FilmCells`.
+
+    Attributes
+    ----------
+    cells : FilmCells
+        Cells.
+    fluid : Fluid
+        Laws of the lubricant.
+    gap : array (x, y)
+        Gap before deformation.
+    displace : callable
+        Displacement of the surfaces apart, array (x, y), under a pressure.
+    column_stiffness : array (x, y, y)
+        Displacement of a column's cells under a pressure that all columns carry alike.
+    load : float
+        Prescribed sum of the pressure times the areas.
+    lever : array (x) or None
+        Distances from the load's position, over the largest of them, if the shape is free to tilt.
+    central_film : float
+        Central film as estimated before the solution: the scale of tolerances.
+    asperities : callable or None
+        Mean pressure of the asperities at a distance of the surfaces.
+    mean_height : callable or None
+        Mean height of the film between rough surfaces at a distance of these.
+    """
+
+    cells: FilmCells
+    fluid: Fluid
+    gap: FloatArray
+    displace: Callable[[FloatArray], FloatArray]
+    column_stiffness: FloatArray
+    load: float
+    lever: FloatArray | None
+    central_film: float
+    asperities: Callable[[FloatArray], Law] | None = None
+    mean_height: Callable[[FloatArray], Law] | None = None
+
+    @cached_property
+    def motions(self) -> FloatArray:
+        """Heights of the rigid motions: array (motion, cell)."""
+        ones = np.ones(self.cells.shape)
+        motions = [ones] if self.lever is None else [ones, self.lever[:, None] * ones]
+        return np.stack([motion.ravel() for motion in motions])
+
+    @cached_property
+    def resultants(self) -> FloatArray:
+        """Sums that the rigid motions prescribe: array (motion, cell)."""
+        return np.asarray(self.motions * self.cells.areas.ravel())
+
+    @property
+    def prescribed(self) -> FloatArray:
+        """Values of these sums: load, and moment about the load's position."""
+        return np.array([self.load, 0.0][: len(self.motions)])
+
+
+class FilmState(NamedTuple):
+    """Unknowns of an iteration.
+
+    Attributes
+    ----------
+    pressure : array (x, y)
+        Pressure on the surfaces, fluid and asperities.
+    motion : array (motion)
+        Rigid motion: height and, if free, tilt.
+    distance : array (x, y)
+        Distance of the surfaces, an unknown as well: a start may be interpolated from other cells.
+    mismatch : array (x, y)
+        Distance less the one by pressure and motion.
+    """
+
+    pressure: FloatArray
+    motion: FloatArray
+    distance: FloatArray
+    mismatch: FloatArray
+
+
+def start_of(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
+    """Return a state from values that need not fit together."""
+    rigid = (motion @ problem.motions).reshape(problem.gap.shape)
+    return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
+
+
+class FilmSolution(NamedTuple):
+    """A film that has been solved.
+
+    Attributes
+    ----------
+    state : FilmState
+        Pressure and distance of the surfaces.
+    fluid_pressure, asperity_pressure, film : array (x, y)
+        Pressures of the fluid and of the asperities; mean height of the film.
+    flow : array (x, y + 1)
+        Flow along y through the faces.
+    outflow : array (x, y)
+        Net outflow of each cell per width.
+    cavitated : array of bool (x, y)
+        Cells with a broken film.
+    residual, load_error, complementarity_error, mismatch : float
+        Certificate: largest net outflow of a full cell over the central film, error of load and moment over the load,
+        largest net inflow of a cavitated cell over the central film, and largest mismatch of the distance over it.
+    newton_steps, linear_steps : int
+        Steps taken.
+    converged : bool
+        Whether the tolerance was reached.
+    """
+
+    state: FilmState
+    fluid_pressure: FloatArray
+    asperity_pressure: FloatArray
+    film: FloatArray
+    flow: FloatArray
+    outflow: FloatArray
+    cavitated: BoolArray
+    residual: float
+    load_error: float
+    complementarity_error: float
+    mismatch: float
+    newton_steps: int
+    linear_steps: int
+    converged: bool
+
+
+class StepFailedError(ContactStudyError):
+    """A pseudo-time step did not converge; `closed` is the cell (x, y) where the film closes, or None."""
+
+    def __init__(self, message: str, closed: tuple[int, int] | None = None) -> None:
+        self.closed = closed
+        super().__init__(message)
+
+
+class _Linearised(NamedTuple):
+    """Equations about a state.
+
+    Attributes
+    ----------
+    flow : Flow
+        Flow and its derivatives.
+    residual : array (cell + motion)
+        Residual of cells, divided by `scale`, and of load and moment.
+    by_pressure, by_distance : sparse array (cell, cell)
+        Derivatives of the cells' residuals at a fixed distance of the surfaces and at a fixed pressure.
+    cavitated : array of bool (cell)
+        Cells with a broken film.
+    """
+
+    flow: Flow
+    residual: FloatArray
+    by_pressure: sparse.csr_array
+    by_distance: sparse.csr_array
+    cavitated: BoolArray
+    fluid_pressure: FloatArray
+    asperity_pressure: FloatArray
+    film: FloatArray
+
+
+def solve_newton(problem: FilmProblem, start: FilmState, settings: FilmSettings, *, steady: bool) -> FilmSolution:
+    """Solve for the film from a start.
+
+    Parameters
+    ----------
+    problem : FilmProblem
+        The film.
+    start : FilmState
+        First guess.
+    settings : FilmSettings
+        Settings of the iteration.
+    steady : bool
+        Whether the start is near: no pseudo-time steps unless the steady iteration fails.
+    """
+    iteration = _Iteration(problem, settings)
+    if steady:
+        try:
+            return iteration.converge(start, np.inf, None)
+        except StepFailedError:
+            LOGGER.info("the start is too far: pseudo-time steps")
+    state = start
+    pending = list(settings.steps)
+    while pending:
+        step = pending[0]
+        try:
+            state = iteration.converge(state, step, iteration.mass(state)).state
+            pending.pop(0)
+        except StepFailedError:
+            if step < settings.steps[0] / 30:
+                raise
+            pending.insert(0, step / 3)
+    return iteration.converge(state, np.inf, None)
+
+
+def solve_from_dry(problem: FilmProblem, dry: FilmState, settings: FilmSettings) -> FilmSolution:
+    """Solve for the film from the dry contact; where that fails, from films of higher speeds.
+
+    Raises
+    ------
+    StepFailedError
+        If no higher speed helps.
+    """
+    factors = [1.0]
+    while True:
+        faster = replace(problem, fluid=replace(problem.fluid, speed=problem.fluid.speed * factors[-1]))
+        try:
+            solution = solve_newton(faster, dry, settings, steady=False)
+            break
+        except StepFailedError as error:
+            if len(factors) > settings.speed_steps or error.closed is not None:
+                raise
+            factors.append(settings.speed_ratio * factors[-1])
+    LOGGER.info("speeds over the prescribed one: %s", factors[::-1])
+    for factor in factors[-2::-1]:
+        slower = replace(problem, fluid=replace(problem.fluid, speed=problem.fluid.speed * factor))
+        solution = solve_newton(slower, solution.state, settings, steady=True)
+    return solution
+
+
+@dataclass(eq=False)
+class _Iteration:
+    """Newton's method for one problem."""
+
+    problem: FilmProblem
+    settings: FilmSettings
+    newton_steps: int = 0
+    linear_steps: int = 0
+
+    def mass(self, state: FilmState) -> FloatArray:
+        """Mass of the film in each cell per area."""
+        linearised = self.linearise(state, np.inf, None)
+        density = self.problem.fluid.density(linearised.fluid_pressure.ravel()).value
+        return np.asarray(density * linearised.film.ravel())
+
+    def linearise(self, state: FilmState, step: float, mass: FloatArray | None) -> _Linearised:
+        """Residual and derivatives at a state."""
+        problem = self.problem
+        cells, distance = problem.cells, state.distance
+        ones = np.ones(cells.shape)
+        film = Law(distance, ones) if problem.mean_height is None else problem.mean_height(distance)
+        asperities = Law(0 * ones, 0 * ones) if problem.asperities is None else problem.asperities(distance)
+        fluid_pressure = state.pressure - asperities.value
+        flow = cells.flow(problem.fluid, fluid_pressure, film)
+        outflow, by_pressure, by_distance = flow.outflow, flow.by_pressure, flow.by_film
+        if mass is not None:
+            density = problem.fluid.density(fluid_pressure.ravel())
+            lengths = np.tile(cells.lengths, cells.shape[0]) / step
+            outflow = outflow + lengths * (density.value * film.value.ravel() - mass)
+            by_pressure = by_pressure + sparse.diags_array(lengths * density.slope * film.value.ravel())
+            by_distance = by_distance + sparse.diags_array(lengths * density.value * film.slope.ravel())
+        # The fluid carries the pressure less the part of the asperities.
+        if problem.asperities is not None:
+            by_distance = by_distance - by_pressure @ sparse.diags_array(asperities.slope.ravel())
+        elastic = _diagonals(problem.column_stiffness, by_distance)
+        scale = np.abs(by_pressure.diagonal() + elastic)
+        cavitated = fluid_pressure.ravel() - outflow / scale <= 0
+        full = sparse.diags_array(np.where(cavitated, 0.0, 1 / scale))
+        by_pressure = full @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
+        by_distance = full @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
+        sums = problem.resultants @ state.pressure.ravel() - problem.prescribed
+        residual = np.where(cavitated, fluid_pressure.ravel(), outflow / scale)
+        return _Linearised(
+            flow._replace(outflow=outflow),
+            np.concatenate([residual, sums / problem.load]),
+            sparse.csr_array(by_pressure),
+            sparse.csr_array(by_distance),
+            cavitated,
+            fluid_pressure,
+            asperities.value,
+            film.value,
+        )
+
+    def converge(self, state: FilmState, step: float, mass: FloatArray | None) -> FilmSolution:
+        """Iterate to a pseudo-time step, or, without one, to the steady state; raise if it does not converge."""
+        settings = self.settings
+        most = settings.newton_steps if mass is not None else 3 * settings.newton_steps
+        for _ in range(most):
+            linearised = self.linearise(state, step, mass)
+            solution = self.solution(state, linearised)
+            if mass is None and solution.converged:
+                return solution
+            change = self.solve_linear(linearised, state.mismatch.ravel())
+            state, part, largest = self.updated(state, change)
+            if mass is not None and part == 1 and largest < 1e-3:
+                return self.solution(state, self.linearise(state, step, mass))
+            if not np.isfinite(largest):
+                break
+            if self.problem.mean_height is None and state.distance.min() < settings.closed * self.problem.central_film:
+                break
+        closed = None
+        if state.distance.min() < settings.nearly_closed * self.problem.central_film:
+            row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
+            closed = int(row), int(cell)
+        raise StepFailedError(f"no convergence within {most} Newton steps", closed)
+
+    def solution(self, state: FilmState, linearised: _Linearised) -> FilmSolution:
+        """Return a state with its certificate."""
+        problem, shape = self.problem, self.problem.cells.shape
+        full = ~linearised.cavitated
+        outflow = linearised.flow.outflow
+        # A cavitated cell may lose mass, and a full one none.
+        residual = float(np.abs(outflow[full]).max(initial=0.0)) / problem.central_film
+        inflow = float(np.maximum(-outflow[~full], 0.0).max(initial=0.0)) / problem.central_film
+        below = float(np.abs(linearised.fluid_pressure.ravel()[~full]).max(initial=0.0))
+        load_error = float(np.abs(linearised.residual[full.size :]).max())
+        tolerance = self.settings.tolerance
+        return FilmSolution(
+            state,
+            np.maximum(linearised.fluid_pressure, 0.0),
+            linearised.asperity_pressure,
+            linearised.film,
+            linearised.flow.through,
+            outflow.reshape(shape),
+            linearised.cavitated.reshape(shape),
+            residual,
+            load_error,
+            max(inflow, below),
+            float(np.abs(state.mismatch).max()) / problem.central_film,
+            self.newton_steps,
+            self.linear_steps,
+            max(residual, inflow, below) <= tolerance
+            and max(load_error, float(np.abs(state.mismatch).max()) / problem.central_film) <= tolerance,
+        )
+
+    def updated(self, state: FilmState, change: FloatArray) -> tuple[FilmState, float, float]:
+        """Return the next state, the part of the step that was taken, and the largest change of the pressure."""
+        problem, settings = self.problem, self.settings
+        cells = problem.gap.size
+        pressure = change[:cells].reshape(problem.gap.shape)
+        motion = change[cells:]
+        distance = problem.displace(pressure) + (motion @ problem.motions).reshape(problem.gap.shape) - state.mismatch
+        largest = float(np.abs(pressure).max())
+        part = min(1.0, settings.largest_change / max(largest, 1e-300))
+        linear = state.distance + part * distance
+        # The bound applies to a closing cell alone; the next step removes the mismatch.
+        moved_distance = linear
+        if problem.mean_height is None:
+            moved_distance = np.maximum(linear, (1 - settings.largest_closing) * state.distance)
+        moved = FilmState(
+            state.pressure + part * pressure,
+            state.motion + part * motion,
+            moved_distance,
+            (1 - part) * state.mismatch + (moved_distance - linear),
+        )
+        self.newton_steps += 1
+        return moved, part, largest
+
+    def solve_linear(self, linearised: _Linearised, mismatch: FloatArray) -> FloatArray:
+        """Change of pressure and rigid motion, by GMRES with columns as preconditioner, eq. (405)."""
+        from scipy.sparse.linalg import LinearOperator, gmres
+
+        problem = self.problem
+        cells = problem.gap.size
+        motions, resultants = problem.motions, problem.resultants / problem.load
+        by_motion = linearised.by_distance @ motions.T
+        columns = _Columns.of(linearised, problem)
+        inverse_motions = np.stack([columns.solve(column) for column in by_motion.T], axis=1)
+        schur = np.linalg.inv(resultants @ inverse_motions)
+
+        def apply(unknowns: FloatArray) -> FloatArray:
+            pressure, motion = unknowns[:cells], unknowns[cells:]
+            displaced = problem.displace(pressure.reshape(problem.gap.shape)).ravel()
+            rows = linearised.by_pressure @ pressure + linearised.by_distance @ displaced + by_motion @ motion
+            return np.concatenate([rows, resultants @ pressure])
+
+        def precondition(residual: FloatArray) -> FloatArray:
+            pressure = columns.solve(residual[:cells])
+            motion = schur @ (resultants @ pressure - residual[cells:])
+            return np.concatenate([pressure - inverse_motions @ motion, motion])
+
+        def counted(_: object) -> None:
+            self.linear_steps += 1
+
+        residual = linearised.residual.copy()
+        residual[:cells] -= linearised.by_distance @ mismatch
+        size = cells + len(motions)
+        operator = LinearOperator((size, size), matvec=lambda unknowns: apply(precondition(unknowns)), dtype=np.float64)
+        solved, _ = gmres(
+            operator,
+            -residual,
+            rtol=self.settings.linear_tolerance,
+            restart=self.settings.linear_steps,
+            maxiter=1,
+            callback=counted,
+            callback_type="pr_norm",
+        )
+        return precondition(solved)
+
+
+def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
+    """Diagonal of the derivative by the distance times the columns' stiffness: array (cell)."""
+    columns, cells = stiffness.shape[:2]
+    entries = by_distance.tocoo()
+    row, source = entries.row, entries.col
+    same = row // cells == source // cells
+    row, source, value = row[same], source[same], entries.data[same]
+    products = value * stiffness[row // cells, source % cells, row % cells]
+    return np.asarray(np.bincount(row, products, minlength=columns * cells), dtype=np.float64)
+
+
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Factorised equations of each column, as if all columns carried alike."""
+
+    factors: tuple[tuple[FloatArray, FloatArray], ...]
+
+    @classmethod
+    def of(cls, linearised: _Linearised, problem: FilmProblem) -> _Columns:
+        """Factorise."""
+        cells = problem.cells.shape[1]
+        factors = []
+        for column, stiffness in enumerate(problem.column_stiffness):
+            part = slice(column * cells, (column + 1) * cells)
+            local = linearised.by_pressure[part, part].toarray()
+            matrix = local + linearised.by_distance[part, part] @ stiffness
+            factors.append(linalg.lu_factor(matrix, overwrite_a=True, check_finite=False))
+        return cls(tuple(factors))
+
+    def solve(self, residual: FloatArray) -> FloatArray:
+        """Pressures that remove a residual: array (cell)."""
+        parts = np.split(residual, len(self.factors))
+        # SciPy up to 1.17.1 writes to the pivots while it solves.
+        return np.concatenate(
+            [
+                linalg.lu_solve((lu, pivots.copy()), part, check_finite=False)
+                for (lu, pivots), part in zip(self.factors, parts, strict=True)
+            ]
+        )

@@ -1,0 +1,293 @@
+"""Reynolds' equation on cells: residual and derivatives, in finite volumes.
+
+Lengths are in Hertz half-widths a, heights in a**2 / R, pressures in p0; the surfaces move along +y.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from contactstudy.checks import FloatArray
+
+GAUSS_POINTS = 4
+"""Points of the mean fluidity between two cells. Accuracy."""
+
+LEAST_FACE_FILM, LARGEST_FACE_FILM = 0.2, 2.0
+"""Least film on a face over the mean of both cells, largest over the upstream cell: parabolas overshoot. Accuracy."""
+
+
+class Law(NamedTuple):
+    """Values of a law and their derivatives."""
+
+    value: FloatArray
+    slope: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fluid:
+    """Dimensionless laws of a lubricant.
+
+    Attributes
+    ----------
+    density : callable
+        Density over the ambient one, of the pressure.
+    fluidity : callable
+        Density over viscosity, both over the ambient ones, of the pressure.
+    speed : float
+        ``12 eta0 um R**2 / (a**3 p0)``.
+    """
+
+    density: Callable[[FloatArray], Law]
+    fluidity: Callable[[FloatArray], Law]
+    speed: float
+
+
+class Flow(NamedTuple):
+    """Net outflow of each cell per width along x, and its derivatives.
+
+    Attributes
+    ----------
+    outflow : array (cell,)
+        Net outflow.
+    by_pressure, by_film : sparse array (cell, cell)
+        Derivatives at a fixed film and at a fixed pressure.
+    through : array (x, y + 1)
+        Flow along y through the faces, per width.
+    """
+
+    outflow: FloatArray
+    by_pressure: sparse.csr_array
+    by_film: sparse.csr_array
+    through: FloatArray
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FilmCells:
+    """Cells of the film, their faces, and the differences between them.
+
+    Attributes
+    ----------
+    x_edges, y_edges : array
+        Edges of the cells, in half-widths.
+    open_ends : bool
+        Whether the film ends at ambient pressure at both ends along x; otherwise nothing flows along x through them.
+    """
+
+    x_edges: FloatArray
+    y_edges: FloatArray
+    open_ends: bool = True
+
+    @cached_property
+    def x(self) -> FloatArray:
+        """Centres along x."""
+        return np.asarray(0.5 * (self.x_edges[1:] + self.x_edges[:-1]))
+
+    @cached_property
+    def y(self) -> FloatArray:
+        """Centres along y."""
+        return np.asarray(0.5 * (self.y_edges[1:] + self.y_edges[:-1]))
+
+    @cached_property
+    def widths(self) -> FloatArray:
+        """Widths along x."""
+        return np.diff(self.x_edges)
+
+    @cached_property
+    def lengths(self) -> FloatArray:
+        """Widths along y."""
+        return np.diff(self.y_edges)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Numbers of cells along x and y."""
+        return self.widths.size, self.lengths.size
+
+    @cached_property
+    def areas(self) -> FloatArray:
+        """Areas of the cells: array (x, y)."""
+        return np.multiply.outer(self.widths, self.lengths)
+
+    @cached_property
+    def along_y(self) -> Faces:
+        """Faces between neighbours along y."""
+        gradient = _gradient(self.y_edges, self.y, closed=False)
+        upwind = sparse.csr_array(_upwind(self.y_edges, self.y))
+        rows = sparse.eye_array(self.shape[0])
+        return Faces.of(*(sparse.kron(rows, each) for each in (upwind, _mean(self.y_edges, self.y), gradient)))
+
+    @cached_property
+    def along_x(self) -> Faces:
+        """Faces between neighbours along x."""
+        mean = _mean(self.x_edges, self.x)
+        gradient = _gradient(self.x_edges, self.x, closed=not self.open_ends)
+        columns = sparse.eye_array(self.shape[1])
+        return Faces.of(*(sparse.kron(each, columns) for each in (mean, mean, gradient)))
+
+    @cached_property
+    def outflow_y(self) -> sparse.csr_array:
+        """Net outflow of the cells from the flow through the faces along y."""
+        return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), _outflow(self.shape[1])))
+
+    @cached_property
+    def outflow_x(self) -> sparse.csr_array:
+        """Net outflow of the cells, per width, from the flow through the faces along x."""
+        per_width = sparse.diags_array(1 / self.widths) @ _outflow(self.shape[0])
+        return sparse.csr_array(sparse.kron(per_width, sparse.diags_array(self.lengths)))
+
+    def flow(self, fluid: Fluid, pressure: FloatArray, film: Law) -> Flow:
+        """Return the net outflow of each cell, eq. (401), and its derivatives.
+
+        Parameters
+        ----------
+        fluid : Fluid
+            Laws of the lubricant.
+        pressure : array (x, y)
+            Pressure of the fluid.
+        film : Law of array (x, y)
+            Mean height of the film, and its derivative by the distance of the surfaces.
+        """
+        height, pressure = film.value.ravel(), pressure.ravel()
+        density = fluid.density(pressure)
+        faces = self.along_y
+        upwind = faces.bounded(height)
+        conducted = faces.conducted(fluid, pressure, height, upwind)
+        through = upwind @ (density.value * height) - conducted.flow
+        by_pressure = upwind @ sparse.diags_array(density.slope * height) - conducted.by_pressure
+        by_film = upwind @ sparse.diags_array(density.value) - conducted.by_film
+        outflow = self.outflow_y @ through
+        by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
+        if self.shape[0] > 1 or self.open_ends:
+            across = self.along_x.conducted(fluid, pressure, height, self.along_x.mean)
+            outflow = outflow - self.outflow_x @ across.flow
+            by_pressure = by_pressure - self.outflow_x @ across.by_pressure
+            by_film = by_film - self.outflow_x @ across.by_film
+        by_film = by_film @ sparse.diags_array(film.slope.ravel())
+        return Flow(
+            outflow, sparse.csr_array(by_pressure), sparse.csr_array(by_film), through.reshape(self.shape[0], -1)
+        )
+
+
+class Conducted(NamedTuple):
+    """Flow through faces that the gradient of the pressure drives, reversed, and its derivatives."""
+
+    flow: FloatArray
+    by_pressure: sparse.csr_array
+    by_film: sparse.csr_array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Faces:
+    """Faces along one axis: matrices (face, cell) of values on them.
+
+    Attributes
+    ----------
+    upwind, mean, gradient : sparse array (face, cell)
+        Value from upstream, mean of both sides, gradient; beyond the outermost faces the pressure is ambient.
+    before, after : sparse array (face, cell)
+        Which cells are on either side.
+    """
+
+    upwind: sparse.csr_array
+    mean: sparse.csr_array
+    gradient: sparse.csr_array
+    before: sparse.csr_array
+    after: sparse.csr_array
+
+    @classmethod
+    def of(cls, upwind: sparse.sparray, mean: sparse.sparray, gradient: sparse.sparray) -> Faces:
+        """Faces with these matrices: the gradient shows the cells on either side."""
+        slopes = sparse.csr_array(gradient)
+        before, after = ((sign * slopes).maximum(0).astype(bool).astype(np.float64) for sign in (-1, 1))
+        return cls(
+            upwind=sparse.csr_array(upwind),
+            mean=sparse.csr_array(mean),
+            gradient=slopes,
+            before=sparse.csr_array(before),
+            after=sparse.csr_array(after),
+        )
+
+    def bounded(self, height: FloatArray) -> sparse.csr_array:
+        """Interpolation from upstream, bounded where the film varies much from cell to cell: it remains positive."""
+        parabola, least, largest = (
+            matrix @ height for matrix in (self.upwind, LEAST_FACE_FILM * self.mean, LARGEST_FACE_FILM * self.before)
+        )
+        # The first face has no cell upstream.
+        low, high = parabola < least, (parabola > largest) & (largest > 0)
+        return sparse.csr_array(
+            sparse.diags_array(np.where(low | high, 0.0, 1.0)) @ self.upwind
+            + sparse.diags_array(LEAST_FACE_FILM * low) @ self.mean
+            + sparse.diags_array(LARGEST_FACE_FILM * (high & ~low)) @ self.before
+        )
+
+    def conducted(
+        self, fluid: Fluid, pressure: FloatArray, height: FloatArray, interpolation: sparse.csr_array
+    ) -> Conducted:
+        """Flow that the gradient drives, eq. (402).
+
+        The fluidity is the mean over the pressures between the two cells: for Barus' law the gradient of the reduced
+        pressure, whatever the step.
+        """
+        first, second = self.before @ pressure, self.after @ pressure
+        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
+        shares, weights = 0.5 * (nodes + 1), 0.5 * weights
+        laws = fluid.fluidity(first[:, None] + np.multiply.outer(second - first, shares))
+        fluidity = laws.value @ weights
+        by_first, by_second = laws.slope @ (weights * (1 - shares)), laws.slope @ (weights * shares)
+        film = interpolation @ height
+        slopes = self.gradient @ pressure
+        cubed, squared = film**3 / fluid.speed, 3 * film**2 / fluid.speed
+        by_pressure = (
+            sparse.diags_array(cubed * fluidity) @ self.gradient
+            + sparse.diags_array(cubed * slopes * by_first) @ self.before
+            + sparse.diags_array(cubed * slopes * by_second) @ self.after
+        )
+        factor = squared * fluidity * slopes
+        by_film = sparse.diags_array(factor) @ interpolation
+        return Conducted(cubed * fluidity * slopes, by_pressure, by_film)
+
+
+def _outflow(cells: int) -> sparse.sparray:
+    """Differences of neighbouring faces: array (cell, face)."""
+    return sparse.diags_array([-np.ones(cells), np.ones(cells)], offsets=[0, 1], shape=(cells, cells + 1))
+
+
+def _mean(edges: FloatArray, centres: FloatArray) -> sparse.sparray:
+    """Values on the faces by lines between the centres, at the ends those of the outermost cells: (face, cell)."""
+    cells = centres.size
+    matrix = np.zeros((cells + 1, cells))
+    matrix[0, 0] = matrix[-1, -1] = 1.0
+    for face in range(1, cells):
+        share = (edges[face] - centres[face - 1]) / (centres[face] - centres[face - 1])
+        matrix[face, face - 1 : face + 1] = 1 - share, share
+    return sparse.csr_array(matrix)
+
+
+def _upwind(edges: FloatArray, centres: FloatArray) -> FloatArray:
+    """Values on the faces by parabolas through two centres upstream and one downstream: array (face, cell)."""
+    cells = centres.size
+    matrix = np.zeros((cells + 1, cells))
+    for face, position in enumerate(edges):
+        stencil = np.arange(max(face - 2, 0), min(face + 1, cells)) if face else np.arange(min(2, cells))
+        for cell in stencil:
+            others = centres[stencil[stencil != cell]]
+            matrix[face, cell] = np.prod((position - others) / (centres[cell] - others))
+    return matrix
+
+
+def _gradient(edges: FloatArray, centres: FloatArray, *, closed: bool) -> sparse.sparray:
+    """Gradients on the faces; at the outermost faces the value is zero, or, if `closed`, the gradient: (face, cell)."""
+    cells = centres.size
+    matrix = np.zeros((cells + 1, cells))
+    for face in range(1, cells):
+        slope = 1 / (centres[face] - centres[face - 1])
+        matrix[face, face - 1 : face + 1] = -slope, slope
+    if not closed:
+        matrix[0, 0] = 1 / (centres[0] - edges[0])
+        matrix[-1, -1] = -1 / (edges[-1] - centres[-1])
+    return sparse.csr_array(matrix)

@@ -1,0 +1,376 @@
+"""The film of a case, from its parameters to a labelled result with errors and certificate."""
+
+from __future__ import annotations
+
+import time
+import warnings
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.interpolate import PchipInterpolator
+
+from contactstudy import checks
+from contactstudy.analysis.provenance import with_provenance
+from contactstudy.arrays.cells import cell_coordinates
+from contactstudy.arrays.variables import describe, require
+from contactstudy.case.case import Case
+from contactstudy.checks import FloatArray
+from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
+from contactstudy.film.asperities import Asperities
+from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level
+from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
+
+ACCURACIES = (2e-3, 0.2)
+"""Accuracies that the levels reach and that mean something."""
+
+SAFETY, ROUNDING = 1.5, 1e-3
+"""Stated error over the change from the level before, and least stated error over the value. Accuracy."""
+
+BARUS_LIMIT = 25.0
+"""Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics."""
+
+
+def solve_film(
+    case: Case,
+    *,
+    accuracy: float = 0.02,
+    asperities: Asperities | None = None,
+    inlet: float | None = None,
+    start: xr.Dataset | None = None,
+    resolution: FilmResolution = RESOLUTION,
+    settings: FilmSettings = SETTINGS,
+) -> xr.Dataset:
+    """Solve for the lubricating film of a case: isothermal, Newtonian, steady elastohydrodynamic lubrication.
+
+    Parameters
+    ----------
+    case : Case
+        With a `lubricant` and a motion that has speeds. Friction does not displace the surfaces.
+    accuracy : float
+        Error of the central and of the least films, over the central film, to which cells are refined: from 0.002
+        to 0.2. The error that is reached is stated.
+    asperities : Asperities, optional
+        Roughness that carries what the film does not. Default: the surfaces are smooth.
+    inlet : float, optional
+        Distance of the lubricant's meniscus in the inlet from the middle of the contact, metres. Default: so far that
+        the inlet is fully flooded.
+    start : Dataset, optional
+        Film of the same case at another speed or with another lubricant, from which the iteration starts.
+    resolution : FilmResolution
+        Cells of the coarsest level.
+    settings : FilmSettings
+        Settings of the iteration.
+
+    Returns
+    -------
+    Dataset
+        `film_thickness` and `pressure` (x, y), with `asperity_pressure` and the film ratio `film_ratio` (x) between
+        rough surfaces; `central_film` in the
+        middle of the contact; `least_film` and its place ``_x``, ``_y``; `least_film_middle` in the middle section,
+        `least_film_first` and `least_film_last` towards either end, the latter two with ``_x``; each film with its
+        error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`, `moes_load`, `moes_lubricant` of the largest
+        load per length; `asperity_load_share`. Certificate: `mass_error`, largest net outflow of a full cell over the
+        central flow times the cell's width; `film_load_error`; `film_complementarity_error`. `newton_steps`,
+        `linear_steps`, `film_levels`.
+
+    Raises
+    ------
+    InvalidInputError
+        If the case has no lubricant, no speed, or no load, or an argument is out of range.
+    FilmError
+        If no film separates smooth surfaces somewhere, no film forms, or the iteration does not converge.
+
+    Warns
+    -----
+    ConvergenceWarning
+        If the finest level does not reach the accuracy.
+    MagnitudeWarning
+        If the pressure exceeds what the viscosity law holds for.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Lubricant, Material, Roller, Sliding, profiles
+    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=1e-3, profile=profiles.Lundberg(amplitude=0.2e-6))
+    >>> oil = Lubricant.preset("heavy machine oil", 60.0)
+    >>> motion = Sliding(body_speed=2.0, roller_speed=2.0)
+    >>> case = Case(body=body, roller=roller, max_pressure=1e9, motion=motion, lubricant=oil)
+    >>> result = solve_film(case, accuracy=0.1)
+    >>> round(1e6 * float(result.central_film), 1)
+    0.3
+    """
+    film = _film_case(case, asperities, inlet, resolution)
+    limit = checks.positive("accuracy", accuracy)
+    if not ACCURACIES[0] <= limit <= ACCURACIES[1]:
+        raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
+    began = time.perf_counter()
+    if start is not None:
+        require(start, "film_thickness", "pressure", "moes_load", "film_levels", argument="start")
+    refined = _refined(film, limit, settings, start)
+    result = _labelled(film, refined)
+    seconds = time.perf_counter() - began
+    if refined.error > limit:
+        warnings.warn(
+            f"the films are settled to {refined.error:.2g} of the central film, not to accuracy = {limit:g}: "
+            "allow more levels, or more error",
+            ConvergenceWarning,
+            stacklevel=2,
+        )
+    _warn_of_viscosity(film, refined.finest)
+    described = describe(result, "lubricated contact of a roller with an elastic body")
+    recorded = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
+    return with_provenance(described, case, recorded, {"film": seconds})
+
+
+def _film_case(case: Case, asperities: Asperities | None, inlet: float | None, resolution: FilmResolution) -> FilmCase:
+    """Check a case for a film."""
+    checks.instance("case", case, Case, "a Case")
+    if case.lubricant is None:
+        raise InvalidInputError("case.lubricant", None, "a Lubricant(...) for a film")
+    speeds = case.motion.speeds
+    if speeds is None or speeds.entrainment == 0:
+        allowed = "one whose speeds draw the lubricant in, such as Sliding(body_speed=2.0, roller_speed=2.1)"
+        raise InvalidInputError("case.motion", case.motion, allowed, "speeds are in m/s along +y, against the contact")
+    if case.coupled:
+        raise InvalidInputError("case.coupled", True, "False for a film")
+    if asperities is not None:
+        checks.instance("asperities", asperities, Asperities, "an Asperities(...), or None for smooth surfaces")
+    film = FilmCase(
+        case=case,
+        lubricant=case.lubricant,
+        speeds=speeds,
+        asperities=asperities,
+        resolution=resolution,
+        inlet=None if inlet is None else checks.positive("inlet", inlet, "metres"),
+    )
+    if film.inlet is not None and film.inlet <= film.reach * film.half_width:
+        raise InvalidInputError(
+            "inlet",
+            film.inlet,
+            f"more than the half-width of the contact, {film.reach * film.half_width:.3g} m",
+            "a meniscus inside the contact forms no film",
+        )
+    return film
+
+
+class Films(NamedTuple):
+    """Films in one solution, over the scale of heights, and where they are, over the half-width."""
+
+    central: float
+    middle: float
+    first: float
+    last: float
+    least: float
+    first_x: float
+    last_x: float
+    least_x: float
+    least_y: float
+
+
+NAMES = {
+    "central": "central_film",
+    "middle": "least_film_middle",
+    "first": "least_film_first",
+    "last": "least_film_last",
+    "least": "least_film",
+}
+"""Variables of the films."""
+
+
+class _Refined(NamedTuple):
+    """Film on the finest level, its values and their errors, and the largest error over the central film."""
+
+    finest: FilmOnCells
+    films: Films
+    errors: dict[str, float]
+    error: float
+    levels: int
+    newton_steps: int
+    linear_steps: int
+
+
+def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Refined:
+    """Film on finer and finer levels until its values change by less than the accuracy."""
+    places, previous, solved = film.contact_ends, None, None
+    steps = [0, 0]
+    errors, error, changes = dict.fromkeys(NAMES, np.nan), np.inf, []
+    first = 0 if start is None else int(start["film_levels"]) - 2
+    for level in range(first, film.resolution.levels):
+        try:
+            solved = film_on_level(film, level, places, settings, start if solved is None else solved)
+        except StepFailedError as failure:
+            if solved is None and start is not None:
+                return _refined(film, accuracy, settings)
+            if solved is None or previous is None or not np.isfinite(error):
+                raise _film_error(film, failure, level, places) from None
+            break
+        films = films_of(film, solved)
+        steps[0] += solved.solution.newton_steps
+        steps[1] += solved.solution.linear_steps
+        if previous is not None:
+            changes.append({name: abs(getattr(films, name) - getattr(previous, name)) for name in NAMES})
+            # Where the least cell lies jumps from level to level: the change before counts as well.
+            kept = {
+                name: max(0.5 * each[name] if each is not changes[-1] else each[name] for each in changes[-2:])
+                for name in NAMES
+            }
+            errors = {name: SAFETY * kept[name] + ROUNDING * getattr(films, name) for name in NAMES}
+            error = max(errors.values()) / films.central
+        previous = films
+        if error <= accuracy:
+            break
+        places = (films.first_x, films.last_x) if films.first_x < films.last_x else film.contact_ends
+    assert solved is not None
+    assert previous is not None
+    return _Refined(solved, previous, errors, error, first + len(changes) + 1, *steps)
+
+
+def _film_error(film: FilmCase, failure: StepFailedError, level: int, places: tuple[float, ...]) -> FilmError:
+    """Return the error of a film that has not been found, with the place where it closes."""
+    from contactstudy.film.levels import cells_of
+
+    if failure.closed is None:
+        return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
+    cells = cells_of(film, level, places)[0]
+    x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), failure.closed, strict=True))
+    return FilmError(
+        f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
+        "a profile with a larger drop at the ends, or a higher speed"
+    )
+
+
+def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
+    """Return central and least films of a solution, between the cells by parabolas."""
+    cells, height = solved.problem.cells, solved.solution.film
+    low, high = film.contact_ends
+    middle = 0.5 * (low + high)
+    within = np.abs(cells.y) < 1.5 * film.reach
+    y = cells.y[within]
+    lows = [_least(y, row) for row in height[:, within]]
+    least = np.array([each.value for each in lows])
+    at_y = np.array([each.position for each in lows])
+    centre = np.array([np.interp(0.0, cells.y, row) for row in height])
+    first, last = cells.x < middle, cells.x >= middle
+    sides = [_least(cells.x[side], least[side]) for side in (first, last)]
+    lowest = min(sides)
+    return Films(
+        float(np.interp(middle, cells.x, centre)),
+        float(np.interp(middle, cells.x, least)),
+        sides[0].value,
+        sides[1].value,
+        lowest.value,
+        sides[0].position,
+        sides[1].position,
+        lowest.position,
+        float(np.interp(lowest.position, cells.x, at_y)),
+    )
+
+
+class _Least(NamedTuple):
+    """Least value and its position."""
+
+    value: float
+    position: float
+
+
+def _least(positions: FloatArray, values: FloatArray) -> _Least:
+    """Least of positive values, by the parabola of their logarithms through the least one and its neighbours."""
+    cell = int(values.argmin())
+    if cell in (0, values.size - 1):
+        return _Least(float(values[cell]), float(positions[cell]))
+    near = slice(cell - 1, cell + 2)
+    scale = positions[cell + 1] - positions[cell - 1]
+    c2, c1, _ = np.polyfit((positions[near] - positions[cell]) / scale, np.log(values[near]), 2)
+    if c2 <= 0:
+        return _Least(float(values[cell]), float(positions[cell]))
+    return _Least(float(values[cell] * np.exp(-(c1**2) / (4 * c2))), float(positions[cell] - 0.5 * c1 / c2 * scale))
+
+
+def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
+    """Label a film: on uniform cells along y, in the coordinates of the case."""
+    solved, solution, grid = refined.finest, refined.finest.solution, refined.finest.grid
+    # The lubricant flows along +y on the solver's cells.
+    turned = film.speeds.entrainment < 0
+    sign = -1 if turned else 1
+
+    def on_grid(values: FloatArray, outside: float) -> FloatArray:
+        full = np.full(grid.shape, outside)
+        full[solved.columns] = values
+        return full[:, ::-1] if turned else full
+
+    pressure = on_grid(film.pressure * _spread(solved, solution.fluid_pressure), 0.0)
+    fields = {"pressure": pressure}
+    if film.asperities is not None:
+        fields["asperity_pressure"] = on_grid(film.pressure * _spread(solved, solution.asperity_pressure), 0.0)
+        fields["pressure"] = pressure + fields["asperity_pressure"]
+    cells = solved.problem.cells
+    uniform = np.clip(grid.y / film.half_width, cells.y[0], cells.y[-1])
+    height = PchipInterpolator(cells.y, solution.film, axis=1)(uniform)
+    fields["film_thickness"] = on_grid(film.height * height, np.nan)
+    y = -grid.y[::-1] if turned else grid.y
+    films = refined.films
+    scalars: dict[str, float | int | bool] = {}
+    for short, name in NAMES.items():
+        scalars[name] = film.height * getattr(films, short)
+        scalars[f"{name}_error"] = film.height * refined.errors[short]
+    scalars["end_film_ratio"] = films.least / films.middle
+    scalars["end_film_ratio_error"] = (refined.errors["least"] + refined.errors["middle"]) / films.middle
+    scalars |= {
+        "least_film_x": film.half_width * films.least_x,
+        "least_film_y": sign * film.half_width * films.least_y,
+        "least_film_first_x": film.half_width * films.first_x,
+        "least_film_last_x": film.half_width * films.last_x,
+        "entrainment_speed": film.speeds.entrainment,
+        "slide_roll_ratio": film.speeds.slide_roll_ratio,
+        "moes_load": film.moes_load(film.largest_line_load),
+        "moes_lubricant": film.moes_lubricant,
+        "normal_load": film.case.normal_load,
+        "mass_error": solution.residual * solved.problem.central_film / films.central,
+        "film_load_error": solution.load_error,
+        "film_complementarity_error": solution.complementarity_error,
+        "converged": solution.converged,
+        "newton_steps": refined.newton_steps,
+        "linear_steps": refined.linear_steps,
+        "film_levels": refined.levels,
+        "hertz_half_width": film.half_width,
+        "hertz_max_pressure": film.pressure,
+    }
+    profiles = {}
+    if film.asperities is not None:
+        narrow = np.full(grid.cells_x, np.nan)
+        narrow[solved.columns] = film.height * solution.film.min(axis=1) / film.asperities.rms
+        profiles["film_ratio"] = (("x",), narrow)
+        scalars["asperity_load_share"] = float((solution.asperity_pressure * cells.areas).sum() / solved.problem.load)
+        scalars["roughness_rms"] = film.asperities.rms
+        scalars["least_film_ratio"] = scalars["least_film"] / film.asperities.rms
+        scalars["least_film_ratio_error"] = scalars["least_film_error"] / film.asperities.rms
+    return xr.Dataset(
+        {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
+        coords={"x": grid.x, "y": y} | cell_coordinates(grid),
+    )
+
+
+def _spread(solved: FilmOnCells, values: FloatArray) -> FloatArray:
+    """Pressure on the uniform cells along y: each joined cell keeps its load."""
+    edges = solved.joined.edges
+    load = np.concatenate([np.zeros((len(values), 1)), np.cumsum(values * solved.joined.counts, axis=1)], axis=1)
+    spread = np.diff(PchipInterpolator(edges, load, axis=1)(np.arange(edges[-1] + 1)), axis=1)
+    return np.asarray(np.maximum(spread, 0.0))
+
+
+def _warn_of_viscosity(film: FilmCase, solved: FilmOnCells) -> None:
+    """Warn where the pressure makes a solid of the lubricant."""
+    pressure = film.pressure * solved.solution.fluid_pressure
+    ratio = film.lubricant.log_viscosity(pressure)
+    if ratio.max() <= BARUS_LIMIT:
+        return
+    row, cell = np.unravel_index(int(ratio.argmax()), ratio.shape)
+    x, y = film.half_width * solved.problem.cells.x[row], film.half_width * solved.problem.cells.y[cell]
+    warnings.warn(
+        f"viscosity_law = {film.lubricant.viscosity_law!r} at {pressure[row, cell]:.3g} Pa (x = {x:.3g} m, "
+        f"y = {abs(y):.3g} m from the middle) is exp({ratio.max():.0f}) times the ambient viscosity: the law does not "
+        "hold there; the film, which forms at lower pressures, depends little on it, the traction does",
+        MagnitudeWarning,
+        stacklevel=3,
+    )

@@ -1,0 +1,119 @@
+"""What a film takes from the drive: traction over the slide-roll ratio, rolling moment, power, thermal reduction."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.variables import describe
+from contactstudy.bodies.lubricant import Lubricant
+from contactstudy.case.case import Case
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.film.formulas import thermal_reduction
+
+
+def film_traction(
+    case: Case, result: xr.Dataset, slide_roll_ratios: Sequence[float] | FloatArray, *, boundary_friction: float = 0.12
+) -> xr.Dataset:
+    """Compute traction and losses of a film at slide-roll ratios, for the film of the case's entrainment speed.
+
+    The film forms in the inlet, so it is that of pure rolling but for its heat: `thermal_reduction` states by how much.
+
+    Parameters
+    ----------
+    case : Case
+        The case, with its lubricant. Its `eyring_stress` and `limiting_shear` limit the shear stress where given;
+        without both the lubricant is Newtonian.
+    result : Dataset
+        What `solve_film` returned for it.
+    slide_roll_ratios : sequence of float
+        Differences of the speeds over their mean, increasing.
+    boundary_friction : float
+        Coefficient of friction of asperities in contact.
+
+    Returns
+    -------
+    Dataset
+        Over `slide_roll_ratio`: `traction_coefficient`, `power_loss` of sliding and rolling, `thermal_reduction` if the
+        lubricant has `temperature_viscosity` and `conductivity`; `rolling_force` and `rolling_moment`, about the
+        roller's axis.
+
+    Raises
+    ------
+    InvalidInputError
+        If the case has no lubricant, or the result is not of a film.
+
+    Examples
+    --------
+    >>> from contactstudy import FiniteLengthSpace, Lubricant, Material, Roller, Sliding, profiles, solve_film
+    >>> body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    >>> roller = Roller(radius=5e-3, length=1e-3, profile=profiles.Lundberg(amplitude=0.2e-6))
+    >>> oil = Lubricant.preset("heavy machine oil", 60.0).replaced(eyring_stress=5e6, limiting_shear=0.08)
+    >>> motion = Sliding(body_speed=2.0, roller_speed=2.0)
+    >>> case = Case(body=body, roller=roller, max_pressure=1e9, motion=motion, lubricant=oil)
+    >>> curve = film_traction(case, solve_film(case, accuracy=0.1), [0.0, 0.01, 0.1])
+    >>> [round(float(each), 3) for each in curve.traction_coefficient]
+    [0.0, 0.027, 0.038]
+    """
+    checks.instance("case", case, Case, "a Case")
+    oil = case.lubricant
+    if oil is None:
+        raise InvalidInputError("case.lubricant", None, "a Lubricant(...) for the traction of a film")
+    if "film_thickness" not in result:
+        raise InvalidInputError("result", f"{len(result)} variables", "what solve_film returns, with film_thickness")
+    ratios = checks.coordinates("slide_roll_ratios", slide_roll_ratios)
+    friction = checks.not_negative("boundary_friction", boundary_friction)
+    pressure, grid = labelled_cells("result.pressure", result["pressure"], extent=case.body.extent)
+    height = np.nan_to_num(result["film_thickness"].transpose("x", "y").values, nan=np.inf)
+    asperities = np.zeros_like(pressure)
+    if "asperity_pressure" in result:
+        asperities = result["asperity_pressure"].transpose("x", "y").values
+    fluid = np.maximum(pressure - asperities, 0.0)
+    area = grid.weights * grid.cell_area
+    speed, load = abs(float(result["entrainment_speed"])), float(result["normal_load"])
+    forces = []
+    for ratio in ratios:
+        shear = np.where(fluid > 0, shear_stress(oil, fluid, abs(ratio) * speed / height), 0.0)
+        boundary = friction * asperities if ratio else 0.0
+        forces.append(np.sign(ratio) * float((area * (shear + boundary)).sum()))
+    traction = np.array(forces)
+    finite = np.where(np.isfinite(height), height, 0.0)
+    steps = 0.5 * (finite[:, 1:] + finite[:, :-1]) * np.diff(fluid, axis=1)  # eq. (415)
+    rolling = 0.5 * abs(float((grid.widths[:, None] * steps).sum()))
+    values: dict[str, object] = {
+        "traction_coefficient": (("slide_roll_ratio",), traction / load),
+        "power_loss": (("slide_roll_ratio",), np.abs(traction * ratios) * speed + 2 * rolling * speed),
+        "rolling_force": rolling,
+        "rolling_moment": rolling * case.roller.radius,
+    }
+    if oil.temperature_viscosity is not None and oil.conductivity is not None:
+        loading = oil.viscosity * oil.temperature_viscosity * speed**2 / oil.conductivity
+        relative = case.hertz_max_pressure / (2 * case.modulus)
+        values["thermal_reduction"] = (
+            ("slide_roll_ratio",),
+            [thermal_reduction(relative, loading, float(ratio)) for ratio in ratios],
+        )
+    curve = xr.Dataset(values, coords={"slide_roll_ratio": ratios})
+    return describe(curve, "traction of a lubricated contact")
+
+
+def shear_stress(oil: Lubricant, pressure: FloatArray, rate: FloatArray) -> FloatArray:
+    """Shear stress, Pa, at pressures, Pa, and shear rates, 1/s: Newtonian, Ree-Eyring, and limited, eq. (416).
+
+    Examples
+    --------
+    >>> oil = Lubricant(viscosity=0.03, pressure_viscosity=2e-8, eyring_stress=5e6)
+    >>> float(shear_stress(oil, np.array(0.0), np.array(1e6))) < 0.03 * 1e6
+    True
+    """
+    stress = np.minimum(oil.viscosity_at(pressure) * rate, checks.LARGEST)
+    if oil.eyring_stress is not None:
+        stress = oil.eyring_stress * np.arcsinh(stress / oil.eyring_stress)
+    if oil.limiting_shear is not None:
+        stress = np.minimum(stress, oil.limiting_shear * pressure)
+    return np.asarray(stress)

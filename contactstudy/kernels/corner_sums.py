@@ -1,0 +1,236 @@
+"""Sums over the corners of cells in columns of any width, at points with equal offsets from the cells along y."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import fft
+
+from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.kernels.fine_cells import NEIGHBOURS, coarsened
+from contactstudy.kernels.images import Influence, snapped
+from contactstudy.kernels.smooth_load import ShapedLoad
+
+OFFSET_TOLERANCE = 1e-6  # largest difference of equal offsets from the cell centre, over a cell. Accuracy.
+
+
+@dataclass(frozen=True, eq=False)
+class AlignedPoints:
+    """Points of one axis that share their offset from the nearest cell centre."""
+
+    offset: float  # distance from the cell centre, metres
+    points: IntArray  # indices of the points on the axis
+    cells: IntArray  # cell of each (also outside the grid)
+
+
+def aligned_points(values: FloatArray, first_centre: float, step: float) -> list[AlignedPoints]:
+    """Group the points of one axis by their offset from the cell centres."""
+    position = (values - first_centre) / step
+    cells = np.floor(position + 0.5 - OFFSET_TOLERANCE).astype(np.int64)
+    offset = np.round((position - cells) / OFFSET_TOLERANCE).astype(np.int64)
+    return [
+        AlignedPoints(float(value) * OFFSET_TOLERANCE * step, members, cells[members])
+        for value in np.unique(offset)
+        for members in [np.flatnonzero(offset == value)]
+    ]
+
+
+FEW_POINTS = 8  # largest number of points along y with direct sums over the corners instead of a convolution. Speed.
+BLOCK = 16_384  # corners and depths per evaluation. Speed: the values fit into the processor's cache.
+MERGED_WIDTH = 0.04  # width of merged columns over their distance. Accuracy: 1e-5 of the pressure.
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """Points at some depths with equal offsets from the cells along y, and these cells."""
+
+    points: IntArray  # indices of the positions along y, and of the offsets between position and first corner
+    offset_indices: IntArray
+    numbers: IntArray  # depths
+    corners: EvenOffsets  # offsets and depths of the corner functions
+    edges: FloatArray | None  # edges along y of fine cells; None for the grid's cells
+    parts: int  # fine cells per cell of the layer; the cell carries their moments
+
+    @classmethod
+    def of(
+        cls,
+        column: AlignedPoints,
+        z: FloatArray,
+        numbers: IntArray,
+        *,
+        step: float,
+        edges: FloatArray | None,
+        parts: int,
+    ) -> Layer:
+        """Layer of points with equal offsets from the corners of cells of size `step`."""
+        # The cells of the points are counted from the first of the `edges`, or of `parts` grid cells if they are None.
+        count = parts if edges is None else (edges.size - 1) // parts
+        cells = column.cells
+        if edges is None:
+            parts = 1
+        elif parts > 1:
+            count, cells = count + 2 * NEIGHBOURS, cells + NEIGHBOURS
+        lowest = int(cells.min()) - count
+        offsets: FloatArray = column.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
+        return cls(column.points, cells - int(cells.min()), numbers, EvenOffsets(offsets, z), edges, parts)
+
+    def loads(self, load: ShapedLoad) -> FloatArray:
+        """Return loads of columns (column, y) on the cells of the layer."""
+        assert self.edges is not None
+        fine = load.equivalent_means(self.edges)
+        return fine if self.parts == 1 else np.ascontiguousarray(coarsened(fine.T, self.parts).T)
+
+
+def midpoint_cells(column: AlignedPoints, start: float, span: float, step: float) -> tuple[AlignedPoints, FloatArray]:
+    """Points ``start + offset + step * cells`` in the middle of cells, and the edges of these cells over a `span`."""
+    before = int(np.floor(-column.offset / step - 0.5))
+    begin = column.offset + step * (before + 0.5)
+    total = int(np.ceil((span - begin) / step - 1e-9))
+    edges = np.asarray(start + begin + step * np.arange(total + 1.0))
+    return AlignedPoints(0.5 * step, column.points, column.cells - before - 1), edges
+
+
+def divide_edges(edges: FloatArray, parts: int) -> FloatArray:
+    """Edges of uniform cells divided into equal parts."""
+    return np.linspace(edges[0], edges[-1], parts * (edges.size - 1) + 1)
+
+
+@dataclass(frozen=True, eq=False)
+class Jumps:
+    """Nonzero mixed jumps of a load at the edges along x: array (edge, corner), backwards along y."""
+
+    # For few points along y the jumps are `folded` onto the distinct distances of the corner functions: array (edge and
+    # distance, point and parity).
+
+    edges: FloatArray
+    values: FloatArray
+    folded: FloatArray | None
+    size: int
+    least: float
+
+    @classmethod
+    def of(cls, edges: FloatArray, loads: FloatArray, layer: Layer) -> Jumps:
+        """Jumps of `loads` (column, cell) for the points of a layer."""
+        least = float(np.diff(edges).min())
+        jumps = np.diff(np.diff(np.pad(loads, 1), axis=0), axis=1)
+        loaded = jumps.any(axis=1)
+        backwards, corners = jumps[loaded, ::-1], layer.corners
+        size = fft.next_fast_len(jumps.shape[1] + int(layer.offset_indices.max()), real=True)
+        folded = None
+        if layer.offset_indices.size <= FEW_POINTS and corners.index is not None:
+            folded = np.stack([corners.folded(backwards, start) for start in layer.offset_indices.tolist()], axis=1)
+            folded = folded.reshape(-1, 2 * layer.offset_indices.size)
+        return cls(edges[loaded], backwards, folded, size, least)
+
+    def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
+        """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""
+        distances = snapped(x - self.edges, self.least)
+        step = max(1, BLOCK // max(1, distances.size * corners.along_y.size))
+        spectrum = None if starts.size <= FEW_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
+        parts = [
+            self._at_depths(influence, corners, corners.z[start : start + step], distances, starts, spectrum)
+            for start in range(0, corners.z.size, step)
+        ]
+        return np.concatenate(parts, axis=1)
+
+    def _at_depths(
+        self,
+        influence: Influence,
+        corners: EvenOffsets,
+        z: FloatArray,
+        distances: FloatArray,
+        starts: IntArray,
+        spectrum: ComplexArray | None,
+    ) -> FloatArray:
+        """Field at some of the depths, for many points along y from the `spectrum` of the jumps."""
+        values = influence.corner(distances[:, None], corners.along_y, z[:, None, None], influence.poisson)
+        # A primitive is even where its kernel is odd, and odd where it is even.
+        odd = np.array(influence.sign_along_y) > 0
+        if self.folded is not None:
+            sums = values.reshape(*values.shape[:2], -1) @ self.folded
+            return np.where(odd[:, None, None], sums[..., 1::2], sums[..., ::2])
+        values, count = corners.unfold(values, odd, self.size), self.values.shape[1]
+        if spectrum is None:
+            windows = (values[..., start : start + count] for start in starts.tolist())
+            return np.stack([np.einsum("czef,ef->cz", window, self.values) for window in windows], axis=2)
+        summed = np.einsum("czek,ek->czk", fft.rfft(values, axis=3), spectrum)
+        return np.asarray(fft.irfft(summed, self.size, axis=2)[..., starts])
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        arrays = (self.edges, self.values, self.folded)
+        return sum(array.nbytes for array in arrays if array is not None)
+
+
+class EvenOffsets:
+    """Uniform offsets along y of corner functions, and depths; symmetric offsets are evaluated on one side of 0."""
+
+    # `along_y` are the evaluated offsets, `index` is the evaluated offset of each offset; None if they are equal.
+
+    def __init__(self, offsets: FloatArray, z: FloatArray) -> None:
+        self.z = z
+        self.along_y = offsets
+        self._sides: FloatArray = np.ones(1)
+        self.index: IntArray | None = None
+        if offsets.size > 1:
+            step = offsets[1] - offsets[0]
+            twice = np.round(2 * offsets / step).astype(np.int64)
+            if np.abs(2 * offsets / step - twice).max() < OFFSET_TOLERANCE:
+                distances, self.index = np.unique(np.abs(twice), return_inverse=True)
+                self.along_y = 0.5 * step * distances
+                self._sides = np.where(twice < 0, -1.0, 1.0)
+        self._folding_matrices: dict[tuple[int, int], FloatArray] = {}
+
+    def unfold(self, values: FloatArray, odd: BoolArray, size: int) -> FloatArray:
+        """Values (component, depth, edge, offset) from the evaluated offsets, padded with zeros to `size` offsets."""
+        unfolded = np.zeros((*values.shape[:-1], size))
+        if self.index is None:
+            unfolded[..., : values.shape[-1]] = values
+            return unfolded
+        negative, count = int((self._sides < 0).sum()), self.index.size
+        # Copies of contiguous ranges are several times faster than an index array.
+        if negative:
+            mirrored = values[..., self.index[negative - 1] : self.index[0] + 1][..., ::-1]
+            sign = np.where(odd, -1.0, 1.0)[:, None, None, None]
+            np.multiply(mirrored, sign, out=unfolded[..., :negative])
+        if negative < count:
+            unfolded[..., negative:count] = values[..., self.index[negative] : self.index[-1] + 1]
+        return unfolded
+
+    def folded(self, jumps: FloatArray, start: int) -> FloatArray:
+        """Jumps (edge, corner) from offset `start` on summed over both sides of 0: (edge and distance, parity)."""
+        matrix = self._folding_matrices.get((start, jumps.shape[1]))
+        if matrix is None:
+            matrix = self._folding_matrices[start, jumps.shape[1]] = self._folding_matrix(start, jumps.shape[1])
+        return (jumps @ matrix).reshape(-1, 2)
+
+    def _folding_matrix(self, start: int, count: int) -> FloatArray:
+        """Matrix that sums over both sides of 0: array (corner, distance and parity)."""
+        assert self.index is not None
+        window, corners = slice(start, start + count), np.arange(count)
+        matrix = np.zeros((count, self.along_y.size, 2))
+        matrix[corners, self.index[window], 0] = 1.0
+        matrix[corners, self.index[window], 1] = self._sides[window]
+        return matrix.reshape(count, -1)
+
+
+def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[FloatArray, FloatArray]:
+    """Merge columns (column, y) that are narrow against their distance from `x` into two of equal force and moment."""
+    middles, widths = 0.5 * (edges[1:] + edges[:-1]), np.diff(edges)
+    distances = np.abs(middles - x)
+    rings = np.log(distances / distances.min()) // np.log1p(MERGED_WIDTH)
+    starts = np.flatnonzero(np.append(True, np.diff(rings) != 0))
+    if starts.size == loads.shape[0]:
+        return edges, loads
+    stops = np.append(starts[1:], loads.shape[0])
+    first, size = edges[starts], (edges[stops] - edges[starts])[:, None]
+    centres = first + 0.5 * size[:, 0]
+    group = np.repeat(np.arange(starts.size), stops - starts)
+    force = np.add.reduceat(loads * widths[:, None], starts, axis=0) / size
+    moment = np.add.reduceat(loads * (widths * (middles - centres[group]))[:, None], starts, axis=0) / size**2
+    halved = np.stack([np.ones(starts.size, bool), stops - starts > 1], axis=1)
+    difference = np.where(halved[:, 1:], 4 * moment, 0.0)
+    parts = np.stack([force - difference, force + difference], axis=1)[halved]
+    return np.append(np.stack([first, centres], axis=1)[halved], edges[-1]), parts

@@ -1,0 +1,164 @@
+"""Stresses and displacements of the free ends beside the mirrored half-space's: harmonics of H and of V."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.equations import EquationSet, real_product
+from contactstudy.overlapping.field import Harmonics, Points, end_fields
+from contactstudy.overlapping.problem import EndProblem
+
+
+def end_stress(
+    problem: EndProblem, places: Sequence[Points], reference: float = np.inf
+) -> list[dict[Load, FloatArray]]:
+    """Stresses of the free ends beside the half-space with all mirrored loads: array (6, x, y, z)."""
+    fields: list[dict[Load, FloatArray]] = [{} for _ in places]
+    for alike in problem.alike():
+        grows = alike.sign_x < 0 and np.isfinite(reference)
+        parts = end_fields(alike, STRESS, places, reference=reference if grows else None)
+        for by_load, part in zip(fields, parts, strict=True):
+            by_load |= part
+    return fields
+
+
+def _stress_of_equivalent_load(
+    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+) -> FloatArray:
+    """Stresses of H under the equivalent load: array (6, x, z, column). Half-space harmonics, pressure column."""
+    nu, lateral = system.poisson, system.lateral
+    axial = system.modes.wavenumbers
+    k = np.sqrt(axial**2 + lateral**2)
+    c2, s2 = (axial / k) ** 2, (lateral / k) ** 2  # eq. (9)
+    decay = np.exp(-np.outer(k, z))
+    ramp = decay * z
+    zero = np.zeros_like(k)
+    # eqs. (11), (12) and (13)
+    even = [  # xx, yy, zz, yz, each as (constant, factor of z)
+        (-(c2 + 2 * nu * s2), c2 * k),
+        (-(s2 + 2 * nu * c2), s2 * k),
+        (zero - 1, -k),
+        (zero, zero + lateral),
+    ]
+    odd = [(-(1 - 2 * nu) * axial * lateral / k**2, axial * lateral / k), (zero, -axial)]  # xy, xz
+    result = np.empty((6, cosine.shape[1], z.size, equivalent.shape[1]))
+    for functions, terms, components in ((cosine, even, [0, 1, 2, 5]), (sine, odd, [3, 4])):
+        along_z = np.stack([a[:, None] * decay + b[:, None] * ramp for a, b in terms], axis=1)
+        along_x = equivalent.T[:, None, :] * functions.T
+        result[components] = real_product(along_x, along_z).transpose(2, 1, 3, 0)
+    return result
+
+
+def _stress_of_face_load(
+    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+) -> FloatArray:
+    """Stresses of V under the face loads on its two ends: array (6, x, z, column)."""
+    # The slab's harmonics are two half-space harmonics that start from either end; with ``X = kappa`` times the
+    # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
+    # below.
+    nu, lateral, modes = system.poisson, system.lateral, system.modes
+    kappa = np.sqrt(depth**2 + lateral**2)
+    amplitude, tau = modes.face_amplitude(kappa)
+    waves = np.exp(1j * np.outer(depth, z))
+    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
+    decay, ramp = _from_end(x, kappa, tau)
+    alike = reversed_ = ramp
+    if modes.parity:
+        far_decay, ramp = _from_end(modes.length - x, kappa, tau)
+        decay += modes.parity * far_decay
+        alike = alike + modes.parity * ramp
+        reversed_ = reversed_ - modes.parity * ramp
+    potential = (1 - 2 * nu) * decay - alike
+    lateral_part = 2 * nu * decay
+    # eqs. (11) and (12) with the waves of eq. (25)
+    cosine_z: ComplexArray = np.empty((4, x.size, depth.size), np.complex128)  # xx, yy, zz, xy
+    sine_z: ComplexArray = np.empty((2, x.size, depth.size), np.complex128)  # yz, xz
+    np.add(decay, alike, out=cosine_z[0])
+    np.add((lateral / kappa) ** 2 * potential, lateral_part, out=cosine_z[1])
+    np.add((depth / kappa) ** 2 * potential, lateral_part, out=cosine_z[2])
+    np.multiply(-lateral / kappa, reversed_, out=cosine_z[3])
+    np.multiply(lateral * depth / kappa**2, potential, out=sine_z[0])
+    np.multiply(depth / kappa, reversed_, out=sine_z[1])
+    result = np.empty((6, x.size, z.size, face_load.shape[1]))
+    result[[0, 1, 2, 3]] = real_product(cosine_z, right)
+    result[[5, 4]] = real_product(-1j * sine_z, right)
+    return result
+
+
+def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
+    """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
+    scaled = np.outer(distance, kappa)
+    decay = np.exp(-scaled)
+    scaled += tau
+    scaled *= decay
+    return decay, scaled
+
+
+STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
+    _stress_of_equivalent_load, _stress_of_face_load, even_in_y=[0, 1, 2, 4], odd_in_y=[3, 5], odd_along_x=[3, 4]
+)
+
+
+def end_displacement(
+    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float
+) -> dict[Load, FloatArray]:
+    """Displacements (3, x, y, z), times ``2 G``, of the free ends beside the half-space with all mirrored loads."""
+    points = Points(x, y, z)
+    (field,) = end_fields(problem, DISPLACEMENT, [points], reference=reference if np.isfinite(reference) else None)
+    return field
+
+
+def _displacement_of_equivalent_load(
+    system: EquationSet, equivalent: ComplexArray, cosine: ComplexArray, sine: ComplexArray, z: FloatArray
+) -> FloatArray:
+    """``2 G u`` of H under the equivalent load: array (3, x, z, column). Half-space harmonics, pressure column."""
+    nu, lateral = system.poisson, system.lateral
+    axial = system.modes.wavenumbers
+    k = np.sqrt(axial**2 + lateral**2)
+    decay = np.exp(-np.outer(k, z))
+    free = 1 - 2 * nu
+    result = np.empty((3, cosine.shape[1], z.size, equivalent.shape[1]))
+    # eqs. (10) and (13)
+    terms = (  # component, function of x, constant, factor of k z
+        (0, sine, -free * axial / k**2, axial / k**2),
+        (1, cosine, free * lateral / k**2, -lateral / k**2),
+        (2, cosine, 2 * (1 - nu) / k, 1 / k),
+    )
+    for component, function, constant, slope in terms:
+        along_z = decay * (constant[:, None] + slope[:, None] * np.outer(k, z))
+        result[component] = real_product(function.T, along_z[..., None] * equivalent[:, None, :])
+    return result
+
+
+def _displacement_of_face_load(
+    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, x: FloatArray, z: FloatArray
+) -> FloatArray:
+    """``2 G u`` of V under the face loads on its two ends: array (3, x, z, column)."""
+    # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
+    nu, lateral, modes = system.poisson, system.lateral, system.modes
+    kappa = np.sqrt(depth**2 + lateral**2)
+    amplitude, tau = modes.face_amplitude(kappa)
+    waves = np.exp(1j * np.outer(depth, z))
+    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
+    ends = [(x, 1, 1)]
+    if modes.parity:
+        ends.append((modes.length - x, modes.parity, -modes.parity))
+    for distance, even, odd in ends:
+        scaled = np.outer(distance, kappa)
+        decay = np.exp(-scaled)
+        potential = (1 - 2 * nu - tau - scaled) * decay  # eq. (10)
+        along_x[0] -= odd * (tau + scaled + 2 * (1 - nu)) * decay / kappa
+        along_x[1] -= even * lateral / kappa**2 * potential
+        along_x[2] += even * depth / kappa**2 * potential
+    return np.concatenate([real_product(along_x[:2], right), real_product(-1j * along_x[2:], right)])
+
+
+DISPLACEMENT = Harmonics(  # components along x, y, z
+    _displacement_of_equivalent_load, _displacement_of_face_load, even_in_y=[0, 2], odd_in_y=[1], odd_along_x=[0]
+)

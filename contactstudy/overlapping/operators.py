@@ -1,0 +1,253 @@
+"""The overlapping as linear operators between the cells of the top, the modes of H and the faces of V.
+
+A *band* is one equation set: a node of the wavenumber along y in one set of axial modes. Every operator is block
+diagonal over the bands; within a band it is a real matrix along x and z, equal at all positions y. Vectors:
+
+* cells: load per area on the cells of the grid, (x, y);
+* modes: per band the weighted spectrum of a load on H on the ends, real parts before imaginary parts, (wavenumber, y);
+* faces: per band the normal stress that V removes from the ends, at the depth wavenumbers, (wavenumber, y).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.sparse.linalg import LinearOperator
+
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.lateral import LateralColumns
+from contactstudy.overlapping.problem import EndProblem, View, make_views
+from contactstudy.threads import one_blas_thread
+
+
+class Positions(NamedTuple):
+    """Positions of equivalent loads, metres: `x` and `y` on the top, `y` and depths `z` on the ends."""
+
+    x: FloatArray
+    y: FloatArray
+    z: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class Band:
+    """One equation set."""
+
+    system: EquationSet  # equation set at the node
+    view: View  # unit loads on the cells along x, and the positions, in the axial modes
+    filters: dict[int, FloatArray]
+    """(cell_y, y): from a load along y to the part of the node at positions y, for loads even (1) or odd (-1) along
+    y."""
+
+
+def paired(columns: Any) -> FloatArray:
+    """Real matrix to modes of a complex matrix whose rows are wavenumbers: real parts before imaginary parts."""
+    return np.concatenate([np.real(columns), np.imag(columns)])
+
+
+def real_part(rows: Any) -> FloatArray:
+    """Real matrix from modes for the real part of a product with a complex matrix whose columns are wavenumbers."""
+    return np.concatenate([np.real(rows), -np.imag(rows)], axis=1)
+
+
+class BandOperator(LinearOperator):  # type: ignore[misc]
+    """Block diagonal operator: per band a real matrix (row, column) times an array (column, y) of `count` positions."""
+
+    def __init__(self, matrices: Sequence[FloatArray], count: int) -> None:
+        self.matrices, self.count = matrices, count
+        super().__init__(np.float64, tuple(count * sum(matrix.shape[axis] for matrix in matrices) for axis in (0, 1)))
+
+    def _matvec(self, vector: FloatArray) -> FloatArray:
+        parts = _split(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
+        return np.concatenate([(matrix @ part).ravel() for matrix, part in zip(self.matrices, parts, strict=True)])
+
+    def _rmatvec(self, vector: FloatArray) -> FloatArray:
+        parts = _split(vector, [matrix.shape[0] for matrix in self.matrices], self.count)
+        return np.concatenate([(matrix.T @ part).ravel() for matrix, part in zip(self.matrices, parts, strict=True)])
+
+
+class SolutionOperator(LinearOperator):  # type: ignore[misc]
+    """Solution of the equation sets of all bands for the faces, from the stress of the loads alone on the ends."""
+
+    def __init__(self, systems: Sequence[EquationSet], count: int) -> None:
+        self.systems, self.count = systems, count
+        size = count * sum(system.depth.size for system in systems)
+        super().__init__(np.float64, (size, size))
+
+    def _solution(self, vector: FloatArray, *, transposed: bool) -> FloatArray:
+        solutions = []
+        parts = _split(vector, [system.depth.size for system in self.systems], self.count)
+        for system, part in zip(self.systems, parts, strict=True):
+            scale = system.scale[:, None]
+            if transposed:
+                solutions.append(system.factorisation.solve_transposed(part / scale).ravel())
+            else:
+                solutions.append((system.solve(part) / scale).ravel())  # eq. (27)
+        return np.concatenate(solutions)
+
+    def _matvec(self, vector: FloatArray) -> FloatArray:
+        return self._solution(vector, transposed=False)
+
+    def _rmatvec(self, vector: FloatArray) -> FloatArray:
+        return self._solution(vector, transposed=True)
+
+
+class PositionOperator(LinearOperator):  # type: ignore[misc]
+    """Values at (position, y), or (y, position): the sum over the bands of a real matrix times an array (row, y)."""
+
+    def __init__(self, matrices: Sequence[FloatArray], count: int, *, y_first: bool = False) -> None:
+        self.matrices, self.count, self._y_first = matrices, count, y_first
+        columns = sum(matrix.shape[1] for matrix in matrices)
+        super().__init__(np.float64, (count * matrices[0].shape[0], count * columns))
+
+    def _matvec(self, vector: FloatArray) -> FloatArray:
+        parts = _split(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
+        total = np.zeros((self.matrices[0].shape[0], self.count))
+        for matrix, part in zip(self.matrices, parts, strict=True):
+            total += matrix @ part
+        return np.asarray((total.T if self._y_first else total).ravel())
+
+    def _rmatvec(self, vector: FloatArray) -> FloatArray:
+        total = vector.reshape(self.count, -1).T if self._y_first else vector.reshape(-1, self.count)
+        return np.concatenate([(matrix.T @ total).ravel() for matrix in self.matrices])
+
+
+class SpectrumOperator(LinearOperator):  # type: ignore[misc]
+    """Modes of a load on the cells: per band a real matrix (row, cell_x) and a filter (cell_y, y)."""
+
+    def __init__(self, matrices: Sequence[FloatArray], filters: Sequence[FloatArray]) -> None:
+        self.matrices, self.filters = matrices, filters
+        cells_y, count = filters[0].shape
+        rows = sum(matrix.shape[0] for matrix in matrices)
+        super().__init__(np.float64, (count * rows, matrices[0].shape[1] * cells_y))
+
+    def _matvec(self, vector: FloatArray) -> FloatArray:
+        cells = vector.reshape(self.matrices[0].shape[1], -1)
+        pairs = zip(self.matrices, self.filters, strict=True)
+        return np.concatenate([(matrix @ (cells @ lateral)).ravel() for matrix, lateral in pairs])
+
+    def _rmatvec(self, vector: FloatArray) -> FloatArray:
+        total = np.zeros((self.matrices[0].shape[1], self.filters[0].shape[0]))
+        parts = _split(vector, [matrix.shape[0] for matrix in self.matrices], self.filters[0].shape[1])
+        for matrix, lateral, part in zip(self.matrices, self.filters, parts, strict=True):
+            total += (matrix.T @ part) @ lateral.T
+        return total.ravel()
+
+
+def _split(vector: FloatArray, rows: Sequence[int], count: int) -> list[FloatArray]:
+    """Parts (row, y) of a vector, one per band."""
+    return [part.reshape(-1, count) for part in np.split(vector.ravel(), count * np.cumsum(rows)[:-1])]
+
+
+class EquivalentOperators(NamedTuple):
+    """Operators from a load on the cells to the equivalent loads, positive in compression."""
+
+    added: LinearOperator
+    """To the load of V on the top of H, (x, y): ``P_h1`` of a pressure is the pressure plus this load."""
+    faces: list[LinearOperator]  # to ``P_v1`` and, with two ends, ``P_v2``: (y, z)
+
+
+@dataclass(frozen=True, eq=False)
+class OverlappingOperators:
+    """Operators of the overlapping for loads that mirror images all keep or all reverse."""
+
+    # Loads at a corner, where they grow like a logarithm, are evaluated at a part of a cell from it. Loads that only
+    # tilt H and V against each other are relative to a reference.
+
+    problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem does not matter
+    positions: Positions  # positions of the equivalent loads
+    bands: list[Band]  # the equation sets
+
+    @classmethod
+    def of(cls, problem: EndProblem, positions: Positions, *, reference: float | None) -> OverlappingOperators:
+        """Operators of a problem; `reference` is the distance along y at which loads without stress are zero."""
+        offset, length = problem.corner_offset, problem.length
+        x, y, z = positions
+        x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, length - offset), x)
+        z = np.maximum(z, offset)
+        shortest = float(min(problem.from_end(x).min(), z.min()))
+        unit_loads = np.eye(problem.grid.cells_x)[problem.cell_of_column]
+        parities = np.zeros(problem.grid.cells_x, dtype=np.int64)
+        bands = []
+        with one_blas_thread():
+            for panel in problem.panels(y, shortest, reference):
+                columns = LateralColumns.unit(panel, unit_loads, parities)
+                even, odd = panel.filters(problem.grid, y)
+                for view in make_views(problem, columns, x, shortest):
+                    for number, lateral in enumerate(panel.nodes.tolist()):
+                        system = problem.equation_set(view.modes, lateral, shortest)
+                        bands.append(Band(system, view, {1: even[number], -1: odd[number]}))
+        return cls(problem, Positions(x, y, z), bands)
+
+    @cached_property
+    def _shortest(self) -> float:
+        return float(min(self.problem.from_end(self.positions.x).min(), self.positions.z.min()))
+
+    def _band_operator(self, matrix: Callable[[Band], FloatArray]) -> BandOperator:
+        return BandOperator([matrix(band) for band in self.bands], self.positions.y.size)
+
+    def modes(self, load: Load) -> LinearOperator:
+        """Return the operator from a load on the cells to modes, eqs. (6) and (7)."""
+        matrices = {id(view): paired(view.spectra[:, 0]) for view in {id(b.view): b.view for b in self.bands}.values()}
+        return SpectrumOperator(
+            [matrices[id(band.view)] for band in self.bands], [band.filters[load.sign_y] for band in self.bands]
+        )
+
+    def to_faces(self, load: Load) -> LinearOperator:
+        """Return the operator from modes of a load on H to the normal stress that it leaves on the ends, reversed."""
+        return self._band_operator(lambda band: real_part(band.system.load_to_faces(load)))
+
+    @cached_property
+    def to_top(self) -> LinearOperator:
+        """Operator from faces to the modes of the load of V on the top of H."""
+        return self._band_operator(
+            # eq. (26a)
+            lambda band: paired(band.view.modes.on_end[:, None] * band.system.top * band.system.scale)
+        )
+
+    @cached_property
+    def solution(self) -> LinearOperator:
+        """Operator from the stress of the loads alone on the ends to the faces: the sum of all rounds of iteration."""
+        return SolutionOperator([band.system for band in self.bands], self.positions.y.size)
+
+    @cached_property
+    def top_values(self) -> LinearOperator:
+        """Operator from faces to the load of V on the top of H at the positions (x, y), eqs. (4) and (6)."""
+
+        def matrix(band: Band) -> FloatArray:
+            values = np.zeros((self.positions.x.size, band.system.depth.size))
+            values[band.view.rows] = np.real(band.view.cosine.T @ band.system.top) * band.system.scale
+            return values
+
+        return PositionOperator([matrix(band) for band in self.bands], self.positions.y.size)
+
+    def face_values(self, load: Load, end: int) -> LinearOperator:
+        """Return the operator from modes of a load to the equivalent load on the face of end I (0) or II, (y, z)."""
+        matrices = [self._face_matrix(band, load, end) for band in self.bands]
+        return PositionOperator(matrices, self.positions.y.size, y_first=True)
+
+    def _face_matrix(self, band: Band, load: Load, end: int) -> FloatArray:
+        """Matrix from the modes of a band to the equivalent load on one face at the depths."""
+        modes, system = band.view.modes, band.system
+        depth, weights = system.ray(self._shortest, self.problem.resolution)
+        first, second = system.ray_to_faces(load, depth)
+        waves = np.exp(1j * np.outer(self.positions.z, depth))  # eq. (8)
+        waves = waves * weights * modes.applied(np.sqrt(depth**2 + system.lateral**2))
+        # The second end's load follows from the first's by parity; separate ends have a view each.
+        sign = modes.parity**end if modes.parity else int(band.view.flipped == bool(end))
+        return -sign * real_part(waves @ first + np.conj(waves @ second))
+
+    def equivalent(self, load: Load) -> EquivalentOperators:
+        """Return the operators from a load on the cells to the equivalent loads, without iteration."""
+        modes = self.modes(load)
+        faces = self.solution @ self.to_faces(load) @ modes  # eqs. (3) and (4)
+        on_faces = [
+            self.face_values(Load.NORMAL, end) @ self.to_top @ faces + self.face_values(load, end) @ modes
+            for end in range(1 if np.isinf(self.problem.length) else 2)
+        ]
+        return EquivalentOperators(self.top_values @ faces, on_faces)

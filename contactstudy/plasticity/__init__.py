@@ -1,0 +1,10 @@
+"""Plastic flow under many passes of a contact: residual stress, plastic strain, the profile of the top.
+
+After many passes the residual state does not depend on y: it is a field over the cross-section (x, z).
+"""
+
+from contactstudy.plasticity.eigenstrains import STRAINS, eigenstrain_stress
+from contactstudy.plasticity.material import ElasticPlastic
+from contactstudy.plasticity.passes import residual_stress
+
+__all__ = ["STRAINS", "ElasticPlastic", "eigenstrain_stress", "residual_stress"]

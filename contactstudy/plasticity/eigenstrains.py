@@ -1,0 +1,152 @@
+"""Residual stress of any plastic strain, or other eigenstrain, that does not depend on y."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.variables import STRESSES, describe, require
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
+from contactstudy.eigenstrain.body import EigenstrainBody
+from contactstudy.errors import InvalidInputError
+
+STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "xz", "yz"))
+"""Plastic strains, components of the tensor."""
+
+# Elements per cell along either axis, and degree of their polynomials. Accuracy: 1e-4 of the largest stress a cell away
+# from the corners where eigenstrain ends in a step, if the cells around are as small
+SPLITS, DEGREE = 2, 5
+
+
+NEAR = 1.0  # Largest distance of the outer position from an end, over the spacing, for a cell that ends on the end
+
+
+def eigenstrain_stress(
+    body: Body,
+    eigenstrain: xr.Dataset,
+    x: object = None,
+    z: object = None,
+    *,
+    x_edges: object = None,
+    z_edges: object = None,
+) -> xr.Dataset:
+    """Residual stress of eigenstrains over the cross-section (x, z) of a body with fields uniform along y.
+
+    Parameters
+    ----------
+    body : Body
+        Half-space, quarter-space or body between two free ends.
+    eigenstrain : Dataset
+        ``plastic_strain_xx``, ``_yy``, ``_zz``, ``_xy``, ``_xz``, ``_yz`` (components of the tensor; missing
+        components are zero) along `x` and `z`, metres: uniform in cells around these positions, zero beyond. It may
+        stem from plastic flow, heat or a transformation.
+    x, z : sequence of float, optional
+        Positions of the stresses, metres; default: the positions of the eigenstrain.
+    x_edges, z_edges : sequence of float, optional
+        Edges of the cells, metres; default: half-way between the positions, and on the top or a free end if that is as
+        near to the outer position as the next one.
+
+    Returns
+    -------
+    Dataset
+        The six residual stresses ``sigma_xx`` ... ``tau_yz`` (x, z), Pa, in equilibrium and with free top and ends to
+        rounding; between two cells the side at larger x and z. `residual_displacement_z` (into the body) and
+        `residual_displacement_y` (x) of the top, metres, relative to the depth.
+
+    Raises
+    ------
+    InvalidInputError
+        If the eigenstrain is missing or not finite, or cells and body do not fit.
+
+    Examples
+    --------
+    Strain along y is held by stress along y alone.
+
+    >>> from contactstudy import FiniteLengthSpace, Material
+    >>> body = FiniteLengthSpace(length=1.0, material=Material(2.0, 0.3))
+    >>> middles = {"x": [0.25, 0.75], "z": [1.0, 3.0, 5.0]}
+    >>> stretched = xr.Dataset({"plastic_strain_yy": (("x", "z"), np.ones((2, 3)))}, middles)
+    >>> found = eigenstrain_stress(body, stretched, x=[0.5], z=[0.1])
+    >>> round(float(found.sigma_yy.squeeze()), 3), abs(float(found.sigma_xx.squeeze())) < 1e-3
+    (-2.0, True)
+    """
+    checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
+    require(eigenstrain, argument="eigenstrain")
+    names = [name for name in STRAINS if name in eigenstrain]
+    if not names:
+        raise InvalidInputError("eigenstrain", sorted(map(str, eigenstrain)), f"with one of {', '.join(STRAINS)}")
+    positions = {}
+    for axis in ("x", "z"):
+        if axis not in eigenstrain.coords:
+            raise InvalidInputError("eigenstrain.coords", list(eigenstrain.coords), f"with {axis} (metres)")
+        positions[axis] = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
+    edges = {}
+    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
+        if argument is None and positions[axis].size < 2:
+            raise InvalidInputError(f"{axis}_edges", None, "given where there is one cell", "its size is not known")
+        edges[axis] = (
+            edges_around(positions[axis], low, high)
+            if argument is None
+            else checks.coordinates(f"{axis}_edges", argument)
+        )
+        _check_edges(axis, edges[axis], positions[axis], low, high)
+    strain = np.zeros((6, positions["x"].size, positions["z"].size))
+    for name in names:
+        values = np.asarray(eigenstrain[name].transpose("x", "z").values, dtype=np.float64)
+        if not np.isfinite(values).all():
+            raise InvalidInputError(f"eigenstrain.{name}", "values that are not finite", "finite strains")
+        strain[STRAINS.index(name)] = values
+    axes = {
+        axis: positions[axis] if argument is None else checks.coordinates(axis, argument)
+        for axis, argument in (("x", x), ("z", z))
+    }
+    low, high = body.extent
+    if (axes["x"] < low).any() or (axes["x"] > high).any() or (axes["z"] < 0).any():
+        raise InvalidInputError("x, z", "a position outside", f"inside the body, x from {low:g} to {high:g} m")
+    cells = EigenstrainBody(body.material, body.extent, edges["x"], edges["z"], SPLITS, DEGREE)
+    solution = cells.solve(strain)
+    sunk, dragged = solution.top_displacement(axes["x"])
+    result = xr.Dataset(
+        {name: (("x", "z"), field) for name, field in zip(STRESSES, solution.stresses(**axes), strict=True)}
+        | {"residual_displacement_z": ("x", sunk), "residual_displacement_y": ("x", dragged)},
+        coords=axes,
+    )
+    return describe(result, "residual stress")
+
+
+def _check_edges(axis: str, edges: np.ndarray, centres: np.ndarray, low: float, high: float) -> None:
+    """Raise unless cells with these edges are inside the body, each around its position."""
+    if edges.size != centres.size + 1 or (np.diff(edges) <= 0).any():
+        raise InvalidInputError(f"{axis}_edges", edges, f"{centres.size + 1} edges, increasing (metres)")
+    if edges[0] < low or edges[-1] > high:
+        raise InvalidInputError(f"{axis}_edges", edges, f"inside the body, {low:g} to {high:g} m")
+    if (centres < edges[:-1]).any() or (centres > edges[1:]).any():
+        raise InvalidInputError(f"{axis}_edges", edges, "such that each cell holds its position")
+
+
+def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:
+    """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
+    middle = 0.5 * (positions[1:] + positions[:-1])
+    near = [NEAR * (positions[1] - positions[0]), NEAR * (positions[-1] - positions[-2])]
+    first = low if positions[0] - low <= near[0] else 2 * positions[0] - middle[0]
+    last = high if high - positions[-1] <= near[1] else 2 * positions[-1] - middle[-1]
+    return np.concatenate([[first], middle, [last]])
+
+
+def cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
+    """Cells around positions in a body, which reach from its top and its free ends."""
+    for name, points in (("x", x), ("z", z)):
+        if points.size < 2 or (np.diff(points) <= 0).any():
+            raise InvalidInputError(name, points, "at least two positions, increasing (metres)")
+    low, high = body.extent
+    slack = 1e-9 * (x[-1] - x[0])  # Part of the positions' range that is rounding
+    if x[0] < low - slack or x[-1] > high + slack:
+        raise InvalidInputError("x", f"{x[0]:g} to {x[-1]:g} m", f"positions in the body, from {low:g} to {high:g} m")
+    x_edges, z_edges = edges_around(x, low, high), edges_around(z, 0.0, np.inf)
+    for name, face, edge in (("x", low, x_edges[0]), ("x", high, x_edges[-1]), ("z", 0.0, z_edges[0])):
+        if np.isfinite(face) and edge != face:
+            where = "the top" if name == "z" else f"the free end at {face:g} m"
+            raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {where}")
+    return EigenstrainBody(body.material, body.extent, x_edges, z_edges)

@@ -1,0 +1,277 @@
+"""Lines along the roller's axis and against depth: pressure, stresses, wear, several results together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import (
+    along_line,
+    axial_pressure,
+    dimension_along,
+    largest_sample,
+    measure,
+    positions,
+    single_case,
+)
+from contactstudy.arrays.variables import require
+from contactstudy.errors import InvalidInputError
+from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
+from contactstudy.plots.style import LEGEND_WIDTH, fold_labels, fold_text, line_styles, new_axes, units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+WEAR_LABELS = {"wear_depth": (1e6, "worn depth (µm)"), "line_load": (1e-3, "load per length (N/mm)")}
+"""Factor from SI and label of the variables of `plot_wear`."""
+
+
+def plot_axial_pressure(
+    dataset: xr.Dataset, ax: Axes | None = None, *, shift: float = 0.0, si: bool = False, **style: Any
+) -> Axes:
+    """Largest pressure across y along the roller's axis.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with `pressure`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    shift : float
+        Added to the positions, in the unit of the figure.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and pressures over p0.
+    **style
+        Style of the line, as in matplotlib.
+
+    Returns
+    -------
+    Axes
+        An open triangle at the top marks a singular end; the line ends 0.05 half-widths before it.
+
+    Raises
+    ------
+    InvalidInputError
+        If the pressure is missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[1.0], [2.0]], dims=("x", "y"), coords={"x": [0.5, 1.5], "y": [0.0]})
+    >>> case = xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> plot_axial_pressure(case).get_ylabel()
+    'contact pressure, $p/p_0$'
+    """
+    require(dataset, "pressure")
+    case = single_case(dataset)
+    require(case, "pressure")
+    unit = units(case, si=si)
+    ax = new_axes(ax)
+    axial = axial_pressure(case)
+    ends = singular_ends(case)
+    pressure = np.where(near_singular(case, ends), np.nan, axial.values)
+    x = axial[dimension_along(axial, "x")].values
+    (line,) = ax.plot(x / unit.length + shift, pressure / unit.stress, **style)
+    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
+    ax.set_xlabel(unit.axis("x"))
+    ax.set_ylabel(unit.stress_label("pressure"))
+    fold_labels(ax)
+    return ax
+
+
+def plot_comparison(
+    results: Mapping[str, xr.Dataset],
+    variable: str = "pressure",
+    ax: Axes | None = None,
+    *,
+    si: bool = False,
+    centred: bool | None = None,
+) -> Axes:
+    """Largest value in each cross-section along the roller's axis, for several results: profiles, bodies, loads.
+
+    Parameters
+    ----------
+    results : mapping
+        Name in the legend to a single case, drawn over its a and p0.
+    variable : str
+        `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
+    centred : bool, optional
+        Whether positions count from the middle of the contact; default: if the middles of the contacts differ by
+        more than a half-width, as for bodies of different length.
+
+    Returns
+    -------
+    Axes
+
+    Raises
+    ------
+    InvalidInputError
+        If `results` is empty, a variable is missing, or a Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[1.0], [2.0]], dims=("x", "y"), coords={"x": [0.5, 1.5], "y": [0.0]})
+    >>> case = xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> len(plot_comparison({"half": 0.5 * case, "full": case}, si=True).lines)
+    2
+    """
+    if not isinstance(results, Mapping) or not results:
+        raise InvalidInputError("results", results, "a mapping of names to results, at least one")
+    ax = new_axes(ax)
+    cases = {}
+    for name, dataset in results.items():
+        require(dataset)
+        cases[name] = single_case(dataset)
+    middles = {name: _middle_of_contact(case) for name, case in cases.items()}
+    if centred is None:
+        half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
+        spread = max(middles.values()) - min(middles.values())
+        centred = bool(half_widths) and spread > min(half_widths)
+    for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
+        unit = units(case, si=si)
+        if variable == "pressure":
+            profile = axial_pressure(case)
+        else:
+            profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
+        x = profile[dimension_along(profile, "x")].values
+        ends = singular_ends(case) if "pressure" in case else []
+        values = np.where(near_singular(case, ends, x), np.nan, profile.values)
+        origin = middles[name] if centred else 0.0
+        ax.plot((x - origin) / unit.length, values / unit.stress, label=fold_text(name, LEGEND_WIDTH), **style)
+        mark_at_top(ax, [(end - origin) / unit.length for end in ends], style["color"])
+    ax.set_xlabel(unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$")
+    ax.set_ylabel(unit.stress_label(variable))
+    ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
+    ax.legend(frameon=False, fontsize="small")
+    fold_labels(ax)
+    return ax
+
+
+def _middle_of_contact(case: xr.Dataset) -> float:
+    """Middle of the loaded positions along x, metres; 0 without a pressure."""
+    if "pressure" not in case:
+        return 0.0
+    axial = axial_pressure(case)
+    loaded = positions(axial, "x").where(axial > 0)
+    return 0.5 * float(loaded.min() + loaded.max())
+
+
+def plot_depth(
+    dataset: xr.Dataset,
+    variables: Sequence[str] = ("von_mises", "maximum_shear"),
+    ax: Axes | None = None,
+    *,
+    x: float | None = None,
+    y: float = 0.0,
+    si: bool = False,
+) -> Axes:
+    """Stresses against depth below a point of the surface.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with stresses.
+    variables : sequence of str
+        Stresses or measures, see :func:`contactstudy.analysis.measure`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    x, y : float, optional
+        The point, metres; default: the middle of the positions of stresses along x, and ``y = 0``.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
+
+    Returns
+    -------
+    Axes
+        With the depth downwards.
+
+    Raises
+    ------
+    InvalidInputError
+        If a variable is missing, the point lies outside the result, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> field = xr.DataArray([[[1.0, 4.0]]], dims=("x", "y", "z"), coords={"x": [0.0], "y": [0.0], "z": [0.0, 1.0]})
+    >>> case = xr.Dataset({"von_mises": field, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> plot_depth(case, ["von_mises"]).get_ylabel()
+    'depth, $z/a$'
+    """
+    names = [variables] if isinstance(variables, str) else list(variables)
+    if not names:
+        raise InvalidInputError("variables", variables, "at least one")
+    for name in names:
+        measure(dataset, name)
+    case = single_case(dataset)
+    unit = units(case, si=si)
+    field = measure(case, names[0])
+    depth, along = positions(field, "z").values, positions(field, "x").values
+    x = 0.5 * float(along.min() + along.max()) if x is None else x
+    ends = ((x, y, float(depth.min())), (x, y, float(depth.max())))
+    line = along_line(case, *ends, points=10 * np.size(depth) + 1, variables=names)
+    ax = new_axes(ax, (4.8, 4.8))
+    for name, style in zip(names, line_styles(len(names)), strict=True):
+        label = fold_text(unit.stress_label(name), LEGEND_WIDTH)
+        ax.plot(line[name].values / unit.stress, line["z"].values / unit.length, label=label, **style)
+    ax.set_ylim(depth.max() / unit.length, depth.min() / unit.length)
+    ax.set_title(f"below {unit.position('x', x)}, {unit.position('y', y)}", fontsize="medium")
+    ax.set_xlabel("stress over $p_0$" if not si else "stress (MPa)")
+    ax.set_ylabel(unit.axis("z"))
+    ax.legend(frameon=False, fontsize="small")
+    fold_labels(ax)
+    return ax
+
+
+def plot_wear(worn: xr.Dataset, ax: Axes | None = None, *, variable: str = "wear_depth") -> Axes:
+    """Worn depth or load per length along the axis, dark to light with the distance.
+
+    Parameters
+    ----------
+    worn : Dataset
+        Result of `wear.wear_in`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    variable : {"wear_depth", "line_load"}
+        Variable to draw; the depth points downwards, as a profile's drop.
+
+    Returns
+    -------
+    Axes
+        The legend lists the distances. Columns without load are omitted.
+
+    Raises
+    ------
+    InvalidInputError
+        If the variable is unknown or missing.
+
+    Examples
+    --------
+    >>> state = xr.DataArray([[0.0, 0.0], [2e-6, 1e-6]], dims=("distance", "x"))
+    >>> worn = xr.Dataset({"wear_depth": state, "line_load": 1 + state}, {"distance": [0.0, 9.0], "x": [0.5, 1.5]})
+    >>> [text.get_text() for text in plot_wear(worn).get_legend().get_texts()]
+    ['0 m', '9 m']
+    """
+    checks.known_name("variable", variable, WEAR_LABELS)
+    require(worn, variable, "line_load", argument="worn")
+    factor, label = WEAR_LABELS[variable]
+    ax = new_axes(ax)
+    loaded = (worn["line_load"] > 0).any("distance").values
+    distances = worn["distance"].values
+    depths = worn[variable].transpose("distance", "x").values
+    for number, style in enumerate(line_styles(distances.size)):
+        distance = np.format_float_positional(distances[number], precision=4, fractional=False, trim="-")
+        values = np.where(loaded, factor * depths[number], np.nan)
+        ax.plot(1e3 * worn["x"].values, values, label=f"{distance} m", **style)
+    if variable == "wear_depth" and not ax.yaxis_inverted():
+        ax.invert_yaxis()
+    ax.set_xlabel("position along the axis, $x$ (mm)")
+    ax.set_ylabel(label)
+    ax.legend(frameon=False, fontsize="small", title=str(worn["distance"].attrs.get("long_name", "distance")))
+    return ax

@@ -1,0 +1,133 @@
+"""Figures of a film: contours over the contact, film and pressure along a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import single_case
+from contactstudy.arrays.variables import require
+from contactstudy.errors import InvalidInputError
+from contactstudy.plots.style import COLORS, fold_labels, line_styles, new_axes, units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+REACH = 1.4
+"""Part of the plane along y in a figure, over the Hertz half-width."""
+
+
+def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int = 12, si: bool = False) -> Axes:
+    """Film thickness with contours, as an interferogram shows it.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `solve_film`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    fringes : int
+        Contours up to 1.5 times the central film.
+    si : bool
+        Whether to draw mm instead of lengths over a.
+
+    Returns
+    -------
+    Axes
+        A cross marks the least film.
+
+    Raises
+    ------
+    InvalidInputError
+        If the film is missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> film = xr.DataArray([[1e-6, 2e-6], [1e-6, 3e-6]], dims=("x", "y"), coords=cells)
+    >>> scalars = {"central_film": 2e-6, "least_film_x": 0.5, "least_film_y": -0.5, "hertz_half_width": 1.0}
+    >>> case = xr.Dataset({"film_thickness": film, **scalars, "hertz_max_pressure": 1.0})
+    >>> plot_film_map(case).get_ylabel()
+    'position along rolling, $y/a$'
+    """
+    checks.count("fringes", fringes)
+    require(dataset, "film_thickness", "central_film", "least_film_x", "least_film_y")
+    case = single_case(dataset)
+    unit, ax = units(case, si=si), new_axes(ax)
+    film = 1e6 * case["film_thickness"].transpose("y", "x")
+    x, y = (film[axis].values / unit.length for axis in "xy")
+    largest = 1.5e6 * float(case["central_film"])
+    levels = np.linspace(0.0, largest, fringes + 1)
+    filled = ax.contourf(x, y, film.values, levels=levels, cmap=COLORS, extend="max")
+    ax.contour(x, y, film.values, levels=levels[1:], colors="0.25", linewidths=0.5)
+    ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
+    reach = REACH * float(case["hertz_half_width"]) / unit.length
+    ax.set_ylim(max(-reach, y.min()), min(reach, y.max()))
+    ax.set_xlabel(unit.axis("x"))
+    ax.set_ylabel(unit.axis("y"))
+    bar = ax.figure.colorbar(filled, ax=ax, label="film thickness, $h$ (µm)")
+    fold_labels(ax, bar.ax)
+    return ax
+
+
+def plot_film_line(
+    dataset: xr.Dataset, ax: Axes | None = None, *, x: float | None = None, y: float | None = None, si: bool = False
+) -> Axes:
+    """Film thickness and pressure along the axis, or along y.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `solve_film`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    x, y : float, optional
+        Position of the line along y or along the axis, metres; default: along the axis at ``y = 0``.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and pressures over p0.
+
+    Returns
+    -------
+    Axes
+        Of the film; the pressure has axes on the right.
+
+    Raises
+    ------
+    InvalidInputError
+        If the film is missing, both positions are given, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> film = xr.DataArray([[1e-6, 2e-6], [1e-6, 3e-6]], dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"film_thickness": film, "pressure": 0 * film, "central_film": 1e-6,
+    ...                    "hertz_half_width": 1.0, "hertz_max_pressure": 1.0})
+    >>> plot_film_line(case, x=0.5).get_xlabel()
+    'position along rolling, $y/a$'
+    """
+    require(dataset, "film_thickness", "pressure", "central_film")
+    if x is not None and y is not None:
+        raise InvalidInputError("x, y", (x, y), "one of the two")
+    case = single_case(dataset)
+    unit, ax = units(case, si=si), new_axes(ax)
+    axis, fixed, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
+    line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed: position})
+    along = line[axis].values / unit.length
+    styles = line_styles(2)
+    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **styles[0])
+    other = ax.twinx()
+    other.plot(along, line["pressure"].values / unit.stress, label="pressure", **styles[1])
+    ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
+    other.set_ylim(bottom=0.0)
+    if axis == "y":
+        reach = REACH * float(case["hertz_half_width"]) / unit.length
+        ax.set_xlim(-reach, reach)
+    ax.set_xlabel(unit.axis(axis))
+    ax.set_ylabel("film thickness, $h$ (µm)")
+    other.set_ylabel(unit.stress_label("pressure"))
+    ax.legend(handles=[*ax.lines, *other.lines], frameon=False, fontsize="small")
+    fold_labels(ax, other)
+    return ax

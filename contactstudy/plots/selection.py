@@ -1,0 +1,94 @@
+"""Selection of the values of a study's parameters that a figure shows, and their text in titles."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.selections import place_of
+from contactstudy.errors import InvalidInputError
+from contactstudy.plots.style import SYMBOLS, escape_dollars, fold_text
+
+SCALES = {
+    "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
+    "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
+    "rad": ((0.0, 1e-3, "mrad"),),
+}
+"""Units of figures by SI unit: least size, factor, name. One unit serves a complete axis."""
+
+
+def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
+    """Part of a study with these values of its swept parameters; every dimension remains."""
+    return dataset.isel({name: [place_of(dataset, name, value)] for name, value in selection.items()})
+
+
+def select_one(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> xr.DataArray:
+    """Array over the dimensions `axes`, with the selected value of every other dimension."""
+    for name in selection:
+        if name not in array.dims or name in axes:
+            swept = [str(dim) for dim in array.dims if dim not in axes]
+            raise InvalidInputError("selection", name, f"of {', '.join(swept) or 'nothing'}")
+    for dim in [str(dim) for dim in array.dims if dim not in axes]:
+        if dim in selection:
+            array = array.isel({dim: place_of(array, dim, selection[dim])})
+        elif array.sizes[dim] == 1:
+            array = array.isel({dim: 0})
+        else:
+            raise InvalidInputError(
+                "selection", dict(selection), f"with a value of {dim}", f"the study has {array.sizes[dim]} of them"
+            )
+    return array
+
+
+def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of the parameters beside `axes`: the selected ones, or the first with most solved cases."""
+    dims = [str(dim) for dim in array.dims if str(dim) not in axes]
+    choices = [[selection[dim]] if dim in selection else list(array[dim].values) for dim in dims]
+    combinations = [dict(zip(dims, values, strict=True)) for values in itertools.product(*choices)]
+    return max(combinations, key=lambda values: int(np.isfinite(select_one(array, axes, values)).sum()))
+
+
+def scale_of(array: xr.DataArray) -> tuple[float, str]:
+    """Size in SI and name of the unit of a figure's axis; an empty name for a pure number."""
+    unit = str(array.attrs.get("units", "1"))
+    if unit in ("", "1"):
+        return 1.0, ""
+    if unit not in SCALES:
+        return 1.0, unit
+    largest = float(abs(array).where(np.isfinite(array)).max())
+    return next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
+
+
+def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:
+    """Values and label of a parameter or quantity: stresses in MPa or GPa, lengths in µm or mm."""
+    text = SYMBOLS.get(name) or str(array.attrs.get("long_name", name.replace("_", " ")))
+    if text.startswith("z of "):
+        text = f"depth of {text.removeprefix('z of ')}"
+    factor, unit = scale_of(array)
+    return (array if factor == 1.0 else array / factor), f"{text} ({unit})" if unit else text
+
+
+def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
+    """Text of one value of a parameter, with the number of values of the study."""
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    text = quantity(float(value), units or "1") if number else escape_dollars(value)
+    symbol = "$p_0$" if name == "max_pressure" else name.replace("_over_a", "/a").replace("_", " ")
+    return f"{symbol} = {text}" + (f", one of {count} values" if count > 1 else "")
+
+
+def join_lines(parts: list[str], width: int, heading: str = "") -> str:
+    """Title of several values, in lines that break between the values."""
+    lines = [heading]
+    for number, part in enumerate(parts):
+        text = part + (";" if number + 1 < len(parts) else "")
+        line = f"{lines[-1]} {text}".strip()
+        if lines[-1] and len(line) > width:
+            lines.append(text)
+        else:
+            lines[-1] = line
+    return "\n".join(fold_text(line, width) for line in lines)

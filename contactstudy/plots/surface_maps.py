@@ -1,0 +1,338 @@
+"""Maps of the top of the body: pressure, traction, slip, stick and temperature, cropped to the contact."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis import dimension_along, single_case
+from contactstudy.arrays.engineering import unit_for
+from contactstudy.arrays.variables import require, variable_of
+from contactstudy.checks import BoolArray, FloatArray, IntArray
+from contactstudy.plots.singular import near_singular, singular_ends
+from contactstudy.plots.style import COLORS, Units, fold_labels, new_axes, units
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.collections import QuadMesh
+
+HEAT_COLORS = "inferno"
+STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
+CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
+STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
+BORDER_LEVEL = 0.01
+"""Squared pressure over its largest value at the border of the contact: linear in the distance from the border."""
+
+MARGIN = 0.1  # Margin around the contact over its width
+VECTORS = ("traction", "slip")
+SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
+
+
+class Surface(NamedTuple):
+    """Positions of a map in the units of its figure, and the pressure over (y, x)."""
+
+    case: xr.Dataset
+    unit: Units
+    x: FloatArray
+    y: FloatArray
+    pressure: FloatArray
+
+    def values(self, name: str) -> FloatArray:
+        """Variable over (y, x)."""
+        array = self.case[name]
+        x, y = (dimension_along(array, axis) for axis in "xy")
+        values: FloatArray = np.asarray(array.transpose(y, x).values, dtype=np.float64)
+        return values
+
+    @property
+    def pressed(self) -> BoolArray:
+        """Cells in contact over (y, x)."""
+        return self.pressure > 0
+
+
+def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
+    """Surface of a single case with these variables; `load` is positive in the contact."""
+    require(dataset, *names)
+    case = single_case(dataset)
+    require(case, *names)
+    unit = units(case, si=si)
+    x, y = (dimension_along(case[load], axis) for axis in "xy")
+    pressure = case[load]
+    across, along = (pressure[dim].values / unit.length for dim in (x, y))
+    return Surface(case, unit, across, along, pressure.transpose(y, x).values)
+
+
+def _draw_mesh(ax: Axes, surface: Surface, values: Any, **style: Any) -> QuadMesh:
+    """Draw values over (y, x) as cells."""
+    return ax.pcolormesh(surface.x, surface.y, values, shading="nearest", rasterized=True, **style)
+
+
+def _draw_border(ax: Axes, surface: Surface, values: FloatArray, level: float, **style: Any) -> Any:
+    """Draw a closed contour of values over (y, x), 0 beyond the cells; None for too few cells."""
+    if min(values.shape) < 2 or values.max() <= level:
+        return None
+    x, y = (_with_outer_edges(positions) for positions in (surface.x, surface.y))
+    return ax.contour(x, y, np.pad(values, 1), levels=[level], **style)
+
+
+def _with_outer_edges(centres: FloatArray) -> FloatArray:
+    """Centres of cells, with the outer edges of the first and the last cell."""
+    first, last = centres[1] - centres[0], centres[-1] - centres[-2]
+    return np.concatenate([[centres[0] - 0.5 * first], centres, [centres[-1] + 0.5 * last]])
+
+
+def _extend(values: FloatArray, pressed: BoolArray) -> FloatArray:
+    """Values over (y, x), continued along y from the contact to the cells beside it; 0 in columns without contact."""
+    rows = np.arange(len(values))[:, None]
+    first, last = pressed.argmax(axis=0), len(values) - 1 - pressed[::-1].argmax(axis=0)
+    continued = np.take_along_axis(values, np.clip(rows, first, last), axis=0)
+    return np.where(pressed.any(axis=0), continued, 0.0)
+
+
+def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
+    """Draw the border of the contact, and clip artists to it."""
+    squared = surface.pressure**2
+    border = _draw_border(ax, surface, squared, BORDER_LEVEL * float(squared.max()), **CONTACT_BORDER)
+    for artist in artists:
+        if border is not None and artist is not None:
+            artist.set_clip_path(border.get_paths()[0], ax.transData)
+
+
+def _crop(ax: Axes, surface: Surface, margin: float = MARGIN) -> None:
+    """Limit the axes to the contact with a margin, and label them."""
+    for positions, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
+        loaded = np.flatnonzero(surface.pressed.any(axis=axis))
+        if loaded.size > 1:
+            low, high = positions[loaded[0]], positions[loaded[-1]]
+            around = margin * (high - low)
+            limit(low - around, high + around)
+    ax.set_xlabel(surface.unit.axis("x"))
+    ax.set_ylabel(surface.unit.axis("y"))
+
+
+def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool = False) -> Axes:
+    """Pressure on the top of the body.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with `pressure`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and pressures over p0.
+
+    Returns
+    -------
+    Axes
+        Cropped to the contact. Beside a singular end the colours stop at the pressure 0.05 a from it.
+
+    Raises
+    ------
+    InvalidInputError
+        If the pressure is missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray([[1.0, 1.0], [2.0, 2.0]], dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"pressure": pressure, "hertz_half_width": 1.0, "hertz_max_pressure": 2.0})
+    >>> plot_pressure_map(case).get_ylabel()
+    'position along rolling, $y/a$'
+    """
+    surface = _surface(dataset, ("pressure",), si=si)
+    ax = new_axes(ax)
+    near = near_singular(surface.case, singular_ends(surface.case))
+    stress = surface.unit.stress
+    largest = float(surface.pressure[:, ~near].max()) / stress if near.any() and not near.all() else None
+    mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=largest)
+    _draw_contact_border(ax, surface, mesh)
+    extend = "neither" if largest is None else "max"
+    bar = ax.figure.colorbar(mesh, ax=ax, label=surface.unit.stress_label("pressure"), extend=extend)
+    _crop(ax, surface)
+    fold_labels(ax, bar.ax)
+    return ax
+
+
+def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool = False, arrows: int = 24) -> Axes:
+    """Areas that stick and slip, with arrows of the tractions on the body.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with stick and slip.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and tractions over p0.
+    arrows : int
+        Arrows along the longer side of the contact.
+
+    Returns
+    -------
+    Axes
+        Cropped to the contact; the arrow above it is the scale.
+
+    Raises
+    ------
+    InvalidInputError
+        If tractions are missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray(np.ones((2, 2)), dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"pressure": pressure, "traction_x": 0 * pressure, "traction_y": 0.1 * pressure,
+    ...                    "stick": pressure > 0, "hertz_half_width": 1.0, "hertz_max_pressure": 1.0})
+    >>> len(plot_stick_and_slip(case).get_legend().get_texts())
+    2
+    """
+    from matplotlib.colors import ListedColormap
+    from matplotlib.patches import Patch
+
+    checks.count("arrows", arrows)
+    surface = _surface(dataset, ("pressure", "traction_x", "traction_y", "stick"), si=si)
+    ax = new_axes(ax)
+    slip = np.where(surface.values("stick") > 0, 0.0, 1.0)
+    mesh = _draw_mesh(
+        ax, surface, _extend(slip, surface.pressed), cmap=ListedColormap([STICK_COLOR, SLIP_COLOR]), vmin=0, vmax=1
+    )
+    _draw_contact_border(ax, surface, mesh)
+    rows, columns = _arrow_cells(surface, arrows)
+    traction = [surface.values(f"traction_{axis}")[rows, columns] / surface.unit.stress for axis in "xy"]
+    largest = float(np.hypot(*traction).max(initial=0.0))
+    ax.set_aspect("equal")
+    _crop(ax, surface, 0.05)
+    if largest > 0:
+        spans = (np.ptp(values[surface.pressed.any(axis=i)]) for i, values in enumerate((surface.x, surface.y)))
+        scale = largest / (1.5 * max(spans) / arrows)
+        vectors = ax.quiver(
+            surface.x[columns], surface.y[rows], *traction, angles="xy", scale_units="xy", scale=scale, width=3e-3
+        )
+        label = f"${largest:.3g}\\,p_0$" if not si else f"{largest:.3g} MPa"
+        ax.quiverkey(vectors, 0.86, 1.06, largest, label, labelpos="W", coordinates="axes")
+    handles = [Patch(facecolor=STICK_COLOR, label="stick"), Patch(facecolor=SLIP_COLOR, label="slip")]
+    ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
+    fold_labels(ax)
+    return ax
+
+
+def _arrow_cells(surface: Surface, arrows: int) -> tuple[IntArray, IntArray]:
+    """Rows and columns of evenly spread cells of the contact, `arrows` of them along its longer side."""
+    spans = [values[surface.pressed.any(axis=i)] for i, values in enumerate((surface.x, surface.y))]
+    step = max(float(np.ptp(span)) for span in spans) / arrows or 1.0
+    indices = []
+    for values, span in zip((surface.x, surface.y), spans, strict=True):
+        count = max(1, round(float(np.ptp(span)) / step))
+        targets = span[0] + (np.arange(count) + 0.5) * float(np.ptp(span)) / count
+        indices.append(np.unique(np.abs(values[:, None] - targets).argmin(axis=0)))
+    columns, rows = (index.ravel() for index in np.meshgrid(*indices, indexing="ij"))
+    inside = surface.pressed[rows, columns]
+    return rows[inside], columns[inside]
+
+
+def plot_traction_map(
+    dataset: xr.Dataset, ax: Axes | None = None, *, variable: str = "traction", si: bool = False
+) -> Axes:
+    """Magnitude of the traction or the slip on the top, with the borders of contact and stick area.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A single case with stick and slip.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    variable : {"traction", "slip"}
+        Vector to draw. The slip is the roller's against the body: per distance rolled, or of a shift.
+    si : bool
+        Whether to draw mm and MPa instead of lengths over a and tractions over p0.
+
+    Returns
+    -------
+    Axes
+        Cropped to the contact; its two axes have different scales.
+
+    Raises
+    ------
+    InvalidInputError
+        If the variable or stick is missing, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> pressure = xr.DataArray(np.ones((2, 2)), dims=("x", "y"), coords=cells)
+    >>> case = xr.Dataset({"pressure": pressure, "traction_x": 0.3 * pressure, "traction_y": 0.4 * pressure,
+    ...                    "stick": pressure > 0, "hertz_half_width": 1.0, "hertz_max_pressure": 1.0})
+    >>> float(plot_traction_map(case).collections[0].get_array().max())
+    0.5
+    """
+    checks.known_name("variable", variable, VECTORS)
+    surface = _surface(dataset, ("pressure", "stick", f"{variable}_x", f"{variable}_y"), si=si)
+    ax = new_axes(ax)
+    magnitude = np.hypot(surface.values(f"{variable}_x"), surface.values(f"{variable}_y"))
+    largest = float(magnitude[surface.pressed].max(initial=0.0))
+    factor, label = surface.unit.stress, f"traction{' (MPa)' if si else ' over $p_0$'}"
+    if variable == "slip":
+        factor, unit = unit_for(largest, str(surface.case["slip_y"].attrs.get("units", "1")))
+        label = f"slip ({unit})" if unit else "slip per distance rolled"
+    mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.pressed), cmap=COLORS, vmin=0.0)
+    stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.pressed), 0.5, **STICK_BORDER)
+    _draw_contact_border(ax, surface, mesh, stick)
+    bar = ax.figure.colorbar(mesh, ax=ax, label=label)
+    _crop(ax, surface)
+    fold_labels(ax, bar.ax)
+    return ax
+
+
+def plot_temperature_map(
+    dataset: xr.Dataset, ax: Axes | None = None, *, surface: str = "body", si: bool = False
+) -> Axes:
+    """Temperature rise of a surface, with the hottest cell and the border of the contact.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        Result of `flash_temperature`.
+    ax : Axes, optional
+        Axes to draw in; default: a new figure.
+    surface : {"body", "roller"}
+        Surface to draw.
+    si : bool
+        Whether to draw lengths in mm instead of over a.
+
+    Returns
+    -------
+    Axes
+        A cross marks the hottest cell; a white line encloses the heated cells.
+
+    Raises
+    ------
+    InvalidInputError
+        If the surface has no temperature, or the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> cells = {"x": [0.5, 1.5], "y": [-0.5, 0.5]}
+    >>> rise = xr.DataArray([[1.0, 1.0], [2.0, 2.5]], dims=("x", "y"), coords=cells)
+    >>> hot = xr.Dataset({"temperature_rise": rise, "frictional_heat": 0 * rise, "hertz_half_width": 1.0})
+    >>> plot_temperature_map(hot.assign(hertz_max_pressure=1.0)).get_ylabel()
+    'position along rolling, $y/a$'
+    """
+    checks.known_name("surface", surface, SURFACES)
+    name = SURFACES[surface]
+    heated = _surface(dataset, (name, "frictional_heat"), si=si, load="frictional_heat")
+    ax = new_axes(ax)
+    rise = heated.values(name)
+    mesh = _draw_mesh(ax, heated, rise, cmap=HEAT_COLORS)
+    _draw_border(ax, heated, heated.pressure, 1e-3 * float(heated.pressure.max()), colors="white", linewidths=0.8)
+    row, column = divmod(int(rise.argmax()), rise.shape[1])
+    ax.plot(heated.x[column], heated.y[row], "+", color="black", markersize=9)
+    entry = variable_of(name, heated.case[name].attrs)
+    bar = ax.figure.colorbar(mesh, ax=ax, label=f"{entry.long_name} (K)")
+    ax.set_xlabel(heated.unit.axis("x"))
+    ax.set_ylabel(heated.unit.axis("y"))
+    fold_labels(ax, bar.ax)
+    return ax

@@ -1,0 +1,215 @@
+"""Profiles made of other profiles: two halves, and a profile over the length without corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.arrays.engineering import quantity
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.base import (
+    Profile,
+    Shape,
+    SlopeJumps,
+    as_shape,
+    checked_drop,
+    end_slope,
+    in_words,
+    local_radius,
+)
+
+
+@dataclass(frozen=True, repr=False)
+class Halves(Shape):
+    """One profile left and another right of mid-length.
+
+    Each half equals a roller's half with this profile at both ends: lengths refer to the full roller.
+
+    Parameters
+    ----------
+    left, right : Profile
+        Profiles for ``x < 0`` and ``x >= 0``. They must meet at mid-length to 1e-10 m.
+
+    Raises
+    ------
+    InvalidInputError
+        If one is not a profile, or (on use) the halves do not meet.
+
+    Examples
+    --------
+    >>> from contactstudy.profiles import Cylinder, FullCrown
+    >>> profile = Halves(left=Cylinder(), right=FullCrown(crown_radius=1.25))
+    >>> (1e6 * profile.drop(np.array([-5e-3, 0.0, 5e-3]), length=10e-3)).round(3).tolist()
+    [0.0, 0.0, 10.0]
+    """
+
+    left: Profile
+    right: Profile
+
+    def __post_init__(self) -> None:
+        for name in ("left", "right"):
+            checks.instance(name, getattr(self, name), Profile, "a profile from contactstudy.profiles")
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        middle = np.zeros(1)
+        left_drop, right_drop = (float(checked_drop(half, middle, length)[0]) for half in (self.left, self.right))
+        # Largest step between the two halves at mid-length, metres: about one atom
+        if abs(left_drop - right_drop) > 1e-10:
+            raise InvalidInputError(
+                "left, right", (left_drop, right_drop), "equal drops at mid-length (metres), so that the halves meet"
+            )
+        x = np.asarray(x)
+        return np.asarray(np.where(x < 0, *(checked_drop(half, x, length) for half in (self.left, self.right))))
+
+    def slope_jumps(self, length: float) -> SlopeJumps:
+        """Corners of both halves, and the one at mid-length."""
+        lower, upper = as_shape(self.left).slope_jumps(length), as_shape(self.right).slope_jumps(length)
+        jump = end_slope(self.right, 0.0, length, 1) - end_slope(self.left, 0.0, length, -1)
+        return SlopeJumps.merged(
+            SlopeJumps(*(values[lower.positions < 0] for values in lower)),
+            SlopeJumps(np.zeros(1), np.array([jump])),
+            SlopeJumps(*(values[upper.positions > 0] for values in upper)),
+        )
+
+    def nodes(self, length: float) -> FloatArray:
+        """Nodes (m) of both halves, and mid-length."""
+        lower, upper = as_shape(self.left).nodes(length), as_shape(self.right).nodes(length)
+        return np.concatenate([lower[lower < 0], [0.0], upper[upper > 0]])
+
+    def second_interpolation(self) -> Halves | None:
+        """Profile with the second interpolation of a measured half."""
+        lower, upper = as_shape(self.left).second_interpolation(), as_shape(self.right).second_interpolation()
+        return Halves(lower or self.left, upper or self.right) if lower or upper else None
+
+    def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+        """Radius across the roller (m) of each half."""
+        lower, upper = (local_radius(half, x, length, radius) for half in (self.left, self.right))
+        return np.asarray(np.where(np.asarray(x) < 0, lower, upper))
+
+
+STEP = 1e-6  # Step of the difference for the slope at an end of the effective length, over this length
+STEEPEST = 1.0  # Slope of the profile at which a corner begins at the latest: logarithmic profiles end upright
+
+
+class Corner(NamedTuple):
+    """Circle that continues the profile to the roller's end."""
+
+    start: float  # from mid-length, m, not negative
+    drop: float  # at the start, m
+    sine: float  # of the angle between generatrix and axis at the start
+    cosine: float
+
+
+@dataclass(frozen=True, repr=False)
+class EffectiveLength(Shape):
+    """A profile that a drawing states over the effective length, without the roller's corners.
+
+    Within the effective length the drop is that of `profile` on a roller of this length. The corners are circles over
+    the rest of the roller at either end: each begins with the profile's slope, and is perpendicular to the axis at the
+    roller's end. A profile with an infinite drop at its end, such as Lundberg's, is followed to the slope 1.
+
+    Parameters
+    ----------
+    profile : Profile
+        Any profile.
+    effective_length : float
+        Length without corners, metres; at most the roller's length.
+
+    Raises
+    ------
+    InvalidInputError
+        If the length is not positive, or (on use) the roller is shorter.
+
+    Examples
+    --------
+    A crown of 8 um at the ends of 9 of 10 mm; over the whole length the same crown would drop by 8 um at 5 mm only.
+
+    >>> from contactstudy.profiles import FullCrown
+    >>> crown = FullCrown(crown_radius=4.5e-3**2 / 16e-6)
+    >>> EffectiveLength(crown, 9e-3)
+    EffectiveLength(FullCrown(crown_radius=1266 mm), effective_length=9 mm, drop 8 µm at its end)
+    >>> (1e6 * EffectiveLength(crown, 9e-3).drop(np.array([0.0, 4.5e-3, 4.6e-3]), length=10e-3)).round(1).tolist()
+    [0.0, 8.0, 18.4]
+    """
+
+    profile: Profile
+    effective_length: float
+
+    def __post_init__(self) -> None:
+        checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
+        checks.store(self, effective_length=checks.positive("effective_length", self.effective_length, "metres"))
+
+    @property
+    def end_drop(self) -> float:
+        """Larger drop at the two starts of the corners, metres."""
+        return max(self._corner(side).drop for side in (-1, 1))
+
+    def __repr__(self) -> str:
+        length, drop = (quantity(value, "m") for value in (self.effective_length, self.end_drop))
+        return f"EffectiveLength({in_words(self.profile)}, effective_length={length}, drop {drop} at its end)"
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        """Material removed (m) at distances `x` (m) from mid-length."""
+        half = 0.5 * length
+        if 0.5 * self.effective_length > half * (1 + 1e-12):
+            raise InvalidInputError(
+                "effective_length", self.effective_length, f"at most the roller's length, {length:g} m"
+            )
+        x = np.asarray(x)
+        first, last = self._corner(-1), self._corner(1)
+        drops = checked_drop(self.profile, np.clip(x, -first.start, last.start), self.effective_length)
+        for side, corner in ((-1, first), (1, last)):
+            width = max(half - corner.start, 0.0)
+            if width == 0:
+                continue
+            beyond = np.clip(side * x - corner.start, 0.0, width)
+            radius = width / (1 - corner.sine)
+            chord = np.minimum(corner.sine * radius + beyond, radius)
+            # R cos - sqrt(R**2 - chord**2) without cancellation: exactly 0 at the start of the corner.
+            denominator = radius * corner.cosine + np.sqrt((radius - chord) * (radius + chord))
+            drops = drops + beyond * (2 * corner.sine * radius + beyond) / denominator
+        return drops
+
+    def _corner(self, side: int) -> Corner:
+        """Corner at the end of smaller (-1) or larger (1) x."""
+        length = self.effective_length
+        half, step = 0.5 * length, STEP * length
+
+        def drops(*distances: float) -> FloatArray:
+            return checked_drop(self.profile, side * np.array(distances), length)
+
+        end, inside = drops(half, half - step)
+        if np.isfinite(end):
+            slope = float(np.clip((end - inside) / step, 0.0, STEEPEST))
+            return Corner(half, float(end), slope / float(np.hypot(1, slope)), 1 / float(np.hypot(1, slope)))
+        low, high = 0.0, half
+        for _ in range(60):  # Bisections for the position of the steepest slope
+            middle = 0.5 * (low + high)
+            width = STEP * (half - middle)
+            near, far = drops(middle - width, middle)
+            low, high = (middle, high) if far - near < STEEPEST * width else (low, middle)
+        return Corner(low, float(drops(low)[0]), np.sqrt(0.5), np.sqrt(0.5))
+
+    def slope_jumps(self, length: float) -> SlopeJumps:
+        """Corners of the profile within the effective length; the corner circles begin with the profile's slope."""
+        corners = as_shape(self.profile).slope_jumps(self.effective_length)
+        return SlopeJumps(*(values[np.abs(corners.positions) < 0.5 * self.effective_length] for values in corners))
+
+    def nodes(self, length: float) -> FloatArray:
+        """Nodes (m) of the profile."""
+        return as_shape(self.profile).nodes(self.effective_length)
+
+    def second_interpolation(self) -> EffectiveLength | None:
+        """Profile with the second interpolation of its measured points."""
+        other = as_shape(self.profile).second_interpolation()
+        return EffectiveLength(other, self.effective_length) if other else None
+
+    def local_radius(self, x: FloatArray, length: float, radius: float | FloatArray) -> FloatArray:
+        """Radius across the roller (m): the profile's, constant over the corners."""
+        half = 0.5 * self.effective_length
+        return local_radius(self.profile, np.clip(x, -half, half), self.effective_length, radius)

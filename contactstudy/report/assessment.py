@@ -1,0 +1,259 @@
+"""Assessment of a result: convergence, balance, free ends, cells and errors, with a verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis import single_case
+from contactstudy.analysis.axes import axis_dimensions
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
+from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.variables import require
+from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
+
+YES, CARE, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if the result lacks the number
+LOAD_TOLERANCE, RESIDUAL_TOLERANCE, VIOLATION_TOLERANCE = 1e-6, 1e-3, 1e-4
+"""Largest relative error of the load, residual of free ends and of Coulomb's law, and violation of the contact
+conditions: each is below the digits that a summary prints."""
+
+PEAK_TOLERANCE = 0.02  # Largest relative error of the peak pressure: twice the default accuracy
+
+
+class Criterion(NamedTuple):
+    """A question, its answer, and the reason."""
+
+    question: str
+    answer: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class Assessment:
+    """Criteria of a trustworthy result; prints as text."""
+
+    criteria: tuple[Criterion, ...]
+
+    @property
+    def overall(self) -> str:
+        """Worst answer, without "not known"."""
+        answers = {criterion.answer for criterion in self.criteria}
+        return next((answer for answer in (NO, CARE, YES) if answer in answers), UNKNOWN)
+
+    @property
+    def verdict(self) -> str:
+        """One sentence."""
+        reason = next((criterion.reason for criterion in self.criteria if criterion.answer == self.overall), "")
+        return {
+            YES: "all criteria hold",
+            CARE: reason,
+            NO: f"do not rely on it; {reason}",
+            UNKNOWN: "the result contains no criterion",
+        }[self.overall]
+
+    def __repr__(self) -> str:
+        lines = [f"  {criterion.question} {criterion.answer}: {criterion.reason}" for criterion in self.criteria]
+        return "\n".join([f"{self.overall}: {self.verdict}", *lines])
+
+
+def assess(dataset: xr.Dataset) -> Assessment:
+    """Assess the numbers of a result: convergence, balance, contact conditions, free ends, cells, errors.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of :func:`contactstudy.solve`, its file, or one case selected from a study.
+
+    Returns
+    -------
+    Assessment
+        Prints as text. The limits of the model are not assessed.
+
+    Raises
+    ------
+    InvalidInputError
+        If the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> assess(xr.Dataset({"converged": True, "iterations": 7})).overall
+    'yes'
+    """
+    require(dataset)
+    case = single_case(dataset).assign_attrs(dataset.attrs)
+    return assess_case(case, summary(case))
+
+
+def assess_case(case: xr.Dataset, table: Summary) -> Assessment:
+    """Return the assessment of a case with its summary."""
+    return Assessment(tuple(_criteria(case, table)))
+
+
+def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
+    """Every criterion; of a case without a result the reason alone."""
+    if "status" in case and (status := str(case["status"].item())) != "ok":
+        message = str(case["message"].item()) if "message" in case else ""
+        yield Criterion("Is there a result?", NO, f"the case is {status}" + (f": {message}" if message else ""))
+        return
+    yield _converged(case)
+    yield _load(case)
+    yield _contact_conditions(case)
+    if "bound_error" in case:
+        yield _friction(case)
+    yield _free_ends(case)
+    yield _cells(case)
+    profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
+    yield from map(_measured_profile, _parts_of_kind(profile, "Measured"))
+    if "peak_von_mises" in table:
+        yield _peak_stress(case, table["peak_von_mises"])
+    for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
+        yield Criterion("Was there a warning?", CARE, str(text))
+
+
+def _converged(case: xr.Dataset) -> Criterion:
+    """Whether the iteration met its tolerance."""
+    question, steps = "Did the iteration converge?", _size(case, "iterations")
+    if "converged" not in case:
+        return _unknown(question, "converged")
+    count = f" in {steps:.0f} applications of the operator" if np.isfinite(steps) else ""
+    if bool(case["converged"]):
+        return Criterion(question, YES, f"it reached its tolerance{count}")
+    return Criterion(question, NO, f"it stopped before its tolerance{count}")
+
+
+def _load(case: xr.Dataset) -> Criterion:
+    """Whether the pressure is in equilibrium with the load."""
+    question, error = "Does the pressure carry the load?", _size(case, "load_error")
+    if np.isnan(error):
+        return _unknown(question, "load_error")
+    offset = _size(case, "load_position_error")
+    position = f", its position to {_digit(offset)} of the length" if offset > 0 else ""
+    holds = error <= LOAD_TOLERANCE and not offset > VIOLATION_TOLERANCE
+    return Criterion(
+        question, YES if holds else NO, f"the resultant equals the load to {_digit(error)} of it{position}"
+    )
+
+
+def _contact_conditions(case: xr.Dataset) -> Criterion:
+    """Whether gap and pressure are complementary."""
+    question = "Do gap and pressure exclude each other?"
+    overlap, pressure = _size(case, "penetration_error"), _size(case, "open_pressure_error")
+    if np.isnan(overlap):
+        return _unknown(question, "penetration_error")
+    holds = max(overlap, np.nan_to_num(pressure)) <= VIOLATION_TOLERANCE
+    reason = (
+        f"gap or overlap under pressure is {_digit(overlap)} of the displacement, pressure over a gap "
+        f"{_digit(pressure)} of the peak"
+    )
+    return Criterion(question, YES if holds else CARE, reason)
+
+
+def _friction(case: xr.Dataset) -> Criterion:
+    """Whether stick and slip obey Coulomb's law."""
+    errors = {name: _size(case, name) for name in ("bound_error", "slip_error", "force_error") if name in case}
+    reason = ", ".join(f"{name.replace('_', ' ')} {_digit(value)}" for name, value in errors.items())
+    holds = all(not value > RESIDUAL_TOLERANCE for value in errors.values())
+    return Criterion("Do stick and slip follow Coulomb's law?", YES if holds else CARE, reason)
+
+
+def _free_ends(case: xr.Dataset) -> Criterion:
+    """Whether the traction on the free ends vanishes."""
+    question, residual = "Are the free ends free?", _size(case, "end_traction_residual")
+    body = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("body", {})
+    if body.get("kind") == "HalfSpace" or (residual == 0 and not body):
+        return Criterion(question, YES, "the body has no free end, or the traction there is zero")
+    if np.isnan(residual):
+        return _unknown(question, "end_traction_residual")
+    reason = f"the traction there is {_digit(residual)} of the peak pressure"
+    if body.get("model", "exact") != "exact":
+        return Criterion(question, CARE, f"{reason}: the model {body['model']!r} serves comparisons only")
+    return Criterion(question, YES if residual <= RESIDUAL_TOLERANCE else CARE, reason)
+
+
+def _cells(case: xr.Dataset) -> Criterion:
+    """Whether the cells resolve the peak pressure."""
+    question = "Are the cells fine enough?"
+    peak, error = (float(case.get(name, np.nan)) for name in ("peak_pressure", "peak_pressure_error"))
+    if np.isinf(peak):
+        reason = f"the pressure is singular at {_singular_edge(case)}: its intensity replaces the peak"
+        return Criterion(question, CARE, reason)
+    if np.isnan(error):
+        reason = "the error on the given cells was not estimated; numbers at the ends may depend on the cells"
+        return Criterion(question, CARE if "pressure" in case else UNKNOWN, reason)
+    if np.isinf(error):
+        reason = str(case["peak_pressure_error"].attrs.get("comment", "two grids show no limit: take finer cells"))
+        return Criterion(question, CARE, reason)
+    relative = error / peak if peak else 0.0
+    if relative > PEAK_TOLERANCE:
+        return Criterion(question, CARE, f"the error of the peak pressure is {relative:.1%}")
+    return Criterion(question, YES, f"the peak pressure is settled to {relative:.1%}")
+
+
+def _singular_edge(case: xr.Dataset) -> str:
+    """Name of the edge with a singular pressure, and the argument for its radius."""
+    if "corner_x" in case:
+        return f"the corner x = {quantity(float(case['corner_x']), 'm')}; a Chamfer may have a blend_radius"
+    inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
+    start, length = inputs.get("end_distance"), inputs.get("body", {}).get("length", np.inf)
+    overhangs = start is not None and (
+        ("end_intensity_first" in case and start < 0)
+        or ("end_intensity_last" in case and start + inputs["roller"]["length"] > length)
+    )
+    if overhangs:
+        return "the body's sharp edge, under the roller; Case(body_edge=...) takes a radius or a chamfer"
+    return "the roller's sharp end inside the face; Roller(profile=...) takes a radius or a chamfer"
+
+
+def _measured_profile(profile: dict[str, Any]) -> Criterion:
+    """Whether a measured profile is filtered: cells resolve noise like a shape."""
+    question, cutoff = "Is the measured profile filtered?", profile.get("cutoff")
+    if cutoff is None:
+        reason = (
+            "its points are unfiltered, and the pressure contains their noise, even of a tenth of a micrometre: choose "
+            "a cutoff on which the peak does not depend"
+        )
+        return Criterion(question, CARE, reason)
+    reason = f"the cut-off is {quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
+    return Criterion(question, YES, reason)
+
+
+def _parts_of_kind(table: Any, kind: str) -> Iterator[dict[str, Any]]:
+    """Yield every part of a serialized profile with this kind."""
+    if isinstance(table, dict):
+        if table.get("kind") == kind:
+            yield table
+        table = list(table.values())
+    if isinstance(table, list):
+        for entry in table:
+            yield from _parts_of_kind(entry, kind)
+
+
+def _peak_stress(case: xr.Dataset, row: Quantity) -> Criterion:
+    """Whether the largest von Mises stress has an error."""
+    question = "Is the largest stress known?"
+    if "peak_von_mises_error" not in case and "von_mises" in case:
+        flat = [axis for axis, dim in axis_dimensions(case["von_mises"]).items() if case.sizes[dim] == 1]
+        if flat:
+            return Criterion(question, CARE, f"the stresses have one position along {' and '.join(flat)} only")
+    if not np.isfinite(row.error) or np.isinf(row.value):
+        return Criterion(question, CARE, row.remark or NOT_ESTIMATED)
+    return Criterion(question, YES, row.text)
+
+
+def _unknown(question: str, name: str) -> Criterion:
+    """Criterion of a number that the result lacks."""
+    return Criterion(question, UNKNOWN, f"the result has no {name}")
+
+
+def _size(case: xr.Dataset, name: str) -> float:
+    """Absolute value of a scalar; NaN without it."""
+    return abs(float(case.get(name, np.nan)))
+
+
+def _digit(value: float) -> str:
+    """Small number with one digit, such as '2e-07'."""
+    return f"{value:.0e}" if value else "0"

@@ -1,0 +1,156 @@
+"""Table of the inputs of a case: geometry, materials, load, motion."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from typing import NamedTuple
+
+import numpy as np
+
+from contactstudy.arrays.engineering import html_table, quantity
+from contactstudy.bodies.material import Material
+from contactstudy.bodies.models import Body, FiniteLengthSpace
+from contactstudy.case.case import Case
+from contactstudy.case.motion import AxialFriction, Sliding
+from contactstudy.case.roller import Roller
+from contactstudy.profiles import Cylinder, Profile, Shape
+from contactstudy.profiles.base import in_words
+
+
+@dataclass(frozen=True, repr=False)
+class CaseTable:
+    """Rows of a case by subject, with a repr as text and as HTML."""
+
+    subjects: dict[str, list[Input]]
+
+    def __repr__(self) -> str:
+        return "\n".join(
+            f"{subject}: {row.meaning}: {row.text}" for subject, rows in self.subjects.items() for row in rows
+        )
+
+    def _repr_html_(self) -> str:
+        return html_table(self.subjects.items())
+
+
+def case_table(case: Case) -> CaseTable:
+    """Return the inputs of a case as a table, for a notebook or a terminal.
+
+    Parameters
+    ----------
+    case : Case
+        Any case.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, HalfSpace, Material, Roller
+    >>> body = HalfSpace(material=Material(210e9, 0.3))
+    >>> table = case_table(Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9))
+    >>> print(str(table).splitlines()[0])
+    Roller: radius R: 5 mm
+    """
+    return CaseTable(inputs(case))
+
+
+class Input(NamedTuple):
+    """One row: meaning, and value with its unit."""
+
+    meaning: str
+    text: str
+
+
+def inputs(case: Case) -> dict[str, list[Input]]:
+    """Rows on a case, by subject."""
+    return {
+        "Roller": roller_rows(case.roller),
+        "Body": [Input("kind", body_words(case.body)), Input("material", material_words(case.body.material))],
+        "Place": [
+            Input("from end I of the body to the roller, e", quantity(case.roller_start, "m")),
+            *_second_distance(case),
+        ],
+        "Load": _load(case),
+    }
+
+
+def roller_rows(roller: Roller) -> list[Input]:
+    """Rows on a roller: geometry, material, and how far its profile drops."""
+    rows = [
+        Input("radius R", quantity(roller.radius, "m")),
+        Input("length L", quantity(roller.length, "m")),
+        Input("profile", _profile(roller.profile)),
+        Input("material", material_words(roller.material) if roller.material else "rigid"),
+    ]
+    if roller.material is not None:
+        ends = "its own free ends" if roller.ends == "free" else "a half-space, without ends"
+        rows.append(Input("elastic as", ends))
+    drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
+    rows.append(Input(f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
+    rows.append(Input("drop at the very end", quantity(drops[1], "m")))
+    return rows
+
+
+def _second_distance(case: Case) -> list[Input]:
+    """Distance at end II, where there is one."""
+    if not isinstance(case.body, FiniteLengthSpace):
+        return []
+    distance = case.body.length - case.roller_start - case.roller.length
+    return [Input("from the roller to end II", quantity(distance, "m"))]
+
+
+def _load(case: Case) -> list[Input]:
+    """Load, friction, tilt and motion."""
+    if case.approach is not None:
+        rows = [Input("approach, which takes the load that results", quantity(case.approach, "m"))]
+    else:
+        rows = [
+            Input("normal load W", quantity(case.normal_load, "N")),
+            Input("Hertz pressure p0 of the line contact", quantity(case.hertz_max_pressure, "Pa")),
+            Input("Hertz half-width a", quantity(case.hertz_half_width, "m")),
+        ]
+    if case.load_position is not None:
+        rows.append(Input("the load acts at x =", quantity(case.load_position, "m")))
+    if case.tilt:
+        rows.append(Input("tilt, positive if larger x is pressed deeper", quantity(case.tilt, "rad")))
+    friction = case.friction
+    if isinstance(friction, AxialFriction):
+        rows.append(Input("friction along the axis", f"{min(friction.values):g} to {max(friction.values):g}"))
+    else:
+        rows.append(Input("friction coefficient", f"{friction:g}{', coupled' if case.coupled else ''}"))
+    if isinstance(case.motion, Sliding):
+        rows.append(
+            Input("motion", "full sliding along +y" if friction else "sliding without friction, so without traction")
+        )
+    else:
+        values = {entry.name: getattr(case.motion, entry.name) for entry in fields(case.motion)}
+        values_text = ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in values.items() if value)
+        rows.append(Input("motion", f"{type(case.motion).__name__.lower()}: {values_text or 'none'}"))
+    if case.motion.speeds is not None:
+        rows.append(Input("entrainment speed um", f"{case.motion.speeds.entrainment:g} m/s"))
+    if case.lubricant is not None:
+        rows.append(Input("lubricant", repr(case.lubricant).partition("(")[2].rstrip(")")))
+    return rows
+
+
+def _profile(profile: Profile) -> str:
+    """Profile in words."""
+    if profile == Cylinder():
+        return "cylinder with sharp ends"
+    text = in_words(profile)
+    return text.replace("_", " ").replace("=", " ").replace("(", " (") if isinstance(profile, Shape) else text
+
+
+def material_words(material: Material) -> str:
+    """Material in one line."""
+    return f"E = {quantity(material.young, 'Pa')}, Poisson's ratio {material.poisson:g}"
+
+
+def body_words(body: Body) -> str:
+    """Kind of a body in one line."""
+    low, high = body.extent
+    if math.isinf(low):
+        return "half-space, no free end"
+    model = getattr(body, "model", "exact")
+    note = "" if model == "exact" else f", ends by the comparison model {model!r}"
+    if math.isfinite(high):
+        return f"two free ends, {quantity(high, 'm')} apart{note}"
+    return f"one free end, at x = 0{note}"

@@ -1,0 +1,309 @@
+"""Summary of a result: main numbers with their errors, as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from contactstudy.analysis import contact_length, cut_ends, peak, single_case
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
+from contactstudy.arrays.engineering import NUMBER, TEXT, html_table, quantity, with_error
+from contactstudy.arrays.variables import AXES, STRESSES, require, variable_of
+from contactstudy.case.gridding import TOLERANCE
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.edge_tension import edge_tension
+
+NOT_ESTIMATED = "error not estimated"
+SINGULAR = "singular: unbounded towards a sharp end"
+CELL_MEAN = f"mean over the cell of largest pressure, {NOT_ESTIMATED}"
+OPEN_END = "no contact at this end"
+ENDS = {"first": "end I", "last": "end II"}  # Ends of the roller: suffixes of variables, and names in the table
+
+FILMS = ("central_film", "least_film", "end_film_ratio", "least_film_ratio")
+"""Films with a row if they are present."""
+
+SCALARS = {
+    "approach": "approach of roller and body",
+    "tilt": "tilt",
+    "load_position": "position x of the resultant",
+    "force_x": "force along the axis",
+    "force_y": "force along rolling",
+    "moment_z": "moment about z",
+    "longitudinal_creepage": "longitudinal creepage",
+    "lateral_creepage": "lateral creepage",
+    "spin": "spin",
+    "shift_x": "shift along the axis",
+    "shift_y": "shift along rolling",
+    "friction_work": "frictional work",
+}
+"""Scalars with a row if they are present and not zero."""
+
+SOLVED = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
+"""Scalars of these that follow from the solution unless the case prescribes them."""
+
+BALANCED = ("load_position",)
+"""Scalars with a variable ``_error`` that is the residual of a prescribed value, in other units."""
+
+
+class Quantity(NamedTuple):
+    """Row of a summary."""
+
+    name: str
+    meaning: str
+    value: float  # SI
+    error: float  # NaN if it is not estimated
+    units: str
+    text: str  # value and error in engineers' units
+    remark: str = ""  # why a value has no error or no limit; the end nearest to a position
+
+
+@dataclass(frozen=True)
+class Summary:
+    """Main numbers of a result; prints as a table, in a notebook too."""
+
+    numbers: tuple[Quantity, ...]
+
+    def __getitem__(self, name: str) -> Quantity:
+        """Row of a variable."""
+        return next(number for number in self.numbers if number.name == name)
+
+    def __contains__(self, name: object) -> bool:
+        """Whether a variable has a row."""
+        return any(number.name == name for number in self.numbers)
+
+    def __repr__(self) -> str:
+        meaning = max((len(row.meaning) for row in self.numbers), default=0)
+        text = max((len(row.text) for row in self.numbers), default=0)
+        return "\n".join(f"{row.meaning:{meaning}}  {row.text:{text}}  {row.remark}".rstrip() for row in self.numbers)
+
+    def _repr_html_(self) -> str:
+        rows = ((row.meaning, row.text, row.remark) for row in self.numbers)
+        return html_table([("", rows)], styles=(TEXT, NUMBER, TEXT))
+
+    def to_dataframe(self) -> pd.DataFrame:
+        """Table of the numbers in SI, by name."""
+        columns = ["name", "value", "error", "units", "meaning", "remark"]
+        rows = [(row.name, row.value, row.error, row.units, row.meaning, row.remark) for row in self.numbers]
+        return pd.DataFrame(rows, columns=columns).set_index("name")
+
+
+def summary(dataset: xr.Dataset) -> Summary:
+    """Return the main numbers of a result with their errors, in engineers' units.
+
+    Parameters
+    ----------
+    dataset : Dataset
+        A result of :func:`contactstudy.solve`, its file, or one case selected from a study.
+
+    Returns
+    -------
+    Summary
+        Load, Hertz pressure and half-width, peak and end pressures, laws of singular ends, loads on the ends, length
+        of the contact, largest von Mises stress and its position, approach, tilt, and the quantities of rolling, as far
+        as the result contains them. `to_dataframe` has the values in SI.
+
+    Raises
+    ------
+    InvalidInputError
+        If the Dataset contains more than one case.
+
+    Examples
+    --------
+    >>> pressure = xr.DataArray([[1.0e9], [2.0e9]], dims=("x", "y"), coords={"x": [0.0, 1e-3], "y": [0.0]})
+    >>> summary(xr.Dataset({"pressure": pressure, "hertz_max_pressure": 1.5e9}))
+    Hertz pressure p0  1.5 GPa
+    largest pressure   2 GPa    mean over the cell of largest pressure, error not estimated
+    """
+    require(dataset)
+    return Summary(tuple(_rows(single_case(dataset))))
+
+
+def _rows(case: xr.Dataset) -> Iterator[Quantity]:
+    """Rows of a case."""
+    for name, meaning in (
+        ("normal_load", "normal load"),
+        ("hertz_max_pressure", "Hertz pressure p0"),
+        ("hertz_half_width", "Hertz half-width a"),
+    ):
+        if name in case:
+            yield (_row_with_error if f"{name}_error" in case else _row)(case, name, meaning)
+    yield from _peak_pressure(case)
+    for suffix, end in ENDS.items():
+        if f"end_pressure_{suffix}" in case:
+            yield _row_with_error(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
+        if f"end_intensity_{suffix}" in case:
+            yield _intensity(case, suffix, end)
+        if f"end_load_{suffix}" in case:
+            yield _row_with_error(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
+    for name in FILMS:
+        if name in case:
+            yield _row_with_error(case, name, variable_of(name, case[name].attrs).long_name)
+    yield from _length(case)
+    yield from _peak_stress(case)
+    yield from _edge_tension(case)
+    for name, meaning in SCALARS.items():
+        if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
+            estimated = f"{name}_error" in case and name not in BALANCED
+            row = _row_with_error(case, name, meaning) if estimated else _row(case, name, meaning, _mark(case, name))
+            yield _rounded(case, row)
+    yield from _slip(case)
+
+
+def _row(case: xr.Dataset, name: str, meaning: str, remark: str = "") -> Quantity:
+    """Row of a scalar without an error."""
+    units = variable_of(name, case[name].attrs).units
+    value = float(case[name])
+    return Quantity(name, meaning, value, np.nan, units, quantity(value, units), remark)
+
+
+def _row_with_error(case: xr.Dataset, name: str, meaning: str) -> Quantity:
+    """Row of a scalar with its error, or with the reason why it has none."""
+    value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
+    units = variable_of(name, case[name].attrs).units
+    remark = str(case[f"{name}_error"].attrs.get("comment", "")) if f"{name}_error" in case else ""
+    if np.isinf(value):
+        remark = SINGULAR
+    elif np.isnan(error):
+        remark = NOT_ESTIMATED
+    elif np.isinf(error):
+        remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
+    elif value == 0 and error == 0 and name.startswith("end_"):
+        remark = OPEN_END
+    text = with_error(value, None if np.isnan(error) else error, units)
+    return Quantity(name, meaning, value, error, units, text, remark)
+
+
+def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
+    """Row of the largest pressure: settled, or of a cell."""
+    stated = float(case.get("peak_pressure", np.nan))
+    if "peak_pressure_error" in case or np.isinf(stated):
+        yield _row_with_error(case, "peak_pressure", "largest pressure")
+    elif "peak_pressure" in case or "pressure" in case:
+        value = stated if "peak_pressure" in case else float(case["pressure"].max())
+        text = quantity(value, "Pa")
+        yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text, CELL_MEAN)
+
+
+def _intensity(case: xr.Dataset, suffix: str, end: str) -> Quantity:
+    """Row of the law of a singular end, p = K / d^m."""
+    name = f"end_intensity_{suffix}"
+    value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
+    exponent = float(case[f"end_exponent_{suffix}"])
+    text = intensity_text(value, error, exponent)
+    remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
+    return Quantity(name, f"intensity K at {end}", value, error, f"Pa m^{exponent:.3g}", text, remark)
+
+
+def intensity_text(value: float, error: float, exponent: float) -> str:
+    """Intensity of a singular end in GPa mm^exponent, from SI."""
+    factor = 1e9 * 1e-3**exponent
+    return with_error(value / factor, error / factor if np.isfinite(error) else None, f"GPa mm^{exponent:.3g}")
+
+
+def _length(case: xr.Dataset) -> Iterator[Quantity]:
+    """Row of the length of the contact, unless the Dataset is a part of the contact."""
+    if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
+        case = case.assign(contact_length=contact_length(case))
+    if "contact_length" in case:
+        yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
+
+
+def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
+    """Rows of the largest von Mises stress and its position; unbounded beside a singular end."""
+    name, meaning = "peak_von_mises", "largest von Mises stress"
+    singular = np.isinf(float(case.get("peak_pressure", np.nan)))
+    if name not in case:
+        if not all(component in case for component in STRESSES) or bool(case[STRESSES[0]].isnull().all()):
+            return
+        case = case if singular else case.assign(peak(case).data_vars)
+    if singular:
+        yield Quantity(name, meaning, np.inf, np.nan, "Pa", quantity(np.inf, "Pa"), SINGULAR)
+        return
+    yield _row_with_error(case, name, meaning)
+    for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
+        if f"{name}_{axis}" in case:
+            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}")
+            end = _nearest_end(case, row.value) if axis == "x" else ""
+            yield row._replace(remark=", ".join(filter(None, (end, NOT_ESTIMATED))))
+
+
+def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
+    """Row of the largest tension at the trailing edge of a sliding contact, the stress that opens cracks."""
+    sliding = {"pressure", "gap", "traction_y"} <= set(case.data_vars) and "stick" not in case
+    if not sliding or "case" not in attribute(case, INPUTS_ATTRIBUTE) or np.isinf(float(case.get("peak_pressure", 0))):
+        return
+    if not bool((case["traction_y"] != 0).any()) or any(cut_ends(case)):
+        return
+    try:
+        tension = edge_tension(case)
+    except InvalidInputError:  # inputs of another version
+        return
+    if bool(tension["edge_tension"].isnull().all()):
+        return
+    largest = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
+    row = _row_with_error(largest, "edge_tension", "largest tension at the trailing edge")
+    position = f"x = {quantity(float(largest['x']), 'm')}, y = {quantity(float(largest['trailing_edge']), 'm')}"
+    yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
+
+
+def _nearest_end(case: xr.Dataset, x: float) -> str:
+    """Distance of a position from the nearest end of the contact; empty if the cells are not known."""
+    if "pressure" not in case or not {"x", "y"} <= set(case["pressure"].dims) or not (case["pressure"] > 0).any():
+        return ""
+    loaded = case["x"].values[(case["pressure"] > 0).any("y").values]
+    distances = {"end I": abs(x - loaded.min()), "end II": abs(x - loaded.max())}
+    if abs(distances["end I"] - distances["end II"]) < 0.02 * float(np.ptp(loaded)):
+        return "at mid-length"
+    end = min(distances, key=distances.__getitem__)
+    return f"{quantity(distances[end], 'm')} from {end} of the contact"
+
+
+def _rounded(case: xr.Dataset, row: Quantity) -> Quantity:
+    """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration.
+
+    A contact that is symmetric about y = 0 leaves up to 3e-8 of the largest force across it.
+    """
+    force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
+    arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
+    limit = TOLERANCE * force * arms.get(row.name, 0.0)
+    # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
+    zero = np.isnan(row.error) or abs(row.value) <= row.error < limit
+    if abs(row.value) < limit and zero and not _prescribed(case, row.name):
+        remark = f"rounding: below {TOLERANCE:g} of the largest force{' times a' if row.name == 'moment_z' else ''}"
+        return row._replace(text=f"0 {row.units}", remark=remark)
+    return row
+
+
+def _slip(case: xr.Dataset) -> Iterator[Quantity]:
+    """Rows of stick and slip: sticking part of the contact, largest traction and slip."""
+    if "sticking_part" in case:
+        yield _row(case, "sticking_part", "part of the contact that sticks", NOT_ESTIMATED)
+    if "stick" not in case:
+        return
+    for name, meaning in (("traction", "largest traction"), ("slip", "largest slip")):
+        parts = [case[f"{name}_{axis}"] for axis in "xy" if f"{name}_{axis}" in case]
+        if len(parts) == 2 and "pressure" in case:
+            size = ((parts[0] ** 2 + parts[1] ** 2) ** 0.5).where(case["pressure"] > 0, 0.0)
+            units = variable_of(f"{name}_y", parts[1].attrs).units
+            value = float(size.max())
+            text = quantity(value, units) + ("" if units == "m" or name == "traction" else " per distance rolled")
+            yield Quantity(f"largest_{name}", meaning, value, np.nan, units, text, f"of a cell, {NOT_ESTIMATED}")
+
+
+def _mark(case: xr.Dataset, name: str) -> str:
+    """Remark of a number without an error; empty if the case prescribes the number."""
+    # In a study's case a residual above zero shows that the value was prescribed.
+    balanced = name in BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
+    return "" if _prescribed(case, name) is not None or balanced or name not in SOLVED else NOT_ESTIMATED
+
+
+def _prescribed(case: xr.Dataset, name: str) -> Any:
+    """Prescribed value of a number that otherwise follows from the solution, or None."""
+    inputs = attribute(case, INPUTS_ATTRIBUTE).get("case", {})
+    motion = inputs.get("motion", {})
+    return inputs.get(name, motion.get(name, motion.get(name.removeprefix("shift_"))))

@@ -1,0 +1,294 @@
+"""Height maps of rough surfaces: made by numbers, or read from a measurement, on a grid.
+
+A height map is a DataArray ``(x, y)`` of metres on cell centres, positive where material sticks out towards the other
+body: it makes a gap smaller by as much.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.arrays.cells import labelled_cells
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import in_si, labels, named
+from contactstudy.case.magnitudes import warn_doubtful_values
+from contactstudy.checks import FloatArray
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles.instruments import Heights, of_instrument, read_heights, turned
+from contactstudy.profiles.measurements import check_positions, check_values, read_columns, read_netcdf, unit_in_metres
+
+SAME_PLACE = 1e-3  # Difference of equal cells, over a cell. Accuracy
+
+
+def _height_map(grid: Grid, heights: FloatArray, source: str) -> xr.DataArray:
+    """Heights on a grid with their CF attributes."""
+    positions = {"x": grid.x, "y": grid.y}
+    coordinates = {name: (name, values, labels(name, coordinate=True)) for name, values in positions.items()}
+    return named("height", xr.DataArray(heights, coordinates, ("x", "y"))).assign_attrs(source=source)
+
+
+def self_affine(
+    grid: Grid, *, rms_height: float, hurst: float, longest: float, shortest: float, seed: int
+) -> xr.DataArray:
+    """Isotropic self-affine surface with Gaussian heights.
+
+    Filtered white noise: the power spectral density is ``q**(-2 (1 + hurst))`` between the wavenumbers
+    ``2 pi / longest`` and ``2 pi / shortest``, and nothing outside.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells; the surface is periodic over their ranges.
+    rms_height : float
+        Root mean square of the heights over the grid, metres, kept exactly; the mean is 0. Not negative.
+    hurst : float
+        Hurst exponent, 0 to 1; the fractal dimension of the surface is ``3 - hurst``. Ground steel has about 0.8.
+    longest, shortest : float
+        Wavelengths between which the surface is rough, metres: `shortest` at least two cells, `longest` at most the
+        larger side of the grid.
+    seed : int
+        The same seed, grid and values give the same surface, bit for bit with the same version of numpy.
+
+    Returns
+    -------
+    DataArray (x, y)
+        Heights, metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If a value is out of range, or the grid holds no wave between the wavelengths.
+
+    References
+    ----------
+    Y. Z. Hu, K. Tonder, Simulation of 3-D random rough surface by 2-D digital filter and Fourier analysis,
+    International Journal of Machine Tools and Manufacture 32 (1992) 83-90. B. N. J. Persson et al., On the nature of
+    surface roughness, Journal of Physics: Condensed Matter 17 (2005) R1-R62 (power spectral density).
+
+    Examples
+    --------
+    >>> grid = Grid((0.0, 1e-3), (-0.5e-3, 0.5e-3), 64, 64)
+    >>> rough = self_affine(grid, rms_height=0.2e-6, hurst=0.8, longest=0.5e-3, shortest=50e-6, seed=1)
+    >>> rough.dims, round(1e6 * float(np.sqrt((rough**2).mean())), 12)
+    (('x', 'y'), 0.2)
+    """
+    checks.instance("grid", grid, Grid, "a Grid")
+    rms_height = checks.not_negative("rms_height", rms_height, "metres")
+    hurst = checks.finite("hurst", hurst)
+    if not 0 <= hurst <= 1:
+        raise InvalidInputError("hurst", hurst, "between 0 and 1")
+    longest, shortest = checks.positive("longest", longest, "metres"), checks.positive("shortest", shortest, "metres")
+    seed = checks.count("seed", seed, least=0)
+    finest = 2 * max(grid.dx, grid.dy)
+    if shortest < finest * (1 - 1e-12):
+        raise InvalidInputError("shortest", shortest, f"at least two cells, {finest:g} m", "or take a finer grid")
+    widest = max(grid.dx * grid.cells_x, grid.dy * grid.cells_y)
+    if not shortest <= longest <= widest * (1 + 1e-12):
+        raise InvalidInputError("longest", longest, f"between shortest and the grid's larger side, {widest:g} m")
+    x, y = np.fft.fftfreq(grid.cells_x, grid.dx), np.fft.rfftfreq(grid.cells_y, grid.dy)
+    frequency = np.hypot(x[:, None], y[None, :])
+    rough = (frequency >= (1 - 1e-9) / longest) & (frequency <= (1 + 1e-9) / shortest)
+    if not rough.any():
+        raise InvalidInputError(
+            "longest, shortest", (longest, shortest), "wavelengths with at least one wave of the grid between them"
+        )
+    amplitude = np.zeros(frequency.shape)
+    amplitude[rough] = frequency[rough] ** -(1 + hurst)
+    noise = np.random.default_rng(seed).standard_normal(grid.shape)
+    heights = np.fft.irfft2(amplitude * np.fft.rfft2(noise), s=grid.shape)
+    heights *= rms_height / np.sqrt(np.mean(heights**2))
+    values = f"rms_height={rms_height:g}, hurst={hurst:g}, longest={longest:g}, shortest={shortest:g}, seed={seed}"
+    return _height_map(grid, heights, f"contactstudy.roughness.self_affine({values})")
+
+
+def read_height_map(
+    path: str | Path,
+    grid: Grid,
+    *,
+    remove_slope: bool = False,
+    remove_form: bool = False,
+    turn: int = 0,
+    mirror: bool = False,
+    corner: tuple[float, float] | None = None,
+) -> xr.DataArray:
+    """Read a measured height map and bring it onto a grid.
+
+    Parameters
+    ----------
+    path : str or Path
+        CSV with one line for each point and the columns `x`, `y`, `height`, in any order of the points; or netCDF
+        (ending ``.nc``) with a variable `height` along `x` and `y`. All with units of length. Or an instrument's file:
+        x3p (``.x3p``), or a format of SurfaceTopography; both need the extra `measured`. Coordinates, as of
+        the grid: `x` from end I of the body, `y` from under the roller's centre.
+    grid : Grid
+        Cells; their centres must lie within the measured area. Between measured points heights are interpolated
+        linearly along both axes. Cells wider than the steps of the measurement leave fine waves out or fold them
+        into long ones: filter the map before.
+    remove_slope : bool
+        Whether the plane that fits the measured heights best is taken off.
+    remove_form : bool
+        Whether the surface of second order that fits the measured heights best is taken off: the curvature of roller
+        and raceway, and the slope.
+    turn : {0, 90, 180, 270}
+        Degrees by which the part is turned about the axis of the heights, from x to y.
+    mirror : bool
+        Whether the y axis points the other way, after the turn. A body's surface is seen from the other side than here,
+        where z points into it, so an instrument's y runs against this one; the roller's does not.
+    corner : tuple of float, optional
+        Where the first point along x and y comes to lie, metres, after turning. Default: the file's
+        position, mostly (0, 0) for an instrument.
+
+    Returns
+    -------
+    DataArray (x, y)
+        Heights, metres.
+
+    Raises
+    ------
+    InvalidInputError
+        If the file cannot be read, has other columns or units, gaps, missing, repeated or infinite values (with
+        their places), or does not cover the grid.
+    ContactStudyError
+        If the file needs the extra `measured`, and that is not installed.
+    """
+    path = Path(path)
+    checks.instance("grid", grid, Grid, "a Grid")
+    for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
+        checks.instance(name, value, bool, "True or False")
+    x, y, heights = turned(_read(path), turn, mirror)
+    if y is None:
+        raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
+    if corner is not None:
+        first = checks.coordinates("corner", corner, "metres")
+        if first.size != 2:
+            raise InvalidInputError("corner", corner, "two positions, x and y (metres)")
+        x, y = x - x[0] + first[0], y - y[0] + first[1]
+    check_positions("x", x)
+    check_positions("y", y)
+    check_values("height", heights, ("x", x), ("y", y))
+    _check_cover(x, y, grid)
+    if remove_slope or remove_form:
+        heights = heights - _form(x, y, heights, order=2 if remove_form else 1)
+    return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
+
+
+def _read(path: Path) -> Heights:
+    """Return the positions and heights of a file, metres."""
+    if of_instrument(path):
+        return read_heights(path)
+    return Heights(*(_read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)))
+
+
+def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
+    """Heights of a map at the cell centres of a grid, metres.
+
+    Parameters
+    ----------
+    grid : Grid
+        Cells; their centres must lie within the map.
+    heights : DataArray (x, y)
+        Height map on any uniform grid, metres. Between its points heights are interpolated linearly along
+        both axes; on cells that are the grid's they stay as they are.
+
+    Raises
+    ------
+    InvalidInputError
+        If it is not such a map, holds values that are not numbers, or does not cover the grid.
+
+    Warns
+    -----
+    MagnitudeWarning
+        If the heights from peak to valley are of a size that is mostly a mistake in the unit.
+
+    Examples
+    --------
+    >>> cells = Grid((0.0, 4.0), (0.0, 2.0), 4, 2)
+    >>> slope = _height_map(cells, np.repeat(cells.x[:, None], 2, axis=1), "made up")
+    >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
+    [[1.5], [2.5]]
+    """
+    values, cells = labelled_cells("roughness", in_si("roughness", heights, "m"))
+    warn_doubtful_values(roughness=float(np.ptp(values)))
+    if cells.shape == grid.shape and all(
+        np.allclose(position, centres, rtol=0.0, atol=SAME_PLACE * step)
+        for position, centres, step in ((cells.x, grid.x, grid.dx), (cells.y, grid.y, grid.dy))
+    ):
+        return values
+    _check_cover(cells.x, cells.y, grid, "roughness, grid")
+    return _interpolated(cells.x, cells.y, values, grid)
+
+
+def _check_cover(x: FloatArray, y: FloatArray, grid: Grid, called: str = "grid") -> None:
+    """Raise unless the measured positions cover the cell centres."""
+    for name, measured, centres in (("x", x, grid.x), ("y", y, grid.y)):
+        slack = 1e-9 * (measured[-1] - measured[0])
+        if centres[0] < measured[0] - slack or centres[-1] > measured[-1] + slack:
+            raise InvalidInputError(
+                f"{called}.{name}",
+                f"{centres[0]:g} to {centres[-1]:g} m",
+                f"within the measured {measured[0]:g} to {measured[-1]:g} m",
+            )
+
+
+def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid) -> FloatArray:
+    """Heights at the cell centres, bilinear between the positions."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    inside = np.clip(grid.x, x[0], x[-1])[:, None], np.clip(grid.y, y[0], y[-1])[None, :]
+    return np.asarray(RegularGridInterpolator((x, y), heights)(inside))
+
+
+def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
+    """Polynomial of the least squares, with all terms up to an order."""
+    # Over -1 to 1 the normal equations of so few terms lose two digits at most, and need no array per term.
+    along_x, along_y = (np.polynomial.legendre.legvander(_scaled(axis), order) for axis in (x, y))
+    terms = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
+    products_x, products_y = along_x.T @ along_x, along_y.T @ along_y
+    matrix = np.array([[products_x[i, k] * products_y[j, m] for k, m in terms] for i, j in terms])
+    moments = along_x.T @ heights @ along_y
+    factors = np.zeros((order + 1, order + 1))
+    projections = np.array([moments[term] for term in terms])
+    factors[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, projections, rcond=None)[0]
+    return np.asarray(along_x @ factors @ along_y.T)
+
+
+def _scaled(positions: FloatArray) -> FloatArray:
+    """Positions over a range of -1 to 1."""
+    return np.asarray(np.interp(positions, positions[[0, -1]], [-1.0, 1.0]))
+
+
+Map = tuple[FloatArray, FloatArray, FloatArray]
+
+
+def _read_csv(path: Path) -> Map:
+    """Positions along x and y and heights ``(x, y)`` from a table of points, NaN without a point."""
+    columns = read_columns(path, ("x", "y"), ("height",))
+    for name in ("x", "y"):
+        checks.coordinates(name, columns[name])
+    (x, at_x), (y, at_y) = (np.unique(columns[name], return_inverse=True) for name in ("x", "y"))
+    points, counts = np.unique(at_x * y.size + at_y, return_counts=True)
+    if (counts > 1).any():
+        point = int(points[counts.argmax()])
+        where = f"x = {x[point // y.size]:g} m, y = {y[point % y.size]:g} m"
+        raise InvalidInputError("height", f"{counts.max()} values at {where}", "one value at every point")
+    heights = np.full((x.size, y.size), np.nan)
+    heights[at_x, at_y] = columns["height"]
+    return x, y, heights
+
+
+def _read_netcdf(path: Path) -> Map:
+    """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
+    dataset = read_netcdf(path)
+    if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
+        raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
+    scales = {name: unit_in_metres(name, dataset[name].attrs.get("units")) for name in ("x", "y", "height")}
+    heights = dataset["height"].transpose("x", "y")
+    return (
+        scales["x"] * heights["x"].values.astype(np.float64),
+        scales["y"] * heights["y"].values.astype(np.float64),
+        scales["height"] * heights.values.astype(np.float64),
+    )

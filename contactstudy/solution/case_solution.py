@@ -1,0 +1,170 @@
+"""A case, from its contact to its provenance, in one Dataset."""
+
+from __future__ import annotations
+
+import logging
+import time
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import checks
+from contactstudy.analysis.peaks import label_largest_stress
+from contactstudy.analysis.provenance import with_provenance
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import describe
+from contactstudy.case.case import Case
+from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy
+from contactstudy.case.magnitudes import check_balanced, warn_doubtful
+from contactstudy.errors import InvalidInputError
+from contactstudy.fields.largest import Largest
+from contactstudy.fields.positions import FieldPositions, Positions, default_columns, default_depths, field_positions
+from contactstudy.fields.stress import contact_stresses
+from contactstudy.solution.case_contact import CaseContact, contact_on_cells, refined_case_contact
+
+RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
+
+RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)
+"""Positions of `end_traction_residual` along y, over the Hertz half-width."""
+
+RESIDUAL_COVERS = (  # comment of `end_traction_residual`
+    f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "
+    f"{RESIDUAL_POSITIONS[-1]} a; nearer to the top of a loaded end it is larger, about 1e-4 at 0.01 a, 1e-3 at 0.004 a"
+)
+
+
+def with_stresses(
+    result: xr.Dataset, contact: CaseContact, x: Positions | None, y: Positions | None, z: Positions | None
+) -> xr.Dataset:
+    """Add the stresses, the largest von Mises stress in the body, and the residual on the free ends."""
+    # Default positions along x resolve the contact on refined columns, and equal the centres of chosen or given cells.
+    case, grid, loads, scale = contact.case, contact.grid, contact.loads, contact.case.hertz_half_width
+    refined = contact.cells == "refined"
+
+    def positions(largest: Largest) -> FieldPositions:
+        pressed = np.asarray(contact.contact.pressure.any(axis=1))
+        columns = default_columns(grid, case.body.extent, pressed, scale) if x is None and refined else x
+        depths = default_depths(scale, largest.position[2]) if z is None else z
+        return field_positions(case.body, grid, columns, y, depths)
+
+    on_ends = scale * np.array(RESIDUAL_POSITIONS), scale * np.array(RESIDUAL_DEPTHS)
+    field, residual, largest = contact_stresses(case.body, loads, grid, positions, on_ends)
+    if refined or x is not None or y is not None:
+        field = field.rename({"x": "x_field", "y": "y_field"})
+    result = result.assign_coords(field.coords).assign(field.data_vars)
+    result = result.assign(label_largest_stress(result, *largest).data_vars).assign(end_traction_residual=residual)
+    result["end_traction_residual"].attrs["comment"] = RESIDUAL_COVERS
+    return result
+
+
+LOGGER = logging.getLogger(__name__)
+
+
+def solve(
+    case: Case,
+    grid: Grid | None = None,
+    *,
+    accuracy: float | None = None,
+    x: Positions | None = None,
+    y: Positions | None = None,
+    z: Positions | None = None,
+    stresses: bool = True,
+    roughness: xr.DataArray | None = None,
+    tolerance: float = TOLERANCE,
+) -> xr.Dataset:
+    """Solve a case: the contact, then the stresses in the body.
+
+    Parameters
+    ----------
+    case : Case
+        Body, roller, load and friction.
+    grid : Grid, optional
+        Cells of pressure and gap. Default: columns of different widths, refined along the axis until `accuracy` is
+        reached; for rough surfaces the uniform cells of `choose_grid`.
+    accuracy : float, optional
+        Largest error of the peak and the pressures at the roller's ends, over the peak pressure: from 0.001 to 0.1;
+        default 0.01. A singular end has a law instead. Not for given cells or rough surfaces.
+    x : sequence of float, optional
+        Positions of the stresses, metres. Default: from one end face to the other, narrow at the faces and where the
+        pressure changes; on chosen or given cells their centres.
+    y : sequence of float, optional
+        Positions of the stresses, metres; default: the cell centres.
+    z : sequence of float, optional
+        Depths of the stresses, metres; default: from 0 to 5 Hertz half-widths, narrow at the largest stress.
+    stresses : bool
+        Whether to compute the stresses at all.
+    roughness : DataArray (x, y), optional
+        Heights of the surfaces in metres, positive outward, as from `contactstudy.roughness`; on other cells they are
+        interpolated linearly to the cell centres, which they must cover.
+    tolerance : float
+        Tolerance of the contact, see `solve_contact`.
+
+    Returns
+    -------
+    Dataset
+        Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`;
+        with stick and slip, tractions and slip as from `solve_contact` instead of `traction_y`. Stresses have
+        the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With stresses also
+        `end_traction_residual` and the largest von Mises stress in the body, independent of the positions:
+        `peak_von_mises`, its error and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
+        (and ``_first`` and ``_last``, of either half), `end_pressure_first` and `end_pressure_last`, and the load on
+        the last half-width, `end_load_first` and `end_load_last`, each with its error ``<name>_error``. At a singular
+        end pressures are infinite; `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m`` with its
+        error, and `end_exponent_first` or `end_exponent_last` is m; `end_intensity` and `end_exponent` belong to the
+        sharper end. With stick and slip, forces, moment, work and the unknown creepages or shifts have errors as well.
+        The attributes contain the case, the settings, the versions, and the seconds of each stage, see
+        `contactstudy.analysis.solved_case`.
+
+    Raises
+    ------
+    InvalidInputError
+        If the grid does not fit the body, a position lies outside it, the roughness does not cover the grid, or
+        a tilted roller touches within one Hertz half-width of its end only.
+    WindowError
+        If the contact reaches the edge of the grid, or of the widest window.
+
+    Warns
+    -----
+    MagnitudeWarning
+        If a value of the case suggests a mistake in the unit, such as a length in millimetres.
+
+    Examples
+    --------
+    >>> from contactstudy import Case, FiniteLengthSpace, Material, Roller
+    >>> body = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
+    >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9)
+    >>> result = solve(case, stresses=False)
+    >>> bool(result.converged), round(float(result.peak_pressure / result.hertz_max_pressure), 2)
+    (True, 1.02)
+    """
+    checks.instance("case", case, Case, "a Case")
+    warn_doubtful(case)
+    check_balanced(case)
+    _check_cells(grid, roughness, accuracy)
+    refines = grid is None and roughness is None
+    tolerance = checks.positive("tolerance", tolerance)
+    settings: dict[str, object] = {"tolerance": tolerance, "rough": roughness is not None}
+    start = time.perf_counter()
+    if refines:
+        settings["accuracy"] = accuracy = check_accuracy(ACCURACY if accuracy is None else accuracy)
+        contact = refined_case_contact(case, accuracy, tolerance)
+    else:
+        contact = contact_on_cells(case, grid, roughness, tolerance)
+    result = contact.dataset()
+    contact_seconds = time.perf_counter() - start
+    LOGGER.info("contact: %d x %d cells, %.2f s", *contact.grid.shape, contact_seconds)
+    if stresses:
+        result = with_stresses(result, contact, x, y, z)
+    stages = {"contact": contact_seconds, "stresses": time.perf_counter() - start - contact_seconds}
+    LOGGER.info("stresses: %.2f s", stages["stresses"])
+    described = describe(result, "roller on an elastic body: contact and stresses")
+    return with_provenance(described, case, {"cells": contact.cells, **settings}, stages)
+
+
+def _check_cells(grid: Grid | None, roughness: xr.DataArray | None, accuracy: float | None) -> None:
+    """Raise for settings without effect on given cells or rough surfaces."""
+    if grid is not None:
+        checks.instance("grid", grid, Grid, "a Grid")
+    if accuracy is not None and (grid is not None or roughness is not None):
+        reason = "a grid" if grid is not None else "roughness"
+        raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")

@@ -1,0 +1,482 @@
+"""Batches: netCDF files of many finished cases, the one format of a study's results.
+
+A batch has the dimension `case`. Numbers are columns, such as ``peak_pressure(case)``. Arrays of the cases have
+different shapes, so they are contiguous ragged arrays of the CF conventions: ``pressure(x_y_values)`` contains the
+arrays of all cases one after the other, and ``x_size(case)`` and ``y_size(case)`` their shapes. A case that failed, or
+cannot be set up, has a status and a message and no numbers. All cases of a batch have equal versions and one level.
+
+A batch is never changed. Its name ends with the number of its cases and the CRC-32 of its bytes, so that damage is
+detected without decoding; every
+column and chunk has a checksum of the format as well, which any reader of netCDF-4 verifies.
+"""
+
+from __future__ import annotations
+
+import json
+import zlib
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+
+from contactstudy.analysis.provenance import RUN_ATTRIBUTE
+from contactstudy.arrays.variables import describe, labels, package_version
+from contactstudy.checks import FloatArray
+from contactstudy.study.errors import StoreError
+from contactstudy.study.files import PART, is_regular, netcdf_access, write_atomically
+
+STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
+
+TEXTS = {
+    "parameters": "parameters of the case as JSON, without those in contactstudy_shared",
+    "message": "reason of a case that is not ok",
+    "warnings": "warnings of the case as JSON",
+    "time": "end of the case's solution, UTC",
+}
+"""Text columns with their meanings."""
+
+SUFFIX = ".nc"
+IDENTITY_LENGTH = 64
+CHUNK = 2**15  # Values of a ragged array that are compressed together. Speed of reading one case, against size
+CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
+SHARED, TABLES, COORDINATES = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
+"""Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
+
+IntArray = npt.NDArray[np.int64]
+
+
+class Ragged(NamedTuple):
+    """Arrays of all cases of a batch, one after the other: dimensions of each case's array, and flat values."""
+
+    dims: tuple[str, ...]
+    values: npt.NDArray[Any]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Batch:
+    """Cases of a batch in memory."""
+
+    ids: npt.NDArray[np.bytes_]  # identities, 64 hexadecimal digits
+    status: npt.NDArray[np.int8]  # indices in STATUSES
+    runs: IntArray  # number of the run of each case: of two results of a case, the larger one counts
+    texts: dict[str, list[str]]  # columns of TEXTS
+    numbers: dict[str, FloatArray] = field(default_factory=dict)  # columns (case), NaN without the number
+    sizes: dict[str, IntArray] = field(default_factory=dict)  # sizes of the arrays' dimensions (case), 0 without arrays
+    arrays: dict[str, Ragged] = field(default_factory=dict)  # arrays and their positions
+    attributes: dict[str, dict[str, Any]] = field(default_factory=dict)  # of numbers and arrays
+    coordinates: frozenset[str] = frozenset()  # names of arrays that are coordinates
+    circumstances: dict[str, Any] = field(default_factory=dict)  # versions and level, equal for all cases
+
+    def __len__(self) -> int:
+        return len(self.ids)
+
+    @property
+    def nbytes(self) -> int:
+        """Size in memory, bytes."""
+        arrays = sum(array.values.nbytes for array in self.arrays.values())
+        return arrays + len(self) * (8 * len(self.numbers) + IDENTITY_LENGTH)
+
+    @property
+    def structure(self) -> tuple[tuple[str, tuple[str, ...], str], ...]:
+        """Names, dimensions and types of the arrays: batches with equal ones can be joined."""
+        return tuple(sorted((name, array.dims, array.values.dtype.str) for name, array in self.arrays.items()))
+
+    @cached_property
+    def _offsets(self) -> dict[tuple[str, ...], IntArray]:
+        """Start of each case's values, and the end of the last, by the dimensions of the array."""
+        return {dims: offsets(self.sizes, dims, len(self)) for dims in {array.dims for array in self.arrays.values()}}
+
+    def take(self, rows: IntArray) -> Batch:
+        """Return the batch of some of the cases."""
+        picked = {}
+        for name, (dims, values) in self.arrays.items():
+            starts = self._offsets[dims]
+            parts = [values[starts[row] : starts[row + 1]] for row in rows]
+            picked[name] = Ragged(dims, np.concatenate(parts) if parts else values[:0])
+        return replace(
+            self,
+            ids=self.ids[rows],
+            status=self.status[rows],
+            runs=self.runs[rows],
+            texts={name: [column[row] for row in rows] for name, column in self.texts.items()},
+            numbers={name: column[rows] for name, column in self.numbers.items()},
+            sizes={name: column[rows] for name, column in self.sizes.items()},
+            arrays=picked,
+        )
+
+    def case(self, row: int) -> xr.Dataset:
+        """Return one case on its cells, with its numbers, parameters and circumstances."""
+        variables: dict[str, Any] = {}
+        for name, (dims, values) in self.arrays.items():
+            starts = self._offsets[dims]
+            shape = [int(self.sizes[dim][row]) for dim in dims]
+            case_values = values[starts[row] : starts[row + 1]].reshape(shape)
+            variables[name] = (dims, case_values, self.attributes.get(name, {}))
+        for name, column in self.numbers.items():
+            if not np.isnan(column[row]):
+                variables[name] = ((), float(column[row]), self.attributes.get(name, {}))
+        dataset = xr.Dataset(variables)
+        dataset = dataset.set_coords([name for name in self.coordinates if name in dataset])
+        run, parameters = json.dumps(self.run(row)), self.texts["parameters"][row]
+        attributes = {"case_id": self.ids[row].decode(), CASE_ATTRIBUTE: parameters, RUN_ATTRIBUTE: run}
+        return describe(dataset, f"case of the study {self.circumstances.get('study', '')}").assign_attrs(attributes)
+
+    def run(self, row: int) -> dict[str, Any]:
+        """Return circumstances, warnings and time of a case."""
+        warnings = json.loads(self.texts["warnings"][row] or "[]")
+        run = {**self.circumstances, "time": self.texts["time"][row], "warnings": warnings}
+        return run | ({"seconds": float(self.numbers["seconds"][row])} if "seconds" in self.numbers else {})
+
+
+def offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> IntArray:
+    """Start of each case's values in a ragged array along `dims`, and the end of the last."""
+    counts = np.ones(cases, dtype=np.int64)
+    for dim in dims:
+        counts *= sizes[dim]
+    return np.concatenate([[0], np.cumsum(counts)])
+
+
+def join(batches: Sequence[Batch]) -> Batch:
+    """Join batches of equal circumstances whose arrays have an equal structure, or none."""
+    first = max(batches, key=lambda batch: len(batch.arrays))
+    total = sum(map(len, batches))
+
+    def column(name: str, kind: str) -> npt.NDArray[Any]:
+        parts = []
+        for batch in batches:
+            present = getattr(batch, kind).get(name)
+            fill = np.nan if kind == "numbers" else 0
+            parts.append(np.full(len(batch), fill) if present is None else present)
+        return np.concatenate(parts)
+
+    names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
+    attributes: dict[str, dict[str, Any]] = {}
+    for batch in batches:
+        for name, entries in batch.attributes.items():
+            attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
+    assert total
+    return replace(
+        first,
+        ids=np.concatenate([batch.ids for batch in batches]),
+        status=np.concatenate([batch.status for batch in batches]),
+        runs=np.concatenate([batch.runs for batch in batches]),
+        texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXTS},
+        numbers={name: column(name, "numbers") for name in names},
+        sizes={name: column(name, "sizes").astype(np.int64) for name in first.sizes},
+        arrays={
+            name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches if batch.arrays]))
+            for name, array in first.arrays.items()
+        },
+        attributes=attributes,
+    )
+
+
+def common_attributes(name: str, first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the common attributes of a variable of two cases; an intensity without a common unit has an exponent."""
+    if first == second:
+        return dict(first)
+    common = {key: value for key, value in first.items() if second.get(key) == value}
+    if "units" in first and "units" in second and "units" not in common:
+        exponent = name.replace("intensity", "exponent").removesuffix("_error")
+        common["comment"] = f"its unit is Pa m^m with m = {exponent} of the case"
+    return common
+
+
+def write_batch(folder: Path, name: str, batch: Batch) -> Path:
+    """Write a batch as a new file; return its path, which ends with the CRC-32 of the bytes."""
+
+    def write(part: Path) -> None:
+        with netcdf_access(folder / name, "write"):
+            _write(part, batch)
+
+    return write_atomically(folder / name, write, lambda part: f"{name}-{len(batch)}-{checksum(part):08x}{SUFFIX}")
+
+
+def checksum(path: Path) -> int:
+    """CRC-32 of a file."""
+    code = 0
+    with open(path, "rb") as file:
+        while block := file.read(2**22):
+            code = zlib.crc32(block, code)
+    return code
+
+
+def damage(path: Path) -> str:
+    """Reason why a file is not an intact batch, or empty."""
+    if not is_regular(path):
+        return "it is not a regular file"
+    try:
+        code = checksum(path)
+    except OSError as error:
+        return error.strerror or str(error)
+    expected = path.name.removesuffix(SUFFIX).rpartition("-")[2]
+    return "" if expected == f"{code:08x}" else f"its checksum is {code:08x}, not {expected}"
+
+
+def batch_paths(folder: Path) -> list[Path]:
+    """Paths with the name of a batch, in a stable order."""
+    return sorted(path for path in folder.glob(f"*{SUFFIX}") if PART not in path.name)
+
+
+def cases_of(path: Path) -> int:
+    """Return the number of cases in a batch's name; 0 for another name."""
+    number = path.name.split("-")[-2:-1]
+    return int(number[0]) if number and number[0].isdecimal() else 0
+
+
+def _write(path: Path, batch: Batch) -> None:
+    """Write all variables of a batch."""
+    import netCDF4
+
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.set_fill_off()
+        file.createDimension("case", len(batch))
+        column = {"zlib": True, "complevel": 1, "shuffle": True, "fletcher32": True, "chunksizes": (len(batch),)}
+
+        def create(name: str, kind: Any, dims: tuple[str, ...], attributes: Mapping[str, Any], **options: Any) -> Any:
+            variable = file.createVariable(name, kind, dims, **{**column, **options})
+            variable.setncatts({key: value for key, value in attributes.items() if not isinstance(value, str) or value})
+            return variable
+
+        _write_text(
+            file, "case_id", [text.decode() for text in batch.ids], "identity of the case, a hash of its parameters"
+        )
+        codes = {
+            "long_name": "state of the case",
+            "units": "1",
+            "flag_values": np.arange(len(STATUSES), dtype=np.int8),
+            "flag_meanings": " ".join(STATUSES),
+        }
+        create("status", "i1", ("case",), codes)[:] = batch.status
+        create("run", "i4", ("case",), {"long_name": "number of the run", "units": "1"})[:] = batch.runs
+        shared, tables, parameters = _factored([json.loads(text) for text in batch.texts["parameters"]])
+        for name, meaning in TEXTS.items():
+            _write_text(file, name, parameters if name == "parameters" else batch.texts[name], meaning)
+        for name, values in batch.numbers.items():
+            create(name, "f8", ("case",), _stored(name, batch.attributes))[:] = values
+        for dim, lengths in batch.sizes.items():
+            attributes = {"long_name": f"size along {dim}", "units": "1", "sample_dimension": _sample_dimension((dim,))}
+            create(f"{dim}_size", "i4", ("case",), attributes)[:] = lengths
+        for name, (dims, values) in batch.arrays.items():
+            sample = _sample_dimension(dims)
+            if sample not in file.dimensions:
+                file.createDimension(sample, values.size)
+            if values.size:
+                attributes = {**_stored(name, batch.attributes), "array_dimensions": " ".join(dims)}
+                chunks = (min(CHUNK, values.size),)
+                create(name, values.dtype, (sample,), attributes, chunksizes=chunks)[:] = values
+        file.setncatts(
+            {
+                "Conventions": "CF-1.11",
+                "title": f"cases of the study {batch.circumstances.get('study', '')}",
+                "source": f"contactstudy {package_version()}",
+                "history": f"{batch.texts['time'][-1]} written by contactstudy",
+                RUN_ATTRIBUTE: json.dumps(batch.circumstances),
+                SHARED: json.dumps(shared),
+                TABLES: json.dumps(tables),
+                COORDINATES: json.dumps(sorted(batch.coordinates)),
+            }
+        )
+
+
+def _sample_dimension(dims: Iterable[str]) -> str:
+    """Dimension of a ragged array."""
+    return f"{'_'.join(dims)}_values"
+
+
+def _stored(name: str, attributes: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """Attributes of a variable as netCDF contains them: texts and numbers, others as JSON."""
+    complete = {"long_name": name.replace("_", " "), **labels(name), **attributes.get(name, {})}
+    plain = (str, int, float, np.number)
+    return {
+        key: value if isinstance(value, plain) and not isinstance(value, bool) else json.dumps(value, default=str)
+        for key, value in complete.items()
+    }
+
+
+def _write_text(file: Any, name: str, texts: Sequence[str], meaning: str) -> None:
+    """Write a column of texts as characters, padded to the longest."""
+    encoded = [text.encode() for text in texts]
+    length = max(1, *map(len, encoded))
+    file.createDimension(f"{name}_length", length)
+    variable = file.createVariable(
+        name,
+        "S1",
+        ("case", f"{name}_length"),
+        zlib=True,
+        complevel=1,
+        fletcher32=True,
+        chunksizes=(len(encoded), length),
+    )
+    variable.setncatts({"long_name": meaning, "_Encoding": "utf-8"})
+    variable.set_auto_chartostring(False)
+    variable[:] = np.array(encoded, dtype=f"S{length}").view("S1").reshape(len(encoded), length)
+
+
+def _factored(parameters: list[dict[str, Any]]) -> tuple[dict[str, Any], list[Any], list[str]]:
+    """Shared parameters, tables that cases refer to by number, and the remaining parameters of each case as JSON."""
+    shared = {
+        name: value for name, value in parameters[0].items() if all(case.get(name) == value for case in parameters)
+    }
+    tables: dict[str, int] = {}
+    remaining = []
+    for case in parameters:
+        reduced = {name: value for name, value in case.items() if name not in shared}
+        for name, value in reduced.items():
+            if isinstance(value, (dict, list)):
+                reduced[name] = {"table": tables.setdefault(json.dumps(value), len(tables))}
+        remaining.append(json.dumps(reduced))
+    return shared, [json.loads(table) for table in tables], remaining
+
+
+def _restored(shared: dict[str, Any], tables: list[Any], remaining: str) -> str:
+    """Parameters of a case as JSON."""
+    case = json.loads(remaining)
+    for name, value in case.items():
+        if isinstance(value, dict):
+            case[name] = tables[value["table"]]
+    return json.dumps({**shared, **case})
+
+
+def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable[str] = ()) -> Batch:
+    """Read a batch: its columns, and the named arrays and texts; None reads all of both."""
+    import netCDF4
+
+    if not is_regular(path):
+        raise StoreError(f"cannot read {path}: it is not a regular file")
+    with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        file.set_auto_chartostring(False)
+        ids = _read_text(file["case_id"])
+        if ids.dtype.itemsize != IDENTITY_LENGTH:
+            raise StoreError(f"cannot read {path}: it is not a batch of cases")
+        return _read(file, ids, None if arrays is None else set(arrays), set(TEXTS) if arrays is None else set(texts))
+
+
+def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
+    """Texts of a column as bytes."""
+    characters = np.ascontiguousarray(variable[:])
+    return np.asarray(characters.view(f"S{characters.shape[1]}").ravel())
+
+
+def _read(file: Any, ids: npt.NDArray[np.bytes_], selected: set[str] | None, texts: set[str]) -> Batch:
+    """Read the columns of an open file, and the selected arrays and texts."""
+    numbers, sizes, arrays, attributes = {}, {}, {}, {}
+    for name, variable in file.variables.items():
+        if name in TEXTS or name in ("case_id", "status", "run"):
+            continue
+        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        if "sample_dimension" in attrs:
+            sizes[name.removesuffix("_size")] = variable[:].astype(np.int64)
+        elif "array_dimensions" in attrs:
+            dims = tuple(attrs.pop("array_dimensions").split())
+            attributes[name] = attrs
+            read_values = selected is None or name in selected
+            arrays[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
+        else:
+            attributes[name], numbers[name] = attrs, variable[:]
+    read = {name: [text.decode() for text in _read_text(file[name])] if name in texts else [] for name in TEXTS}
+    if "parameters" in texts:
+        shared, tables = json.loads(file.getncattr(SHARED)), json.loads(file.getncattr(TABLES))
+        read["parameters"] = [_restored(shared, tables, text) for text in read["parameters"]]
+    return Batch(
+        ids=ids,
+        status=file["status"][:],
+        runs=file["run"][:].astype(np.int64),
+        texts=read,
+        numbers=numbers,
+        sizes=sizes,
+        arrays=arrays,
+        attributes=attributes,
+        coordinates=frozenset(json.loads(file.getncattr(COORDINATES))),
+        circumstances=json.loads(file.getncattr(RUN_ATTRIBUTE)),
+    )
+
+
+def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:
+    """Read parts of ragged arrays: of each named one those between pairs of first and last value."""
+    import netCDF4
+
+    with netcdf_access(path, "read"), netCDF4.Dataset(path) as file:
+        file.set_auto_maskandscale(False)
+        return {
+            name: [np.asarray(file[name][start:stop]) if stop > start else np.zeros(0) for start, stop in pairs]
+            for name, pairs in bounds.items()
+        }
+
+
+def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Dataset:
+    """Read one case of a batch on its cells, with all arrays or the named ones and their positions."""
+    batch = read_batch(path, texts=TEXTS)
+    selected = set(batch.arrays) if names is None else set(names)
+    dims = {dim for name in selected & set(batch.arrays) for dim in batch.arrays[name].dims}
+    selected |= {name for name in batch.coordinates if set(batch.arrays[name].dims) <= dims}
+    bounds = {}
+    for name in selected & set(batch.arrays):
+        starts = offsets(batch.sizes, batch.arrays[name].dims, len(batch))
+        bounds[name] = [(int(starts[row]), int(starts[row + 1]))]
+    values = read_slices(path, bounds) if bounds else {}
+    single = replace(batch, arrays={}).take(np.array([row]))
+    arrays = {name: Ragged(batch.arrays[name].dims, part) for name, (part,) in values.items()}
+    return replace(single, arrays=arrays).case(0)
+
+
+def case_batch(
+    *,
+    identity: str,
+    parameters: Mapping[str, Any],
+    status: str,
+    message: str = "",
+    warnings: Sequence[str] = (),
+    time: str = "",
+    run: int = 0,
+    circumstances: dict[str, Any] | None = None,
+) -> Batch:
+    """Batch of one case without results."""
+    return Batch(
+        ids=np.array([identity.encode()], dtype=f"S{IDENTITY_LENGTH}"),
+        status=np.array([STATUSES.index(status)], dtype=np.int8),
+        runs=np.array([run], dtype=np.int64),
+        texts={
+            "parameters": [json.dumps(parameters)],
+            "message": [message],
+            "warnings": [json.dumps(list(warnings)) if warnings else ""],
+            "time": [time],
+        },
+        circumstances=circumstances or {},
+    )
+
+
+def with_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:
+    """Add the arrays of a solved case that a level retains; stresses and other fields in single precision."""
+    deep = {str(name): any(str(dim).startswith("z") for dim in entry.dims) for name, entry in dataset.data_vars.items()}
+    retained = [
+        name
+        for name, is_deep in deep.items()
+        if dataset.variables[name].ndim and (level == "fields" or (level == "surface" and not is_deep))
+    ]
+    dims = {str(dim) for name in retained for dim in dataset.variables[name].dims}
+    coordinates = [
+        str(name) for name, entry in dataset.coords.items() if entry.ndim and {*map(str, entry.dims)} <= dims
+    ]
+    arrays = {}
+    for name in (*retained, *coordinates):
+        variable = dataset.variables[name]
+        values = variable.values
+        if values.dtype == bool:
+            values = values.astype(np.int8)
+        elif deep.get(name) and variable.ndim >= 2:
+            values = values.astype(np.float32)
+        arrays[name] = Ragged(tuple(map(str, variable.dims)), np.ascontiguousarray(values).ravel())
+    return replace(
+        batch,
+        sizes={dim: np.array([dataset.sizes[dim]], dtype=np.int64) for dim in sorted(dims)},
+        arrays=arrays,
+        attributes=batch.attributes | {name: dict(dataset.variables[name].attrs) for name in arrays},
+        coordinates=frozenset(coordinates),
+    )

@@ -1,0 +1,406 @@
+"""Surfaces and stresses of a study: axes of all cases, and lazy reading from the batches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache, cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+import xarray as xr
+from xarray.backends import BackendArray
+from xarray.core import indexing
+
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, labels
+from contactstudy.checks import FloatArray
+from contactstudy.study.batches import IntArray, offsets, read_batch, read_slices
+from contactstudy.study.common_cells import (
+    Resampling,
+    centred_cells,
+    centres,
+    common_columns,
+    common_rows,
+    resampled,
+    resampling_comment,
+    split_cells,
+)
+from contactstudy.study.folder import States
+
+CELLS = ("x", "y")  # Dimensions of cells; positions along other dimensions are points
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Positions:
+    """Positions of all cases along one dimension of their arrays."""
+
+    which: IntArray  # number of each case's positions among the different ones; -1 without
+    values: list[FloatArray] = field(default_factory=list)  # different positions, metres
+    # widths of the cells there; empty for uniform cells and points
+    widths: list[FloatArray] = field(default_factory=list)
+    scales: list[float] = field(default_factory=list)  # half-widths, metres
+
+    @property
+    def alike(self) -> bool:
+        """Whether all positions are equal, in metres."""
+        return all(np.array_equal(values, self.values[0]) for values in self.values)
+
+    @property
+    def over_a(self) -> list[FloatArray]:
+        """Different positions over the half-width."""
+        return [values / scale for values, scale in zip(self.values, self.scales, strict=True)]
+
+    @property
+    def has_widths(self) -> bool:
+        """Whether cells have different widths."""
+        return any(widths.size for widths in self.widths)
+
+    def edges(self, number: int) -> FloatArray:
+        """Edges of the cells of one case, metres."""
+        middles, widths = self.values[number], self.widths[number]
+        if not widths.size:
+            half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
+            return np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
+        low, high = middles - 0.5 * widths, middles + 0.5 * widths
+        return np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+
+
+def _equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
+    """Whether all arrays equal one, except for rounding."""
+    scale = float(np.abs(first).max(initial=0.0))
+    return all(row.size == first.size and np.allclose(row, first, rtol=1e-9, atol=1e-12 * scale) for row in arrays)
+
+
+class StudyAxis(NamedTuple):
+    """Dimension of a study for one of the cases' arrays, and the map of a case's positions onto a common axis."""
+
+    name: str
+    size: int
+    resampling: Callable[[int], Resampling] | None = None
+
+
+class Fields:
+    """Arrays of a study's cases, lazily, and their coordinates; `common` axes, or the cells and points of each case."""
+
+    def __init__(self, states: States, *, common: bool) -> None:
+        self._states, self._common = states, common
+        self._batches = states.results.batches
+        coordinates = {name for batch in self._batches for name in batch.coordinates}
+        self.names: dict[str, tuple[tuple[str, ...], np.dtype[Any]]] = {}
+        for batch in self._batches:
+            for name, (dims, values) in batch.arrays.items():
+                if name not in coordinates:
+                    self.names.setdefault(name, (dims, values.dtype))
+        self._dims = list(dict.fromkeys(dim for dims, _ in self.names.values() for dim in dims))
+
+    @cached_property
+    def _positions(self) -> dict[str, Positions]:
+        """Positions along every dimension."""
+        count = len(self._states.plan)
+        batch_of, row_of = self._states.locations
+        scales = self._states.numbers("hertz_half_width")
+        result = {dim: Positions(which=np.full(count, -1, dtype=np.int64)) for dim in self._dims}
+        numbers: dict[str, dict[Any, int]] = {dim: {} for dim in self._dims}
+        coordinates = [name for dim in self._dims for name in (dim, f"{dim}_width")]
+        for batch_number, path in enumerate(self._states.results.paths):
+            if not self._batches[batch_number].arrays:
+                continue
+            batch = read_batch(path, arrays=coordinates)
+            for dim in self._dims:
+                if dim not in batch.sizes:
+                    continue
+                starts = offsets(batch.sizes, (dim,), len(batch))
+                values, widths = (batch.arrays.get(name) for name in (dim, f"{dim}_width"))
+                for index in np.flatnonzero(batch_of == batch_number).tolist():
+                    span = slice(starts[row_of[index]], starts[row_of[index] + 1])
+                    row = np.arange(span.stop - span.start, dtype=np.float64) if values is None else values.values[span]
+                    row_widths = np.zeros(0) if widths is None else widths.values[span]
+                    if not row.size:
+                        continue
+                    positions = result[dim]
+                    key = (row.tobytes(), row_widths.tobytes(), scales[index])
+                    if key not in numbers[dim]:
+                        numbers[dim][key] = len(positions.values)
+                        positions.values.append(np.asarray(row, dtype=np.float64))
+                        positions.widths.append(np.asarray(row_widths, dtype=np.float64))
+                        positions.scales.append(float(scales[index]))
+                    positions.which[index] = numbers[dim][key]
+        return {dim: positions for dim, positions in result.items() if positions.values}
+
+    def added_to(self, dataset: xr.Dataset) -> xr.Dataset:
+        """Return a Dataset of the study with the arrays."""
+        axes, coordinates = self._axes()
+        cube = self._states.plan.cube
+        variables = {}
+        for name, (dims, dtype) in self.names.items():
+            if not all(dim in axes for dim in dims):
+                continue
+            attributes = self._states.attributes(name)
+            if any(axes[dim].resampling for dim in dims):
+                attributes |= {"comment": resampling_comment(name), ERROR_KIND: NOT_ESTIMATED}
+            array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
+            variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
+            variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
+            variable.encoding = {"preferred_chunks": _preferred_chunks(variable_dims, array, len(cube.dims))}
+            variables[name] = variable
+        return dataset.assign_coords(coordinates).assign(variables)
+
+    def _axes(self) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis of every dimension, and their coordinates."""
+        axes: dict[str, StudyAxis] = {}
+        coordinates: dict[str, Any] = {}
+        positions = self._positions
+        scaled = all(np.isfinite(scale) for entry in positions.values() for scale in entry.scales)
+        for dim, entry in positions.items():
+            if dim in axes:
+                continue
+            over_a = scaled and _equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
+            if self._common and dim == "x" and "x_field" in positions and (scaled or entry.alike):
+                added, coords = self._common_axis(["x", "x_field"])
+            elif entry.alike:
+                added, coords = {dim: StudyAxis(dim, entry.values[0].size)}, self._plain(dim)
+            elif scaled and (self._common or over_a):
+                added, coords = self._common_axis([dim])
+            else:
+                added, coords = self._padded(dim)
+            axes |= added
+            coordinates |= coords
+        return axes, coordinates
+
+    def _plain(self, dim: str) -> dict[str, Any]:
+        """Coordinates of equal positions."""
+        positions = self._positions[dim]
+        values = positions.values[0]
+        coordinates: dict[str, Any] = {dim: (dim, values, labels(dim, coordinate=True))}
+        if positions.widths[0].size:
+            coordinates[f"{dim}_width"] = (dim, positions.widths[0], labels(f"{dim}_width", coordinate=True))
+        if np.isfinite(positions.scales).all():
+            coordinates[f"{dim}_over_a"] = self._over_a(dim, dim, values.size)
+        return coordinates
+
+    def _over_a(self, dim: str, name: str, size: int) -> tuple[Any, ...]:
+        """Coordinate of positions over the half-width along a dimension."""
+        positions, attributes = self._positions[dim], labels(f"{dim}_over_a", coordinate=True)
+        if positions.over_a[0].size == size and _equal(positions.over_a, positions.over_a[0]):
+            return (name, positions.over_a[0], attributes)
+        return ((*self._states.plan.cube.dims, name), self._table(positions.over_a, positions.which, size), attributes)
+
+    def _padded(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis of different positions, padded with NaN to the largest case."""
+        positions, name = self._positions[dim], f"{dim}_index"
+        size = max(values.size for values in positions.values)
+        dims = (*self._states.plan.cube.dims, name)
+        coordinates: dict[str, Any] = {
+            dim: (dims, self._table(positions.values, positions.which, size), labels(dim, coordinate=True))
+        }
+        if positions.has_widths:
+            widths = self._table(positions.widths, positions.which, size)
+            coordinates[f"{dim}_width"] = (dims, widths, labels(f"{dim}_width", coordinate=True))
+        if np.isfinite(positions.scales).all():
+            coordinates[f"{dim}_over_a"] = self._over_a(dim, name, size)
+        return {dim: StudyAxis(name, size)}, coordinates
+
+    def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis that all cases share along dimensions of one direction: over the half-width, or metres if all agree."""
+        metres = all(self._positions[dim].alike for dim in dims) and len({*self._positions[dims[0]].scales}) == 1
+        name = dims[0] if metres else f"{dims[0]}_over_a"
+        sources = {dim: self._sources(dim, metres) for dim in dims}
+        axis, borders = self._joint(sources)
+        axes = {}
+        for dim in dims:
+            of_points = dim not in CELLS
+            remains = _equal(sources[dim], axis if of_points else borders)
+            outside = 0.0 if dim == "y" else np.nan
+            maps = None if remains else _maps(sources[dim], axis, borders, outside, of_points)
+            axes[dim] = StudyAxis(name, axis.size, maps)
+        return axes, self._common_coordinates(dims, sources, axis, borders, metres=metres)
+
+    def _sources(self, dim: str, metres: bool) -> list[FloatArray]:
+        """Edges of the cells, or points, of all cases, in metres or over the half-width."""
+        positions = self._positions[dim]
+        scales = [1.0] * len(positions.values) if metres else positions.scales
+        if dim in CELLS:
+            return [positions.edges(number) / scale for number, scale in enumerate(scales)]
+        return [values / scale for values, scale in zip(positions.values, scales, strict=True)]
+
+    def _joint(self, sources: dict[str, list[FloatArray]]) -> tuple[FloatArray, FloatArray]:
+        """Positions of a common axis and the borders around each."""
+        dim, first = next(iter(sources.items()))
+        if dim not in CELLS:
+            axis = first[0] if _equal(first, first[0]) else common_columns(first)
+            return axis, np.concatenate([axis[:1], centres(axis), axis[-1:]])
+        union = common_columns if dim == "x" else common_rows
+        borders = first[0] if _equal(first, first[0]) else union(first)
+        if "x_field" in sources:
+            points = common_columns([np.sort(row) for row in sources["x_field"]])
+            borders = centred_cells(borders, points) if self._points_are_given else split_cells(borders, points)
+        return centres(borders), borders
+
+    @property
+    def _points_are_given(self) -> bool:
+        """Whether the study gives the stress points along x, which are positions of the common axis then."""
+        plan = self._states.plan
+        entries = [plan.base, *(axis.entries[0] for axis in plan.axes), *plan.explicit]
+        return any("field_x_over_a" in entry for entry in entries)
+
+    def _common_coordinates(
+        self,
+        dims: list[str],
+        sources: dict[str, list[FloatArray]],
+        axis: FloatArray,
+        borders: FloatArray,
+        *,
+        metres: bool,
+    ) -> dict[str, Any]:
+        """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
+        dim, positions = dims[0], self._positions[dims[0]]
+        over_a = f"{dim}_over_a"
+        widths = dim == "x" and (
+            positions.has_widths or not _equal(sources[dim], borders) or np.ptp(np.diff(borders)) > 0
+        )
+        if metres:
+            coordinates: dict[str, Any] = {dim: (dim, axis, labels(dim, coordinate=True))}
+            if np.isfinite(positions.scales).all():
+                coordinates[over_a] = (dim, axis / positions.scales[0], labels(over_a, coordinate=True))
+            if widths:
+                coordinates["x_width"] = (dim, np.diff(borders), labels("x_width", coordinate=True))
+            if len(dims) > 1:
+                points = sources["x_field"][0]
+                coordinates["x_field"] = (dim, _within(axis, points), labels("x_field", coordinate=True))
+            return coordinates
+        swept = (*self._states.plan.cube.dims, over_a)
+        rows = []
+        for number, scale in enumerate(positions.scales):
+            source = sources[dim][number]
+            remains = _equal([source], axis if dim not in CELLS else borders)
+            rows.append(scale * (axis if remains else _within(axis, source)))
+        coordinates = {
+            over_a: (over_a, axis, labels(over_a, coordinate=True)),
+            dim: (swept, self._table(rows, positions.which, axis.size), labels(dim, coordinate=True)),
+        }
+        if widths:
+            table = self._table([np.diff(borders) * scale for scale in positions.scales], positions.which, axis.size)
+            coordinates["x_width"] = (swept, table, labels("x_width", coordinate=True))
+        if len(dims) > 1:
+            stress = self._positions["x_field"]
+            rows = [_within(axis, row) * scale for row, scale in zip(sources["x_field"], stress.scales, strict=True)]
+            table = self._table(rows, stress.which, axis.size)
+            coordinates["x_field"] = (swept, table, labels("x_field", coordinate=True))
+        return coordinates
+
+    def _table(self, rows: Sequence[FloatArray], which: IntArray, size: int) -> FloatArray:
+        """Values of every case along the study's dimensions, padded with NaN."""
+        cube, plan = self._states.plan.cube, self._states.plan
+        padded = np.full((len(rows) + 1, size), np.nan)
+        for number, row in enumerate(rows):
+            padded[number, : row.size] = row
+        table = np.full((int(np.prod(cube.shape)), size), np.nan)
+        table[plan.flat] = padded[which]
+        return table.reshape((*cube.shape, size))
+
+
+def _within(axis: FloatArray, source: FloatArray) -> FloatArray:
+    """Positions of an axis between the first and last edge or point of a case; NaN beyond."""
+    slack = 1e-9 * float(np.ptp(axis))
+    return np.where((axis < source.min() - slack) | (axis > source.max() + slack), np.nan, axis)
+
+
+def _maps(
+    sources: list[FloatArray], axis: FloatArray, borders: FloatArray, outside: float, of_points: bool
+) -> Callable[[int], Resampling]:
+    """Return the maps from the cells or points of each case to a common axis."""
+
+    @cache
+    def resampling(number: int) -> Resampling:
+        return Resampling(source=sources[number], axis=axis, borders=borders, outside=outside, of_points=of_points)
+
+    return resampling
+
+
+class CaseArray(BackendArray):
+    """One variable over all cases of a study, read from the batches where it is indexed."""
+
+    def __init__(
+        self,
+        states: States,
+        name: str,
+        axes: Mapping[str, StudyAxis],
+        positions: Mapping[str, Positions],
+        dtype: np.dtype[Any],
+    ) -> None:
+        self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
+        self._which = [positions[dim].which for dim in axes]
+        self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
+        resampling = any(axis.resampling for axis in self._axes)
+        self.dtype = np.dtype(np.float64) if resampling and dtype.kind != "f" else dtype
+
+    @cached_property
+    def _cases(self) -> IntArray:
+        """Number in the plan of each cell of the cube; -1 for an excluded one."""
+        cases = np.full(int(np.prod(self._states.plan.cube.shape)), -1, dtype=np.int64)
+        cases[self._states.plan.flat] = np.arange(len(self._states.plan))
+        return cases.reshape(self._states.plan.cube.shape)
+
+    def __getitem__(self, key: Any) -> Any:
+        """Return the values at an explicit index of xarray."""
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
+
+    def _read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
+        """Read the values at integers, slices and arrays of integers."""
+        swept = len(self._states.plan.cube.shape)
+        selected = self._cases
+        for axis in range(swept - 1, -1, -1):
+            selected = selected[(slice(None),) * axis + (key[axis],)]
+        field_key = key[swept:]
+        shape = tuple(axis.size for axis in self._axes)
+        fill = np.nan if self.dtype.kind == "f" else 0
+        empty = _outer(np.full(shape, fill, dtype=self.dtype), field_key)
+        result = np.broadcast_to(empty, (selected.size, *empty.shape)).copy()
+        for index, values in self._values(selected.ravel()):
+            padded = np.full(shape, fill, dtype=self.dtype)
+            padded[tuple(slice(size) for size in values.shape)] = values
+            result[index] = _outer(padded, field_key)
+        return result.reshape((*selected.shape, *empty.shape))
+
+    def _values(self, cases: IntArray) -> Iterable[tuple[int, npt.NDArray[Any]]]:
+        """Yield the values of cases on the study's axes, each with its number among `cases`; batch by batch."""
+        batch_of, row_of = self._states.locations
+        for number in np.unique(batch_of[cases[cases >= 0]]).tolist():
+            batch = self._states.results.batches[number] if number >= 0 else None
+            if batch is None or self._name not in batch.arrays:
+                continue
+            starts = offsets(batch.sizes, self._dims, len(batch))
+            indices = [index for index, case in enumerate(cases.tolist()) if case >= 0 and batch_of[case] == number]
+            rows = [int(row_of[cases[index]]) for index in indices]
+            bounds = [(int(starts[row]), int(starts[row + 1])) for row in rows]
+            flat = read_slices(self._states.results.paths[number], {self._name: bounds})[self._name]
+            for index, row, values in zip(indices, rows, flat, strict=True):
+                if values.size:
+                    shaped = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
+                    yield index, self._on_axes(shaped, int(cases[index]))
+
+    def _on_axes(self, values: npt.NDArray[Any], case: int) -> npt.NDArray[Any]:
+        """Values of one case on the study's axes."""
+        maps = [
+            axis.resampling(int(which[case])) if axis.resampling else None
+            for axis, which in zip(self._axes, self._which, strict=True)
+        ]
+        return resampled(self._name, values, maps) if any(maps) else values
+
+
+def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
+    """Index every axis independently."""
+    for axis in range(len(key) - 1, -1, -1):
+        values = values[(slice(None),) * axis + (key[axis],)]
+    return values
+
+
+def _preferred_chunks(dims: Sequence[str], array: CaseArray, swept: int) -> dict[str, int]:
+    """Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions."""
+    size = array.dtype.itemsize * int(np.prod(array.shape[swept:], dtype=np.int64))
+    chunks = dict(zip(dims, array.shape, strict=True))
+    for axis in range(swept - 1, -1, -1):
+        chunks[dims[axis]] = max(1, min(array.shape[axis], 2**24 // max(size, 1)))
+        size *= chunks[dims[axis]]
+    return chunks

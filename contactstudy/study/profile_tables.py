@@ -1,0 +1,267 @@
+"""Profiles as tables in a study: ``kind`` and the fields of the class, nested where a profile consists of profiles.
+
+A new profile becomes available to studies by an entry in :data:`PROFILES`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, is_dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from contactstudy import checks, profiles
+from contactstudy.arrays.engineering import quantity
+from contactstudy.errors import InvalidInputError
+from contactstudy.profiles import Profile
+from contactstudy.profiles.base import UNITS
+from contactstudy.study import user_profiles
+from contactstudy.study.numbers import number
+
+Table = dict[str, Any]
+DEEPEST = 16  # Largest depth of profiles within profiles
+MOST_POINTS = 50_000  # Largest number of points of a measured profile
+DESIGN = ("design_pressure", "design_load")
+"""Keys that determine the amplitude of a profile: Pa, and N on the whole roller."""
+
+POINTS = ("positions", "drops")  # Fields that contain lists of lengths
+NESTED = ("left", "right", "profile")  # Fields that contain a profile
+FILE_FLAGS = ("remove_tilt", "remove_offset")
+FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
+
+
+@dataclass(frozen=True, kw_only=True)
+class Surroundings:
+    """Quantities of a case that a profile may follow: the roller's radius and length, metres, and the modulus, Pa."""
+
+    radius: float
+    modulus: float
+    length: float
+
+
+@dataclass(frozen=True)
+class ProfileKind:
+    """Class of a profile, whose fields are the keys of its table."""
+
+    made: Any  # the dataclass
+    designed: tuple[str, ...] = ()  # fields that follow from DESIGN by the class' for_pressure or for_load
+    of_radius: Mapping[str, float] = field(default_factory=dict)  # defaults in multiples of the roller's radius
+
+    @cached_property
+    def defaults(self) -> dict[str, Any]:
+        """Default of every field; MISSING where a value is required."""
+        return {entry.name: None if entry.name in self.of_radius else entry.default for entry in fields(self.made)}
+
+    def read(self, table: Mapping[str, Any], depth: int) -> Table:
+        """Check keys and values of a table without `kind` and `name`; omit defaults."""
+        measured = self.made is profiles.Measured
+        keys = [*self.defaults, *(DESIGN if self.designed else ()), *(FILE_OPTIONS if measured else ())]
+        for key in table:
+            checks.known_name("profile key", str(key), [*keys, "kind", "name"])
+        given = {key: entry for key, entry in table.items() if entry is not None}
+        if measured:
+            given = _points_of_file(given)
+        values = {key: _checked_value(key, entry, depth) for key, entry in given.items()}
+        if not {*POINTS, *NESTED, "terms"}.isdisjoint(self.defaults):
+            _require(values, *self._required)
+        return {key: values[key] for key in keys if key in values and values[key] != self.defaults.get(key)}
+
+    @property
+    def _required(self) -> list[str]:
+        return [name for name, default in self.defaults.items() if default is MISSING]
+
+    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+        """Profile of the values that :meth:`read` returns."""
+        design = {name: table[name] for name in DESIGN if name in table}
+        values = {name: _built_value(value, around) for name, value in table.items() if name not in design}
+        if self.designed and len(design) + any(name in values for name in self.designed) != 1:
+            choice = f"exactly one of {' with '.join(self.designed)}, {' and '.join(DESIGN)}"
+            raise InvalidInputError("profile", dict(table), f"given with {choice}")
+        if not design:
+            _require(values, *self._required)
+            radii = {name: factor * around.radius for name, factor in self.of_radius.items()}
+            profile: Profile = self.made(**(radii | values))
+            return profile
+        _require(values, *(name for name in self._required if name not in self.designed))
+        values |= {"radius": around.radius, "modulus": around.modulus}
+        if "design_load" in design:
+            profile = self.made.for_load(design["design_load"], length=around.length, **values)
+        else:
+            profile = self.made.for_pressure(design["design_pressure"], **values)
+        return profile
+
+
+def _require(table: Mapping[str, Any], *names: str) -> None:
+    for name in names:
+        if name not in table:
+            raise InvalidInputError("profile", dict(table), f"given with {name}")
+
+
+def _checked_value(key: str, value: object, depth: int) -> Any:
+    """Value of a table after its check: a nested profile, a list of profiles or lengths, or a number."""
+    if key in NESTED:
+        return _nested_table(value, depth)
+    if key == "terms":
+        checks.instance("profile.terms", value, (list, tuple), "a list of profiles")
+        assert isinstance(value, Sequence)
+        return [_nested_table(term, depth) for term in value]
+    if key not in POINTS:
+        return number(f"profile.{key}", value)
+    points = checks.coordinates(f"profile.{key}", value, "metres").tolist()
+    if len(points) > MOST_POINTS:
+        thin = "thin the points out: cells of the contact are micrometres wide"
+        raise InvalidInputError("profile", f"{len(points)} points", f"at most {MOST_POINTS} points", thin)
+    return points
+
+
+def _nested_table(value: object, depth: int) -> Table:
+    """Table of a profile within another one, without its name."""
+    return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
+
+
+def _built_value(value: Any, around: Surroundings) -> Any:
+    """Argument of a profile's class."""
+    if isinstance(value, Mapping):
+        return build_profile(value, around)
+    if isinstance(value, list) and value and isinstance(value[0], Mapping):
+        return tuple(build_profile(term, around) for term in value)
+    return value
+
+
+def _points_of_file(table: Table) -> Table:
+    """Table of a measured profile with the points of its file: identity depends on them, not on the file's path."""
+    if "file" not in table:
+        for key in FILE_OPTIONS:
+            if key in table:
+                raise InvalidInputError(f"profile.{key}", table[key], "left out: it belongs to a file")
+        return table
+    if any(name in table for name in POINTS):
+        raise InvalidInputError("profile", sorted(table), "given with file, or with positions and drops")
+    checks.instance("profile.file", table["file"], str, "the path of a CSV or netCDF file")
+    for flag in FILE_FLAGS:
+        checks.instance(f"profile.{flag}", table.get(flag, False), bool, "true or false")
+    options = {key: entry for key, entry in table.items() if key != "file"}
+    measured = profiles.Measured.from_file(table["file"], **options)
+    values = {entry.name: getattr(measured, entry.name) for entry in fields(measured)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+PROFILES: dict[str, ProfileKind] = {
+    "cylinder": ProfileKind(profiles.Cylinder),
+    "tapered": ProfileKind(profiles.Tapered),
+    "lundberg": ProfileKind(profiles.Lundberg, designed=("amplitude",)),
+    "johns-gohar": ProfileKind(profiles.JohnsGohar, designed=("amplitude", "half_width")),
+    "fujiwara-kawase": ProfileKind(profiles.FujiwaraKawase, designed=("amplitude",)),
+    "iso-cylindrical": ProfileKind(profiles.IsoCylindrical, of_radius={"diameter": 2.0}),
+    "iso-tapered": ProfileKind(profiles.IsoTapered, of_radius={"diameter": 2.0}),
+    "full-crown": ProfileKind(profiles.FullCrown),
+    "partial-crown": ProfileKind(profiles.PartialCrown),
+    "ellipsoid": ProfileKind(profiles.Ellipsoid),
+    "sphere": ProfileKind(profiles.Sphere, of_radius={"radius": 1.0}),
+    "chamfer": ProfileKind(profiles.Chamfer),
+    "measured": ProfileKind(profiles.Measured),
+    "halves": ProfileKind(profiles.Halves),
+    "effective-length": ProfileKind(profiles.EffectiveLength),
+    "sum": ProfileKind(profiles.Sum),
+}
+"""Kinds of profile by their name in a study."""
+
+KIND_OF = {kind.made: name for name, kind in PROFILES.items()}  # Name of the kind of each class
+
+
+def profile_table(value: object, depth: int = 0) -> Table:
+    """Table of a profile without defaults: of a kind, a table with ``kind`` and the class' fields, or an object."""
+    if depth > DEEPEST:
+        raise InvalidInputError("profile", f"more than {DEEPEST} profiles within one another", "nested less deeply")
+    if is_dataclass(value) and type(value) in KIND_OF:
+        value = {"kind": KIND_OF[type(value)], **{entry.name: getattr(value, entry.name) for entry in fields(value)}}
+    elif isinstance(value, Profile) and not isinstance(value, type):
+        return user_profiles.register(value)
+    if isinstance(value, str):
+        value = {"kind": value}
+    allowed = "a profile, an object with drop(x, length), or a table with a kind, such as {kind = 'cylinder'}"
+    checks.instance("profile", value, Mapping, allowed)
+    assert isinstance(value, Mapping)
+    if not isinstance(value.get("kind"), str):
+        raise InvalidInputError("profile", dict(value), f"a table with a kind: one of {', '.join(PROFILES)}")
+    kind = checks.known_name("profile.kind", value["kind"], [*PROFILES, user_profiles.KIND])
+    table: Table = {"kind": kind}
+    name = value.get("name")
+    if name is None and isinstance(value.get("file"), str):
+        name = Path(value["file"]).stem
+    if name is not None:
+        checks.instance("profile.name", name, str, "text")
+        table["name"] = name
+    content = {key: entry for key, entry in value.items() if key not in ("kind", "name")}
+    if kind == user_profiles.KIND:
+        return table | user_profiles.read_table(content)
+    return table | PROFILES[kind].read(content, depth)
+
+
+def build_profile(table: Mapping[str, Any], around: Surroundings) -> Profile:
+    """Profile of a table from :func:`profile_table`."""
+    if table["kind"] == user_profiles.KIND:
+        return user_profiles.registered(table)
+    values = {key: value for key, value in table.items() if key not in ("kind", "name")}
+    return PROFILES[table["kind"]].build(values, around)
+
+
+def resolve_files(content: Any, folder: Path) -> Any:
+    """Tables whose files of measured profiles are relative to `folder` instead of the working directory."""
+    if isinstance(content, Mapping):
+        resolved = {key: resolve_files(entry, folder) for key, entry in content.items()}
+        if resolved.get("kind") == "measured" and isinstance(resolved.get("file"), str):
+            resolved["file"] = str(folder / resolved["file"])
+        return resolved
+    return [resolve_files(entry, folder) for entry in content] if isinstance(content, list) else content
+
+
+def check_without_files(content: Any) -> None:
+    """Raise if a measured profile within tables names a file: a stranger's study could name any file."""
+    entries = content.values() if isinstance(content, Mapping) else content if isinstance(content, list) else ()
+    if isinstance(content, Mapping) and content.get("kind") == "measured" and "file" in content:
+        raise InvalidInputError("profile.file", content["file"], "left out of study.json, which contains the points")
+    for entry in entries:
+        check_without_files(entry)
+
+
+def profile_label(table: Mapping[str, Any]) -> str:
+    """Label of a profile on a dimension: its name, or its kind and values."""
+    return _composed(table, " ", lambda key, value: f"{key}={value:g}", lambda length: f"{length:g} m")
+
+
+def describe_profile(table: Mapping[str, Any]) -> str:
+    """Name of a profile, or its kind and values in the units of engineers."""
+    units = UNITS | {"design_pressure": "Pa", "design_load": "N"}
+
+    def item(key: str, value: float) -> str:
+        return f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}"
+
+    return _composed(table, ", ", item, lambda length: quantity(length, "m"))
+
+
+def _composed(
+    table: Mapping[str, Any], separator: str, item: Callable[[str, float], str], length: Callable[[float], str]
+) -> str:
+    """Text of a profile from the texts of its parts, values and effective length."""
+    if "name" in table:
+        return str(table["name"])
+
+    def part(inner: Mapping[str, Any]) -> str:
+        return _composed(inner, separator, item, length)
+
+    kind = str(table["kind"])
+    if kind == "sum":
+        return " + ".join(map(part, table["terms"]))
+    if kind == "halves":
+        return f"{part(table['left'])} | {part(table['right'])}"
+    if kind == "measured":
+        return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
+    if kind == user_profiles.KIND:
+        return f"{table['class']} {table['content'][:8]}"
+    if kind == "effective-length":
+        return f"{part(table['profile'])} over {length(table['effective_length'])}"
+    return separator.join([kind, *(item(key, table[key]) for key in sorted(table) if key != "kind")])

@@ -1,0 +1,30 @@
+"""Times and sizes of a run, in one place."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunSettings:
+    """Times and sizes of a run; results depend on none of them."""
+
+    task_seconds: float = 10.0  # longer tasks need fewer messages, shorter ones spread better
+    save_seconds: float = 15.0  # a worker writes its finished cases: a killed worker loses no more
+    compact_seconds: float = 20.0  # a run joins small batches
+    poll_seconds: float = 0.5  # a run looks for workers that came or went
+    start_seconds: float = 60.0  # longest wait for a scheduler's answer, or the start of a worker
+    announce_seconds: float = 10.0  # time without a worker after which the user is informed
+    close_seconds: float = 2.0  # longest wait for the end of a connection
+    share_seconds: float = 10.0  # longest wait of a share for another one that starts at the same moment
+    buffer_bytes: int = 2**26  # size in memory at which a worker writes a batch
+    batch_bytes: int = 2**27  # batches of this size, or of batch_cases, are not joined further
+    batch_cases: int = 2**13
+    small_bytes: int = 2**24  # smaller batches are joined at the end of a run
+    # batches of similar size that are joined: the number of files grows with the logarithm of the cases
+    fan_in: int = 8
+    turns: int = 8  # least turns of each share, so that all have cheap and expensive cases
+    checked_groups: int = 4000  # groups that a plan sets up; of more groups a sample, evenly spaced
+
+
+RUN = RunSettings()  # Settings of every run

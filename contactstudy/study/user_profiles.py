@@ -1,0 +1,178 @@
+"""Profiles of a user's class in a study: identity by content, transport to workers.
+
+A file cannot contain the code of a class. The files of a study contain the name of the class, the values of the object
+and a digest of values and drops; the object goes to workers as a pickle. Other processes can plan and open the study.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from contactstudy import checks
+from contactstudy.case.serialization import Sampled
+from contactstudy.errors import ContactStudyError, InvalidInputError
+from contactstudy.profiles import Profile
+from contactstudy.profiles.base import checked_drop, in_words, local_radius
+
+KIND = "user"  # Kind of a profile of a user's class
+KEYS = ("class", "values", "content")
+"""Keys of its table: name of the class, values of the object, and the digest that is its identity."""
+
+LENGTHS = (1e-4, 1e-3, 1e-2, 1e-1)
+"""Lengths of a roller, metres, for which drops enter the digest; a profile may be invalid for some."""
+
+LARGEST_LIST = 100  # Largest array that a file lists; a larger one is represented by its digest
+REMEDY = "give its values as numbers, texts or lists, or the shape as profiles.Measured(x, drop)"
+
+_registry: dict[str, Profile] = {}
+"""Copies of the profiles of this process, by content; later changes of the user's objects do not reach them."""
+
+
+def register(profile: Profile) -> dict[str, Any]:
+    """Add a copy of a user's profile to this process' registry; return its table."""
+    name = type(profile).__qualname__.split("<locals>.")[-1]
+    values = _values(profile)
+    content = _digest([name, values, _behaviour(profile)])
+    if content not in _registry:
+        _registry[content] = _copied(profile, name, content)
+    unnamed = type(profile).__repr__ is object.__repr__
+    label = f"{name} {content[:8]}" if unnamed else in_words(profile)
+    return {"kind": KIND, "name": label, "class": name, "values": values, "content": content}
+
+
+def read_table(table: Mapping[str, Any]) -> dict[str, Any]:
+    """Check the table of a file."""
+    for key in table:
+        checks.known_name("profile key", str(key), [*KEYS, "kind", "name"])
+    for key, kind in (("class", str), ("content", str), ("values", Mapping)):
+        checks.instance(f"profile.{key}", table.get(key), kind, "the content of a user's profile, written by a study")
+    return {key: table[key] for key in KEYS}
+
+
+def registered(table: Mapping[str, Any]) -> Profile:
+    """Profile of a table; a straight line, for plans only, if this process lacks it."""
+    return _registry.get(table["content"]) or Sampled(str(table["class"]), (-0.5, 0.5), (0.0, 0.0))
+
+
+def user_profiles(parameters: Any) -> dict[str, Profile]:
+    """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks one."""
+    profiles = {}
+    for table in _tables(parameters):
+        if table["content"] not in _registry:
+            raise InvalidInputError(
+                "profile",
+                f"{table['class']} {table['content'][:8]}",
+                "made by the running script: its class is not in the study's files",
+                "run the study from the script that makes this profile; opening it needs none",
+            )
+        profiles[table["content"]] = _registry[table["content"]]
+    return profiles
+
+
+def are_registered(parameters: Any) -> bool:
+    """Whether this process has every user's profile within parameters."""
+    return all(table["content"] in _registry for table in _tables(parameters))
+
+
+def receive(profiles: Mapping[str, Profile]) -> None:
+    """Add profiles that another process sent to the registry of this worker."""
+    _registry.update(profiles)
+
+
+def _tables(value: Any) -> Iterator[Mapping[str, Any]]:
+    """Tables of users' profiles at any depth."""
+    if isinstance(value, Mapping):
+        if value.get("kind") == KIND:
+            yield value
+            return
+        value = list(value.values())
+    if isinstance(value, (list, tuple)):
+        for entry in value:
+            yield from _tables(entry)
+
+
+def _attributes(profile: Profile) -> Iterable[tuple[str, Any]]:
+    """Fields of a dataclass, or attributes of another object."""
+    kind: Any = type(profile)
+    if is_dataclass(kind):
+        return [(entry.name, getattr(profile, entry.name)) for entry in fields(kind)]
+    attributes: dict[str, Any] = dict(getattr(profile, "__dict__", {}))
+    slots = [name for base in kind.__mro__ for name in getattr(base, "__slots__", ())]
+    return sorted((attributes | {name: getattr(profile, name) for name in slots if hasattr(profile, name)}).items())
+
+
+def _values(profile: Profile) -> dict[str, Any]:
+    """JSON values of a profile."""
+    return {key: _json_value(f"profile.{key}", value) for key, value in _attributes(profile)}
+
+
+def _json_value(name: str, value: object) -> Any:
+    """JSON value of an attribute."""
+    if isinstance(value, np.ndarray) and value.size > LARGEST_LIST:
+        return f"{value.size} values {_digest(_json_value(name, value.tolist()))[:16]}"
+    if isinstance(value, (np.ndarray, np.generic)):
+        value = value.tolist()
+    if value is None or isinstance(value, (bool, str, int)):
+        return value
+    if isinstance(value, float):
+        return float(f"{value:.12g}") if np.isfinite(value) else repr(value)
+    if isinstance(value, (list, tuple)):
+        return [_json_value(name, entry) for entry in value]
+    if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
+        return {key: _json_value(f"{name}.{key}", entry) for key, entry in value.items()}
+    if isinstance(value, Profile):
+        nested = {key: _json_value(f"{name}.{key}", entry) for key, entry in _attributes(value)}
+        return {"class": type(value).__qualname__, **nested}
+    allowed = f"a number, a text, a list or a profile, which identify the profile, not {type(value).__name__}"
+    raise InvalidInputError(name, value, allowed, REMEDY)
+
+
+def _behaviour(profile: Profile) -> list[Any]:
+    """Return drops and radii for every valid length, in 9 digits, because processors differ in rounding."""
+    behaviour: list[Any] = []
+    refusal: Exception | None = None
+    for length in LENGTHS:
+        x = -0.5 * length * np.cos(np.linspace(0.0, np.pi, 1001))
+        try:
+            drops, radii = checked_drop(profile, x, length), local_radius(profile, x, length, length)
+        except (ContactStudyError, ArithmeticError, ValueError) as error:
+            refusal = error
+            behaviour.append(None)
+            continue
+        behaviour.append([f"{value:.9g}" for value in [*(drops + 0.0), *radii]])
+    if not any(behaviour):
+        lengths = ", ".join(f"{length:g}" for length in LENGTHS)
+        allowed = f"an object whose drop(x, length) is valid for a roller of {lengths} m, at least one of them"
+        raise InvalidInputError("profile", profile, allowed, str(refusal))
+    return behaviour
+
+
+def _digest(content: object) -> str:
+    """SHA-256 of JSON values."""
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _copied(profile: Profile, name: str, content: str) -> Profile:
+    """Copy of a profile by its pickle, as a worker receives it."""
+    import pickle
+
+    import cloudpickle  # type: ignore[import-untyped]
+
+    try:
+        copy: Profile = pickle.loads(cloudpickle.dumps(profile))
+    except Exception as error:  # a user's class may raise anything
+        raise _unpicklable(name, f"{type(error).__name__}: {error}") from error
+    if _digest([name, _values(copy), _behaviour(copy)]) != content:
+        raise _unpicklable(name, "its copy is another profile")
+    return copy
+
+
+def _unpicklable(name: str, reason: str) -> InvalidInputError:
+    """Error of a profile that cannot be sent to workers."""
+    return InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)

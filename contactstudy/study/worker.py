@@ -1,0 +1,265 @@
+"""Work of one process: solve a task, group by group, and write the finished cases in batches."""
+
+from __future__ import annotations
+
+import contextlib
+import socket
+import subprocess
+import time
+import uuid
+import warnings
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from functools import cache, partial
+from itertools import groupby
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.analysis.summary import Number, case_numbers
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import DERIVED, labels
+from contactstudy.case.gridding import first_sufficient
+from contactstudy.errors import ContactStudyError, MagnitudeWarning
+from contactstudy.profiles import Profile
+from contactstudy.study.batches import STATUSES, Batch, case_batch, join, with_arrays, write_batch
+from contactstudy.study.errors import StoreError
+from contactstudy.study.parameters import PARAMETERS
+from contactstudy.study.settings import RUN
+from contactstudy.study.setup import Setup, build_setup
+from contactstudy.study.user_profiles import receive
+from contactstudy.versions import versions
+
+Solver = Callable[..., xr.Dataset]  # Callable with the arguments and the result of :func:`contactstudy.solve`
+
+
+class Job(NamedTuple):
+    """One case to solve: identity, swept parameters in words, checked parameters without defaults, and its group."""
+
+    id: str
+    name: str
+    parameters: dict[str, Any]
+    group: int
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task:
+    """Groups of cases that one worker solves in order."""
+
+    jobs: tuple[Job, ...]  # group by group
+    folder: str  # folder of the batches, on a file system of all workers
+    # path and text of the run's lock: a worker that reads another text has another file system
+    lock: tuple[str, str] = ("", "")
+    prefix: str = ""  # start of the names of the batches
+    level: str = "summary"  # arrays to retain
+    study: str = ""
+    run: int = 0
+    profiles: Mapping[str, Profile] = field(default_factory=dict)  # profiles of users' classes, by content
+
+
+class Outcome(NamedTuple):
+    """State of one case after its solution: a status of a batch, seconds, and the reason of a failure."""
+
+    id: str
+    status: str
+    seconds: float
+    message: str = ""
+
+
+@cache
+def circumstances() -> dict[str, Any]:
+    """Versions and commit of this process."""
+    result: dict[str, Any] = {**versions()}
+    source = Path(__file__)
+    git = ["git", "-C", str(source.parent)]
+    with contextlib.suppress(OSError, subprocess.SubprocessError):
+        # Only a checkout that tracks this file is the package's repository.
+        subprocess.run([*git, "ls-files", "--error-unmatch", source.name], capture_output=True, check=True, timeout=10)
+        described = [*git, "describe", "--always", "--dirty", "--abbrev=40"]
+        commit = subprocess.run(described, capture_output=True, check=True, timeout=10, text=True)
+        result["commit"] = commit.stdout.strip()
+    return result
+
+
+@contextlib.contextmanager
+def single_threaded() -> Iterator[None]:
+    """Limit linear algebra and transforms to one thread, so that the order of sums is the same in every process."""
+    import pyfftw
+    from threadpoolctl import threadpool_limits
+
+    previous, pyfftw.config.NUM_THREADS = pyfftw.config.NUM_THREADS, 1
+    try:
+        with threadpool_limits(limits=1):
+            yield
+    finally:
+        pyfftw.config.NUM_THREADS = previous
+
+
+def perform(task: Task, solver: Solver | None = None, report: Callable[[Outcome], None] | None = None) -> list[Outcome]:
+    """Solve the cases of a task and write them in batches; `report` takes each outcome when its case is written.
+
+    A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
+    defect of the program, and raised after the cases finished before are written.
+    """
+    _check_folder(*task.lock)
+    receive(task.profiles)
+    writer = _Writer(task, report or (lambda outcome: None))
+    try:
+        with single_threaded():
+            for _, jobs in groupby(task.jobs, key=lambda job: job.group):
+                for batch in _solve_group(task, list(jobs), solver):
+                    writer.add(batch)
+    except StoreError:
+        raise
+    except BaseException:
+        writer.flush()
+        raise
+    writer.flush()
+    return writer.outcomes
+
+
+def _check_folder(path: str, text: str) -> None:
+    """Raise unless this process reads the lock of the run."""
+    try:
+        lock = Path(path).read_text(encoding="utf-8") if path else ""
+    except (OSError, ValueError) as error:
+        lock = f"{type(error).__name__}: {error}"
+    if lock != text:
+        host = socket.gethostname()
+        raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
+
+
+class _Writer:
+    """Accumulates finished cases and writes them in batches."""
+
+    def __init__(self, task: Task, report: Callable[[Outcome], None]) -> None:
+        self._task, self._report = task, report
+        self._pending: list[Batch] = []
+        self._since = time.monotonic()
+        self.outcomes: list[Outcome] = []
+
+    def add(self, batch: Batch) -> None:
+        """Add one finished case."""
+        self._pending.append(batch)
+        full = sum(pending.nbytes for pending in self._pending) > RUN.buffer_bytes if batch.arrays else False
+        if full or time.monotonic() - self._since > RUN.save_seconds:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write one batch for each structure of arrays."""
+        pending, self._pending = self._pending, []
+        for batches in by_structure(pending):
+            joined = join(batches)
+            write_batch(Path(self._task.folder), f"{self._task.prefix}{uuid.uuid4().hex[:12]}", joined)
+            for row, identity in enumerate(joined.ids):
+                status = STATUSES[joined.status[row]]
+                seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
+                outcome = Outcome(identity.decode(), status, seconds, joined.texts["message"][row])
+                self.outcomes.append(outcome)
+                self._report(outcome)
+        self._since = time.monotonic()
+
+
+def by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
+    """Batches that can be joined; those without arrays join the first of the others."""
+    groups: dict[Any, list[Batch]] = {}
+    for batch in batches:
+        groups.setdefault(batch.structure, []).append(batch)
+    without = groups.pop((), [])
+    if without and groups:
+        next(iter(groups.values())).extend(without)
+    elif without:
+        groups[()] = without
+    return list(groups.values())
+
+
+def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator[Batch]:
+    """Solve the cases of a group; numbers of a contact without stresses do not depend on uncoupled friction."""
+    shares = solver is None and len(jobs) > 1 and task.level == "summary"
+    solved: Batch | None = None
+    film: xr.Dataset | None = None
+    for job in jobs:
+        began = time.perf_counter()
+        try:
+            setup = build_setup(job.parameters)
+        except ContactStudyError as error:
+            yield _without_result(task, job, "skipped", str(error))
+            continue
+        if solved is None:
+            batch, result = _solve_case(task, job, setup, solver, film)
+            if setup.case.lubricant is not None:
+                film = result
+            elif shares and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
+                solved = batch
+        else:
+            batch = replace(
+                _without_result(task, job, "ok"), numbers=dict(solved.numbers), attributes=dict(solved.attributes)
+            )
+            batch.texts["warnings"] = solved.texts["warnings"]
+        batch.numbers["seconds"] = np.array([time.perf_counter() - began])
+        batch.attributes["seconds"] = labels("seconds")
+        yield batch
+
+
+def _without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
+    """Batch of one case without numbers."""
+    return case_batch(
+        identity=job.id,
+        parameters=job.parameters,
+        status=status,
+        message=message,
+        warnings=sorted(set(caught)),
+        time=datetime.now(UTC).isoformat(timespec="seconds"),
+        run=task.run,
+        circumstances={**circumstances(), "study": task.study, "level": task.level},
+    )
+
+
+def _solve_on(solver: Solver | None, setup: Setup, film: xr.Dataset | None, grid: Grid | None) -> xr.Dataset:
+    """Solve a case on one of its grids, or for its film, from that of another speed."""
+    # Planning and opening a study need no solver.
+    from contactstudy.film.solve import solve_film
+    from contactstudy.solution import solve
+
+    if setup.case.lubricant is not None:
+        return (solver or solve_film)(setup.case, start=film, **setup.options)
+    return (solver or solve)(setup.case, grid, **setup.options)
+
+
+def _solve_case(
+    task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
+) -> tuple[Batch, xr.Dataset | None]:
+    """Solve one case; the result is None if it fails."""
+    from contactstudy.fatigue.shakedown import shakedown_summary
+
+    try:
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            dataset = first_sufficient(setup.grids, partial(_solve_on, solver, setup, film))
+            numbers = case_numbers(dataset)
+            for name, entry in shakedown_summary(dataset).data_vars.items():
+                numbers[str(name)] = Number(float(entry), dict(entry.attrs))
+    except StoreError:
+        raise
+    except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
+        return _without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
+    except Exception as error:
+        error.add_note(f"while solving the case {job.name} ({job.id[:16]})")
+        raise
+    batch = _without_result(
+        task, job, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
+    )
+    e_over_a = setup.e_over_a
+    if np.isnan(e_over_a):  # the half-width follows from the solution
+        e_over_a = setup.case.roller_start / numbers["hertz_half_width"].value
+    for name, value in (("e_over_a", e_over_a), ("gamma", setup.gamma)):
+        numbers[name] = Number(float(value), PARAMETERS[name].attrs | {"comment": DERIVED})
+    batch = replace(
+        batch,
+        numbers={name: np.array([number.value]) for name, number in numbers.items()},
+        attributes={name: number.attributes for name, number in numbers.items()},
+    )
+    return with_arrays(batch, dataset, task.level) if task.level != "summary" else batch, dataset

@@ -1,0 +1,457 @@
+"""Checks against closed forms of a half-space, limits of a finite-length space, equilibrium and reciprocity.
+
+A thick body under a load that is uniform along its axis is in plane strain at mid-length; a thin one is a plate in
+plane stress, for every Poisson's ratio.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.checks import FloatArray
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.loads import sliding
+from contactstudy.fields.stress import end_traction_residual, stress_field
+from contactstudy.fields.surface import surface_displacement
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.verification import closed_forms
+from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.problems import (
+    LINE_LOAD,
+    cell_means,
+    components,
+    on_cells,
+    point_pressure,
+    quartic,
+    strip,
+    strip_integral,
+    unit_material,
+)
+
+POISSON = 0.3  # Of every body here, unless a check states another
+
+
+def _half_space() -> HalfSpace:
+    """Half-space of the unit material."""
+    return HalfSpace(material=unit_material(POISSON))
+
+
+def hertz_checks() -> Iterator[Check]:
+    """Hertz point, elliptic and line contact."""
+    body = _half_space()
+    gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (129, 129))
+    contact = solve_contact(body, gap, 4 / 3)
+    _, peak, approach = closed_forms.hertz_point(4 / 3, 1.0, 1.0)
+    case, source = "Hertz point contact, 129 x 129 cells", "Hertz; Johnson (1985) 4.22 to 4.24"
+    middle = contact["pressure"].sel(y=0, method="nearest")
+    exact = peak * np.sqrt(np.maximum(1 - middle["x"].values ** 2, 0))
+    curve = Curve("x / a", "p / p0", middle["x"].values, middle.values / peak, exact / peak)
+    largest = float(contact["pressure"].max())
+    yield compare(case, "peak pressure", source, largest, peak, 2e-4, relative=True, curve=curve)
+    yield compare(case, "approach", source, float(contact["approach"]), approach, 1e-4, relative=True)
+
+    long_radius, short_radius = 4.0, 1.0
+    ellipse = closed_forms.hertz_ellipse(4 / 3, long_radius, short_radius, 1.0)
+    window = (1.25 * ellipse.long, 1.25 * ellipse.short)
+    gap = on_cells(
+        lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius),
+        (-window[0], window[0]),
+        (-window[1], window[1]),
+        (129, 129),
+    )
+    contact = solve_contact(body, gap, 4 / 3)
+    case = f"Hertz elliptic contact, radii 4 to 1, axes {ellipse.long / ellipse.short:.2f} to 1"
+    source = "Hertz; Johnson (1985) 4.26 to 4.32"
+    largest = float(contact["pressure"].max())
+    yield compare(case, "peak pressure", source, largest, ellipse.max_pressure, 2e-4, relative=True)
+    yield compare(case, "approach", source, float(contact["approach"]), ellipse.approach, 1e-4, relative=True)
+    touched = contact["pressure"].max("y") > 0
+    half_length = 0.5 * float(touched.sum()) * float(gap["x"].diff("x")[0])
+    yield compare(case, "long semi-axis over its value", source, half_length / ellipse.long, 1.0, 0.015)
+
+    gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 60), (-2, 2), (240, 129))
+    contact = solve_contact(body, gap.where(abs(gap["x"] - 30) < 28, np.inf), 56 * LINE_LOAD)
+    middle = contact["pressure"].sel(x=30, method="nearest")
+    load = float(middle.sum()) * 4 / 129
+    half_width, peak = closed_forms.hertz_line(load, 0.5, 1.0)
+    exact = peak * np.sqrt(np.maximum(1 - (middle["y"].values / half_width) ** 2, 0))
+    curve = Curve("y / a", "p / p0", middle["y"].values, middle.values, exact)
+    yield compare(
+        "Hertz line contact, middle of a roller of length 56a",
+        "peak pressure under the load per length there",
+        "Hertz; Johnson (1985) 4.45",
+        float(middle.max()),
+        peak,
+        2e-4,
+        relative=True,
+        curve=curve,
+    )
+
+
+def circle_checks() -> Iterator[Check]:
+    """Stresses under a circular Hertz pressure, at rest and sliding."""
+    body = _half_space()
+    circle = on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
+    z = np.linspace(0, 3, 31)
+    stress = stress_field(body, circle, x=[0.0], y=[0.0], z=z, inside_cells=circle).isel(x=0, y=0)
+    axial, radial = closed_forms.hertz_circle_axis(z, 1.0, 1.0, POISSON)
+    yield compare_fields(
+        "circular Hertz pressure, on the axis",
+        "sigma_zz, sigma_xx / p0",
+        "Johnson (1985) 3.45",
+        [stress["sigma_zz"], stress["sigma_xx"]],
+        [axial, radial],
+        2e-4,
+        curve=Curve("z / a", "sigma_xx / p0", z, stress["sigma_xx"].values, radial),
+    )
+    x, y, z = np.array([0.0, 0.5, 1.2]), np.linspace(-1.5, 1.5, 13), np.array([0.1, 0.25, 0.5, 1.0, 2.0])
+    stress = stress_field(body, circle, 0.25, x=x, y=y, z=z, inside_cells=circle)
+    at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
+    exact = closed_forms.hertz_circle(at_x, at_y, at_z, 1.0, 1.0, POISSON, 0.25)
+    yield compare_fields(
+        "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a",
+        "six stresses / p0",
+        "Hamilton (1983); Hamilton and Goodman (1966)",
+        components(stress),
+        components(exact),
+        3e-3,
+        curve=Curve(
+            "y / a", "tau_yz / p0, x = 0, z = 0.25a", y, stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1]
+        ),
+    )
+
+
+def line_checks() -> Iterator[Check]:
+    """Stresses in the middle of a long strip under a line contact's pressure, on the top and below."""
+    body, length, cells_y, half_window = _half_space(), 2000.0, 160, 1.25
+    pressure = cell_means(strip_integral, (0, length), (-half_window, half_window), (80, cells_y))
+    cell = 2 * half_window / cells_y
+    # Edges and middles of cells and points between them, without the last cell in contact and its border.
+    edges = -1.25 + cell * np.arange(1, cells_y)
+    on_top = np.unique(np.round(np.concatenate([edges, edges + 0.5 * cell, edges + 0.37 * cell]), 9))
+    distance = np.abs(on_top) - 1
+    on_top = on_top[(distance < -cell + 1e-9) | (distance > 0.1 * cell)]
+    anywhere = np.linspace(-2, 2, 33)
+    deeper = np.array([0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.5, 2.5, 4.0])
+    source = "McEwen (1949); Smith and Liu (1953)"
+    for friction in (0.0, 0.3):
+        for label, y, z, tolerance in (
+            ("z = 0, beside the contact's last cell", on_top, np.zeros(1), 5e-3),
+            ("z = 0.02a and 0.05a", on_top, np.array([0.02, 0.05]), 2e-3),
+            ("z >= 0.1a", anywhere, deeper, 1e-3),
+        ):
+            stress = stress_field(body, pressure, friction, x=[0.5 * length], y=y, z=z, inside_cells=pressure).isel(x=0)
+            exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, POISSON, friction)
+            depth = min(2, z.size - 1)
+            curve = Curve(
+                "y / a",
+                f"sigma_yy / p0, z = {z[depth]:g}a",
+                y,
+                stress["sigma_yy"].values[:, depth],
+                exact["sigma_yy"][:, depth],
+            )
+            yield compare_fields(
+                f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {label}",
+                "six stresses / p0",
+                source,
+                components(stress),
+                components(exact),
+                tolerance,
+                curve=curve,
+            )
+
+
+def rectangle_checks() -> Iterator[Check]:
+    """Uniform pressure on a rectangle."""
+    body, half_x, half_y = _half_space(), 1.0, 0.5
+    pressure = on_cells(lambda x, y: np.ones_like(x + y), (-half_x, half_x), (-half_y, half_y), (12, 8))
+    z = np.array([0.2, 0.5, 1.0, 2.0, 5.0])
+    stress = stress_field(body, pressure, x=[half_x], y=[half_y], z=z).isel(x=0, y=0)
+    yield compare_fields(
+        "uniform pressure on a rectangle 2 x 1, below its corner",
+        "sigma_zz / p",
+        "Love (1929); Newmark (1935)",
+        stress["sigma_zz"],
+        closed_forms.below_rectangle_corner(z, 2 * half_x, 2 * half_y),
+        1e-9,
+    )
+    x, y = np.array([-0.4, 0.3, 1.5]), np.array([-0.9, 0.1, 0.4])
+    stress = stress_field(body, pressure, 0.3, x=x, y=y, z=z)
+    at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
+    exact = closed_forms.rectangle(at_x, at_y, at_z, half_x, half_y, POISSON, 0.3)
+    yield compare_fields(
+        "uniform pressure and traction (f = 0.3) on a rectangle 2 x 1",
+        "six stresses / p",
+        "Boussinesq and Cerruti, integrated by Gauss quadrature",
+        components(stress),
+        components(exact),
+        1e-8,
+    )
+    sunk = surface_displacement(body, pressure)
+    exact_sunk = closed_forms.rectangle_displacement(
+        sunk["x"].values[:, None], sunk["y"].values[None, :], half_x, half_y, 1.0
+    )
+    yield compare_fields(
+        "uniform pressure on a rectangle 2 x 1", "E* u_z / (p a)", "Love (1929); Johnson 3.25", sunk, exact_sunk, 1e-9
+    )
+
+
+def point_checks() -> Iterator[Check]:
+    """Stresses far from a small loaded cell."""
+    grid = Grid((-0.06, 0.06), (-0.06, 0.06), 3, 3)
+    positions = {"x": np.array([-3.0, 0.4, 2.0]), "y": np.array([-1.0, 0.0, 2.5]), "z": np.array([0.8, 2.0, 4.0])}
+    x, y, z = np.meshgrid(*positions.values(), indexing="ij")
+    pressure = point_pressure(grid, 1, 1)
+    for friction, source in (
+        (0.0, "Boussinesq (1885); Johnson 3.2"),
+        (1.0, "Boussinesq and Cerruti; Johnson 3.2, 3.6"),
+    ):
+        stress = stress_field(_half_space(), pressure, friction, *positions.values())
+        exact = closed_forms.point_load(x, y, z, POISSON, 1.0, friction)
+        scale = max(float(np.abs(value).max()) for value in exact.values())
+        yield compare_fields(
+            "load on one cell of 0.04a, 0.9a and more away" + (", f = 1" if friction else ""),
+            "six stresses over the largest",
+            source,
+            components(stress) / scale,
+            components(exact) / scale,
+            1e-3,
+        )
+
+
+def half_space_checks() -> Iterator[Check]:
+    """Every check of the half-space."""
+    for family in (hertz_checks, circle_checks, line_checks, rectangle_checks, point_checks):
+        yield from family()
+
+
+def plane_checks() -> Iterator[Check]:
+    """Stresses in a thick and in a thin body under a line contact's pressure from end to end."""
+    y, z = np.linspace(-2, 2, 17), np.array([0.1, 0.2, 0.35, 0.5, 1.0, 2.0, 4.0])
+    source = "McEwen (1949); Smith and Liu (1953), "
+    for length, cells, poisson, state, component, tolerance in (
+        (1000.0, 100, POISSON, "plane strain, in the middle", "sigma_xx", 3e-3),
+        (0.05, 2, 0.0, "plane stress", "sigma_yy", 2e-3),
+    ):
+        body = FiniteLengthSpace(length=length, material=unit_material(POISSON))
+        pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (cells, 160))
+        x = [0.5 * length] if cells > 2 else [0.0, 0.3 * length, 0.5 * length]
+        for friction in (0.0, 0.3):
+            stress = stress_field(body, pressure, friction, x=x, y=y, z=z, inside_cells=pressure)
+            exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, poisson, friction)
+            line = {"x": len(x) - 1, "z": 3}
+            yield compare_fields(
+                f"strip load on a body of length {length:g}a, f = {friction:g}, z >= 0.1a",
+                "six stresses / p0",
+                source + state,
+                components(stress),
+                components(exact)[:, None],
+                tolerance,
+                curve=Curve(
+                    "y / a",
+                    f"{component} / p0, z = 0.5a",
+                    y,
+                    stress[component].isel(line).values,
+                    exact[component][:, 3],
+                ),
+            )
+
+
+def plate_contact_checks() -> Iterator[Check]:
+    """Contact of a cylinder with the edge of a thin plate: the line contact with ``E`` instead of ``E*``."""
+    length, material = 0.05, unit_material(POISSON)
+    gap = on_cells(lambda x, y: y**2 + 0 * x, (0, length), (-2, 2), (2, 129))
+    contact = solve_contact(FiniteLengthSpace(length=length, material=material), gap, LINE_LOAD * length)
+    pressure = contact["pressure"].mean("x")
+    half_width, peak = closed_forms.hertz_line(LINE_LOAD, 0.5, material.young)
+    exact = peak * np.sqrt(np.maximum(1 - (gap["y"].values / half_width) ** 2, 0))
+    yield compare(
+        "rigid cylinder on a body of length 0.05a",
+        "peak pressure",
+        "Hertz with plane stress modulus E; Johnson (1985) 4.45",
+        float(pressure.max()),
+        peak,
+        1e-3,
+        relative=True,
+        curve=Curve("y / a", "p / p0", gap["y"].values, pressure.values, exact),
+    )
+
+
+def body_checks() -> Iterator[Check]:
+    """Bodies with ends that are far away."""
+    points = {"y": [0.0, 0.5], "z": [0.1, 0.3, 1.0]}
+    bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
+    x = [19.0, 20.0, 20.5]
+    finite = stress_field(
+        FiniteLengthSpace(length=40.0, material=unit_material()), bump, 0.2, x, *points.values(), inside_cells=bump
+    )
+    half = stress_field(HalfSpace(material=unit_material()), bump, 0.2, x, *points.values(), inside_cells=bump)
+    yield compare_fields(
+        "body of length 40a loaded over 2a in its middle, f = 0.2",
+        "six stresses / p0",
+        "half-space under the same load",
+        components(finite),
+        components(half),
+        1e-3,
+    )
+    at_x = [0.0, 0.1, 1.0, 2.5]
+    for length, tolerance in ((20.0, 5e-3), (40.0, 1.25e-3)):
+        fields = []
+        for span, body in (
+            (length, FiniteLengthSpace(length=length, material=unit_material())),
+            (10.0, QuarterSpace(material=unit_material())),
+        ):
+            load = on_cells(lambda x, y: strip(x, y) * (x < 2), (0, span), (-2, 2), (round(8 * span), 48))
+            stress = stress_field(body, load, 0.2, at_x, *points.values(), inside_cells=load)
+            fields.append(components(stress))
+        finite_fields, quarter_fields = fields
+        yield compare_fields(
+            f"body of length {length:g}a loaded over 2a at one end, f = 0.2",
+            "six stresses / p0",
+            "quarter space under the same load",
+            finite_fields,
+            quarter_fields,
+            tolerance,
+        )
+
+
+def limit_checks() -> Iterator[Check]:
+    """Every check of the limits."""
+    for family in (plane_checks, plate_contact_checks, body_checks):
+        yield from family()
+
+
+def _finite(length: float) -> FiniteLengthSpace:
+    """Body of the unit material."""
+    return FiniteLengthSpace(length=length, material=unit_material())
+
+
+def free_end_checks() -> Iterator[Check]:
+    """Residual traction of the solution on loaded ends."""
+    for length in (8.0, 2.5):
+        pressure = on_cells(strip, (0, length), (-2, 2), (round(16 * length), 64))
+        grid = Grid.from_centres(pressure["x"].values, pressure["y"].values)
+        for depths, label in (((0.02, 0.05), "z = 0.02a, 0.05a"), ((0.1, 0.3, 1.0, 5.0), "z >= 0.1a")):
+            residual = end_traction_residual(
+                _finite(length), sliding(pressure.values, 0.3), grid, grid.y[::5], np.array(depths)
+            )
+            case = f"strip load on both ends, L = {length:g}a, f = 0.3"
+            yield compare(case, f"traction on the ends / p0, {label}", "free ends", residual, 0.0, 1e-4)
+
+
+def equilibrium_checks() -> Iterator[Check]:
+    """Divergence of the stress near an end, by central differences of sixth order, and a cut's resultants."""
+    length, step = 4.0, 0.02
+    pressure = on_cells(lambda x, y: quartic(y) + 0 * x, (0, length), (-1, 1), (64, 64))
+    body, friction = _finite(length), 0.3
+    offsets, weights = np.arange(-3, 4) * step, np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * step)
+    centre = {"x": 0.3, "y": 0.4, "z": 0.6}
+    slopes = {}
+    for axis in "xyz":
+        points = {name: [value] for name, value in centre.items()} | {axis: centre[axis] + offsets}
+        stress = stress_field(body, pressure, friction, *points.values(), inside_cells=pressure)
+        slopes[axis] = {name: float(weights @ stress[name].values.ravel()) for name in STRESSES}
+    divergence = [
+        sum(slopes[axis][name] for axis, name in zip("xyz", names, strict=True))
+        for names in (
+            ("sigma_xx", "tau_xy", "tau_xz"),
+            ("tau_xy", "sigma_yy", "tau_yz"),
+            ("tau_xz", "tau_yz", "sigma_zz"),
+        )
+    ]
+    size = max(abs(value) for by_name in slopes.values() for value in by_name.values())
+    case = "smooth strip load, f = 0.3, L = 4a"
+    yield compare_fields(
+        f"{case}, 0.3a from the end",
+        "divergence of the stress over its largest slope",
+        "equilibrium",
+        np.array(divergence) / size,
+        0.0,
+        2e-3,
+    )
+    # Resultants on the plane z = 1: the load itself. Gauss in x, graded in y; farther out there is Flamant's plate,
+    # whose shear under a traction Q falls like 2 Q z / (pi y**2).
+    node, weight = np.polynomial.legendre.leggauss(10)
+    x = 0.5 * length * (node + 1)
+    parameter = np.linspace(-5.0, 5.0, 101)
+    y, dy = np.sinh(parameter), np.cosh(parameter) * (parameter[1] - parameter[0])
+    cut = stress_field(body, pressure, friction, x=x, y=y, z=[1.0], inside_cells=pressure).isel(z=0)
+    load = length * 16 / 15
+    beyond = 1 - 4 / (np.pi * np.abs(y).max())
+    for component, expected in (("sigma_zz", -load), ("tau_yz", -friction * load * beyond)):
+        resultant = float(np.einsum("xy,x,y->", cut[component].values, 0.5 * length * weight, dy))
+        yield compare(
+            f"{case}, cut at z = a", f"resultant of {component} / (p0 a^2)", "equilibrium", resultant, expected, 2e-3
+        )
+
+
+def contact_condition_checks() -> Iterator[Check]:
+    """Load, symmetry and conditions of a contact."""
+    gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
+    contact = solve_contact(_finite(8.0), gap, 8 * LINE_LOAD)
+    pressure = contact["pressure"].values
+    case = "rigid cylinder on a body of its own length, 8a"
+    load = pressure.sum() * 32 / pressure.size
+    yield compare(case, "load", "prescribed", load, 8 * LINE_LOAD, 1e-9, relative=True)
+    mirrored = [pressure[::-1], pressure[:, ::-1]]
+    quantity = "pressure / p0 against its mirror images"
+    yield compare_fields(case, quantity, "symmetry", [pressure, pressure], mirrored, 1e-8)
+    sunk = surface_displacement(_finite(8.0), contact["pressure"])
+    height = ((gap + sunk) / float(sunk.max() - sunk.min())).values
+    touching = pressure > 0
+    approach = height[touching].mean()
+    quantity = "gap under pressure over the variation of the displacement"
+    yield compare_fields(case, quantity, "conditions of contact", height[touching], approach, 1e-5)
+    overlap = min(0.0, float((height - approach)[~touching].min()))
+    yield compare(case, "overlap elsewhere, likewise", "conditions of contact", overlap, 0.0, 1e-5)
+
+
+def reciprocity_checks() -> Iterator[Check]:
+    """Betti: two loads do equal work on the displacement of each other."""
+    for length in (8.0, 2.5):
+        body, span, cells = _finite(length), (0, length), (48, 32)
+        first = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
+        second = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
+        work = float((first * surface_displacement(body, second)).sum())
+        other = float((second * surface_displacement(body, first)).sum())
+        case = f"two loads on a body of length {length:g}a"
+        yield compare(case, "work of one on the other's displacement", "Betti", work, other, 1e-9, relative=True)
+
+
+def alternation_checks() -> Iterator[Check]:
+    """Alternating between ends and top converges to the explicit solution."""
+    settings = Resolution()
+    modes = axial_modes(8.0, 2.0, 0.05, settings)[0]
+    system = EquationSet.build(modes, 2.0, 0.3, 0.05, settings)
+    source: FloatArray = system.source(
+        Load.NORMAL, modes.load_weights * modes.cell_integrals(Load.NORMAL, np.array([0.0, 3.0]))[:, 0]
+    )
+    explicit, face_load = system.solve(source), source.copy()
+    for _ in range(200):
+        face_load = source + system.source(Load.NORMAL, modes.on_end * system.on_top(system.scale * face_load))
+    scale = np.abs(explicit).max()
+    yield compare_fields(
+        "equivalent loads at one wavenumber, 200 alternations",
+        "face loads over the largest",
+        "iteration of Hetenyi (1970) and Keer",
+        explicit / scale,
+        system.scale * face_load / scale,
+        1e-9,
+    )
+
+
+def consistency_checks() -> Iterator[Check]:
+    """Every check of consistency."""
+    yield from free_end_checks()
+    yield from equilibrium_checks()
+    yield from contact_condition_checks()
+    yield from reciprocity_checks()
+    yield from alternation_checks()

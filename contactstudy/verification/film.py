@@ -1,0 +1,116 @@
+"""Checks of the film: tables and limits of line contacts, the certificate, and two bodies with the same limit.
+
+* Barus oil of constant density: centre and least film settled by extrapolation, two programs that agree to 0.2 %.
+* Moes, *Wear* 159 (1992) 57: the central film of a line contact in the numbers M and L.
+* Biboulet and Houpert, *Proc. IMechE J* 224 (2010) 777: rolling moment ``t / (p0 a**2) = 1.45 M**-1.5``; the moment of
+  the pressure about the middle is ``2 t``.
+* Martin, *Engineering* 102 (1916) 119: ``H = 2.448 / M`` of rigid surfaces and constant viscosity.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from contactstudy import film
+from contactstudy.bodies import FiniteLengthSpace, HalfSpace, Lubricant, Material
+from contactstudy.bodies.models import Body
+from contactstudy.case import Case, Roller
+from contactstudy.case.motion import Sliding
+from contactstudy.film import line_contact
+from contactstudy.film.formulas import moes_line
+from contactstudy.profiles import Lundberg
+from contactstudy.verification.check import Check, Curve, compare, compare_fields
+
+# Moes' numbers M, L: central and least film H, of an inlet four half-widths long below M = 100
+TABLE = {
+    (2.0, 5.0): (4.451, 3.470),
+    (20.0, 10.0): (5.270, 3.968),
+    (200.0, 10.0): (4.009, 2.990),
+    (10.0, 5.0): (3.813, 2.881),
+    (20.0, 5.0): (3.500, 2.632),
+    (100.0, 10.0): (4.367, 3.265),
+    (1000.0, 10.0): (3.265, 2.434),
+}
+STEEL, RADIUS, HALF_WIDTH = Material(210e9, 0.3), 5e-3, 65e-6
+
+
+def line_checks(*, full: bool) -> Iterator[Check]:
+    """Table, formula, rolling moment and limits of line contacts."""
+    for load, lubricant in list(TABLE)[: None if full else 3]:
+        central, least = TABLE[load, lubricant]
+        inlet = 4.0 if load < 100 else None
+        line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
+        case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
+        yield compare(case, "central film H", source, line.central, central, 5e-3, relative=True)
+        yield compare(case, "least film H", source, line.least, least, 5e-3, relative=True)
+        moment = abs(line.moment) / 2
+        yield compare(case, "w delta / 2 against t", "equilibrium", moment, line.rolling, 2e-2, relative=True)
+    for load in (50.0, 500.0) if full else (50.0,):
+        line, case = line_contact.solve_line(load, 10.0), f"line contact, M = {load:g}, L = 10"
+        formula = float(moes_line(load, 10.0))
+        yield compare(case, "central film H", "Moes (1992)", line.central, formula, 0.04, relative=True)
+    line = line_contact.solve_line(20.0, 10.0, inlet=4.0)
+    expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
+    case = "line contact, M = 20, L = 10"
+    yield compare(case, "rolling moment t / (p0 a^2)", source, line.rolling, expected, 0.04, relative=True)
+    slow = line_contact.solve_line(0.1, 0.01, finest=0.4)
+    case = "line contact, M = 0.1, L = 0.01"
+    yield compare(case, "M H of rigid surfaces", "Martin (1916)", 0.1 * slow.central, 2.448, 5e-3, relative=True)
+
+
+def dry_limit_checks() -> Iterator[Check]:
+    """Compare a heavy load with the pressure of Hertz, and the film's exponent."""
+    films = {load: line_contact.solve_line(load, 10.0) for load in (200.0, 2000.0)}
+    heavy = films[2000.0]
+    inner = np.abs(heavy.y) < 0.9
+    y, pressure = heavy.y[inner], heavy.pressure[inner]
+    hertz = np.sqrt(1 - y**2)
+    curve = Curve("y / a", "p / p0", y, pressure, hertz)
+    case = "line contact, M = 2000, L = 10"
+    yield compare_fields(case, "pressure / p0, abs(y) < 0.9 a", "Hertz", pressure, hertz, 0.01, curve=curve)
+    exponent = np.log10(heavy.central / films[200.0].central)
+    case = "line contacts, M = 200 and 2000, L = 10"
+    yield compare(case, "exponent of M in the central film", "Moes (1992)", float(exponent), -0.125, 0.01)
+
+
+def crowned_film(body: Body, length: float, accuracy: float) -> xr.Dataset:
+    """Film under a crowned roller in the middle of a body; the mean load has M = 10, L = 5."""
+    profile = Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
+    roller = Roller(radius=RADIUS, length=length, profile=profile)
+    pressure = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
+    offset = 0.5 * (body.length - length) if isinstance(body, FiniteLengthSpace) else None
+    dry = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
+    modulus = 2 * dry.modulus
+    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * 10.0)
+    oil = Lubricant(
+        viscosity=0.5 * root**2 * modulus * RADIUS,
+        pressure_viscosity=5.0 / (modulus * root**0.5),
+        viscosity_law="barus",
+        density_law="constant",
+    )
+    motion = Sliding(body_speed=1.0, roller_speed=1.0)
+    return film.solve_film(replace(dry, lubricant=oil, motion=motion), accuracy=accuracy)
+
+
+def film_checks(*, full: bool) -> Iterator[Check]:
+    """Line contacts, and the certificate of a film between free ends; at the full level, free ends far away."""
+    yield from line_checks(full=full)
+    yield from dry_limit_checks()
+    length = 16 * HALF_WIDTH
+    flush = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length, 0.1)
+    case = "crowned roller, 16 a, flush, M = 10, L = 5"
+    yield compare(case, "net outflow of a cell / (um h)", "mass balance", float(flush["mass_error"]), 0.0, 1e-6)
+    area = flush["x_width"] * float(flush["y"][1] - flush["y"][0])
+    load, expected = float((flush["pressure"] * area).sum()), float(flush["normal_load"])
+    yield compare(case, "sum of the pressure over the cells, N", "equilibrium", load, expected, 1e-8, relative=True)
+    if full:
+        far = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length, 0.1)
+        half = crowned_film(HalfSpace(material=STEEL), length, 0.1)
+        case = "crowned roller, 16 a, 72 a from both free ends"
+        for name in ("central_film", "least_film"):
+            computed, expected = float(far[name]), float(half[name])
+            yield compare(case, f"{name}, m", "half-space", computed, expected, 5e-3, relative=True)

@@ -1,0 +1,394 @@
+"""Checks of bodies with free ends against exact limits of a quarter space, published numbers and finite elements.
+
+* Hetenyi, *J. Appl. Mech.* 37 (1970) 70, and Keer, Lee and Mura, *Int. J. Solids Struct.* 19 (1983) 497: overlapping.
+  Far from a load P at the edge of a quarter space the equivalent loads act in a point: ``H = P + (2 / pi) V`` on the
+  top and ``V = (2 / pi) H`` on the end, each with its mirror images, so ``H = P / (1 - 4 / pi**2)`` for every
+  Poisson's ratio. The displacement along the edge is ``2 H / P`` times the half-space's.
+* Johnson, *Contact Mechanics* (1985): largest shear stresses below point and line contacts.
+* Michell, *Proc. London Math. Soc.* 32 (1900) 35; Timoshenko and Goodier, *Theory of Elasticity*: force at the vertex
+  of a wedge, the limit of a quarter space under a long line load on its edge.
+* Guilbault, *J. Tribology* 133 (2011) 031402, quoted second-hand: a mirrored load underestimates the largest edge
+  displacement by 21.90 % for Poisson's ratio 0.3 and 11.30 % for 0.15. The proportions of the load are unknown; the
+  check compares a narrow load that fits both numbers.
+* Finite elements (scikit-fem): stored data, see `stored`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace, QuarterSpace
+from contactstudy.checks import FloatArray
+from contactstudy.contact.solve import solve_contact
+from contactstudy.fields.stress import stress_field
+from contactstudy.fields.surface import surface_displacement
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.axial import axial_modes
+from contactstudy.overlapping.equations import EquationSet
+from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.stress import maximum_shear, von_mises
+from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.problems import (
+    CONTACT_CASES,
+    CONTACT_FILE,
+    LOAD_CASES,
+    STRESS_FILE,
+    LoadCase,
+    cell_means,
+    components,
+    load_reference,
+    on_cells,
+    on_grid,
+    point_pressure,
+    strip_integral,
+    unit_material,
+)
+
+ALONG_NORMAL = {0.0: 2.0, 0.3: 2.4727}  # The same along the inward normal, by Poisson's ratio
+# ``kappa``: at the distance d the edge adds ``kappa (1 - nu**2) P / (2 pi E d)`` to the deflection at a load
+EXTRA_DEFLECTION = {0.0: 1.3677, 0.3: 1.8452, 0.5: 2.7561}
+# Resultant of the equivalent load on the top for a unit load, its images not counted
+TOP_RESULTANT = 1 / (1 - 4 / np.pi**2)
+END_RESULTANT = -2 / np.pi * TOP_RESULTANT  # Resultant on the end plane: tension
+EXACT_LIMIT = "exact limit of the quarter space"  # Source of closed forms
+COMPUTED = "limit of the quarter space, computed apart from the solver"  # Source of numbers that no closed form gives
+
+
+def _scaled_displacement(poisson: float, grid: Grid, cell: tuple[int, int], distance: FloatArray) -> FloatArray:
+    """Displacement under a unit load on a cell, over the half-space's at the same distance."""
+    body = QuarterSpace(material=unit_material(poisson))
+    return np.asarray(surface_displacement(body, point_pressure(grid, *cell)).values * np.pi * distance)
+
+
+def edge_load_checks() -> Iterator[Check]:
+    """Displacement under a point load on the edge."""
+    for poisson in (0.0, 0.3, 0.5):
+        # Cells of a fortieth of the distance; the error falls in proportion, so two distances give the limit.
+        grid = Grid((0.0, 0.16), (-4.1, 4.1), 8, 41)
+        distance = np.abs(grid.y)[None, :]
+        ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
+        # Displacement along the edge under a point load on it, over the half-space's; for every Poisson's ratio
+        yield compare(
+            f"point load on the edge, nu = {poisson:g}",
+            "u_z along the edge over the half-space's",
+            EXACT_LIMIT,
+            float(2 * ratio[20] - ratio[10]),
+            3.362954,
+            0.01,
+        )
+    for poisson, expected in ALONG_NORMAL.items():
+        grid = Grid((0.0, 8.2), (-0.45, 0.45), 82, 9)
+        ratio = _scaled_displacement(poisson, grid, (0, 4), grid.x[:, None])[:, 4]
+        yield compare(
+            f"point load on the edge, nu = {poisson:g}",
+            "u_z along the inward normal over the half-space's",
+            COMPUTED,
+            float(2 * ratio[80] - ratio[40]),
+            expected,
+            0.01,
+        )
+
+
+def extra_deflection_checks() -> Iterator[Check]:
+    """Deflection at a point load at a distance from the edge."""
+    for poisson, expected in EXTRA_DEFLECTION.items():
+        grid = Grid((0.0, 4.8), (-0.45, 0.45), 48, 9)
+        load = point_pressure(grid, 40, 4)
+        material = unit_material(poisson)
+        quarter, half = (
+            float(surface_displacement(body, load)[40, 4])
+            for body in (QuarterSpace(material=material), HalfSpace(material=material))
+        )
+        yield compare(
+            f"point load at 40 cells from the edge, nu = {poisson:g}",
+            "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)",
+            COMPUTED,
+            (quarter - half) * 2 * np.pi * grid.x[40],
+            expected,
+            5e-4,
+        )
+
+
+def resultant_checks() -> Iterator[Check]:
+    """Resultants of the equivalent loads, from their transforms between the two ends of the scale."""
+    lateral, distance, settings = 1e-7, 1.0, Resolution()
+    for poisson in (0.0, 0.3, 0.5):
+        (modes,) = axial_modes(np.inf, lateral, 1e-4, settings)
+        system = EquationSet.build(modes, lateral, poisson, 1e-4, settings)
+        spectrum = modes.load_weights * modes.cosine(np.array([distance]))[:, 0]
+        scaled = system.solve(system.source(Load.NORMAL, spectrum))
+        on_top = system.on_top(scaled) / modes.weights
+        small = np.abs(modes.ray) < 3e-3  # against 1 / distance; the lateral wavenumber is smaller still
+        top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[small]), on_top.real[small]))
+        end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, scaled / system.scale))
+        case = f"equivalent loads of a unit load, nu = {poisson:g}"
+        yield compare(case, "resultant on the top", EXACT_LIMIT, top, TOP_RESULTANT, 5e-3)
+        yield compare(case, "resultant on the end", EXACT_LIMIT, end, END_RESULTANT, 5e-3)
+
+
+def corner_checks() -> Iterator[Check]:
+    """Corner under a uniform pressure: ``sigma_z = -p, sigma_x = 0``, and plane strain along a long edge."""
+    poisson, width = 0.3, 60.0
+    body = QuarterSpace(material=unit_material(poisson))
+    pressure = on_cells(lambda x, y: (x < 5) + 0 * y, (0, 6), (-width, width), (48, 12))
+    stress = stress_field(body, pressure, x=[0.05], y=[0.0], z=[0.05]).isel(x=0, y=0, z=0)
+    case = "uniform pressure on a long strip up to the edge, 0.05 from the corner"
+    yield compare_fields(
+        case,
+        "sigma_xx, sigma_zz, tau_xz / p",
+        "uniaxial compression, " + EXACT_LIMIT,
+        [stress["sigma_xx"], stress["sigma_zz"], stress["tau_xz"]],
+        [0.0, -1.0, 0.0],
+        0.02,
+    )
+    yield compare(
+        case,
+        "von Mises stress / p",
+        "p sqrt(1 - nu + nu^2), " + EXACT_LIMIT,
+        float(von_mises(stress)),
+        float(np.sqrt(1 - poisson + poisson**2)),
+        0.02,
+    )
+
+
+def antiplane_checks() -> Iterator[Check]:
+    """Check that a traction uniform along y needs no equivalent load on the end: the mirror image frees it."""
+    (modes,) = axial_modes(np.inf, 1e-9, 1e-2, Resolution())
+    system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
+    spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
+    near = system.depth > 1e-3  # below the wavelength along y there is always some
+    scale = np.abs(system.source(Load.NORMAL, spectrum)[near]).max()
+    yield compare_fields(
+        "traction along y that does not vary along y",
+        "load asked of the end, over that for an equal pressure",
+        EXACT_LIMIT,
+        system.source(Load.ALONG_Y, spectrum)[near] / scale,
+        0.0,
+        1e-4,
+    )
+
+
+def quarter_space_checks() -> Iterator[Check]:
+    """Every check of the quarter space."""
+    for family in (edge_load_checks, extra_deflection_checks, resultant_checks, corner_checks, antiplane_checks):
+        yield from family()
+
+
+POISSON = 0.3  # Of every body here, unless a check states another
+# Guilbault's errors of the largest edge displacement under a mirrored load, by Poisson's ratio
+MIRROR_ERRORS = {0.3: -0.2190, 0.15: -0.1130}
+
+
+def johnson_checks() -> Iterator[Check]:
+    """Largest shear below point and line contacts, and the largest tension around a point contact."""
+    body = HalfSpace(material=unit_material(POISSON))
+    circle = on_cells(lambda x, y: np.sqrt(np.maximum(1 - x**2 - y**2, 0)), (-1.25, 1.25), (-1.25, 1.25), (120, 120))
+    long_strip = cell_means(strip_integral, (0, 400), (-1.25, 1.25), (80, 160))
+    z = np.linspace(0.3, 1.0, 141)
+    for case, pressure, x, largest, depth in (
+        ("circular Hertz pressure", circle, 0.0, 0.310, 0.48),
+        ("line contact's pressure", long_strip, 200.0, 0.300, 0.78),
+    ):
+        shear = maximum_shear(stress_field(body, pressure, x=[x], y=[0.0], z=z, inside_cells=pressure)).values.ravel()
+        source = f"Johnson (1985) 4.2, 3.4: {largest:.3f} p0 at {depth:g}a"
+        yield compare(case, "largest shear on the axis / p0", source, float(shear.max()), largest, 1e-3)
+        yield compare(case, "its depth / a", source, float(z[shear.argmax()]), depth, 0.015)
+    around = np.linspace(1.0, 1.3, 31)
+    radial = stress_field(body, circle, x=around, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
+    tension = (1 - 2 * POISSON) / 3
+    source = "Johnson (1985) 3.43: (1 - 2 nu) p0 / 3 at the edge"
+    yield compare("circular Hertz pressure", "largest radial tension / p0", source, float(radial), tension, 5e-3)
+
+
+def wedge_stress(angle: FloatArray) -> FloatArray:
+    """Radial stress ``sigma_r r / P`` in a quarter plane, force P at its corner, at angles from the loaded face."""
+    return np.asarray((8 * np.cos(angle) - 4 * np.pi * np.sin(angle)) / (np.pi**2 - 4))
+
+
+def wedge_checks() -> Iterator[Check]:
+    """Line load on the edge of a quarter space."""
+    poisson, cell, width = 0.3, 0.01, 60.0
+    body = QuarterSpace(material=unit_material(poisson))
+    pressure = on_cells(lambda x, y: (x < cell) / cell + 0 * y, (0, 4 * cell), (-width, width), (4, 12))
+    x, z = np.array([0.0, 0.5, 1.0, 2.0]), np.array([1.0, 1.5, 2.0])
+    stress = stress_field(body, pressure, x=x, y=[0.0], z=z, inside_cells=pressure).isel(y=0)
+    distance, angle = np.hypot(x[:, None], z), np.arctan2(z, x[:, None])
+    radial = wedge_stress(angle) / distance
+    zero = np.zeros_like(radial)
+    exact = {
+        "sigma_xx": radial * np.cos(angle) ** 2,
+        "sigma_yy": poisson * radial,
+        "sigma_zz": radial * np.sin(angle) ** 2,
+        "tau_xy": zero,
+        "tau_xz": radial * np.cos(angle) * np.sin(angle),
+        "tau_yz": zero,
+    }
+    yield compare_fields(
+        "line load P on the edge of a quarter space, a and more away",
+        "six stresses a / P",
+        "Michell (1900); Timoshenko and Goodier, wedge",
+        components(stress),
+        components(exact),
+        0.02,
+        curve=Curve("z / a", "sigma_zz a / P, x = 0", z, stress["sigma_zz"].values[0], exact["sigma_zz"][0]),
+    )
+
+
+def mirror_checks() -> Iterator[Check]:
+    """Compare errors of a mirrored load with published errors."""
+    half_width = 0.03  # of the load, over its length along the normal to the edge
+    for poisson, expected in MIRROR_ERRORS.items():
+        material = unit_material(poisson)
+        load = on_cells(
+            lambda x, y: np.sqrt(np.maximum(1 - (y / half_width) ** 2, 0)) * (x < 1),
+            (0, 1.125),
+            (-1.25 * half_width, 1.25 * half_width),
+            (288, 33),
+        )
+        exact, mirror = (
+            float(surface_displacement(QuarterSpace(material=material, model=model), load)[0].max())
+            for model in ("exact", "mirror")
+        )
+        yield compare(
+            f"narrow load up to the edge, half-width 0.03 of its length, nu = {poisson:g}",
+            "error of the largest edge displacement of a mirrored load",
+            "Guilbault (2011), second-hand: against finite elements",
+            mirror / exact - 1,
+            expected,
+            0.01,
+        )
+
+
+def published_checks() -> Iterator[Check]:
+    """Every check of a published number."""
+    for family in (johnson_checks, wedge_checks, mirror_checks):
+        yield from family()
+
+
+FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the checks, with error and unit
+QUICK_STRESSES = ("full_sliding", "eccentric_sliding", "thin", "plate_sliding")  # Load cases of the quick level
+# Cells over the loaded width, and more of them for a load that changes along x right at a free end: cells along x are
+# twice as wide, and at 0.02a below the top their steps show
+CELLS_Y, FINER = 128, {"wedge_sliding": 256}
+CONTACT_CELLS = 16  # Cells per half-width along x in contacts
+
+
+def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
+    """Load of a case, four cells along y for one along x but no fewer than 32 of these."""
+    cells_x = max(32, round(0.25 * cells_y * case.length))
+    return on_cells(lambda x, y: case.pressure(x[:, 0], y[0]), (0, case.length), (-1, 1), (cells_x, cells_y))
+
+
+def stress_checks(name: str) -> Iterator[Check]:
+    """Stresses under a prescribed load at all stored depths: largest and median difference of six components."""
+    case, below = LOAD_CASES[name], load_reference(STRESS_FILE, name)
+    points = {axis: below[axis].values.astype(float) for axis in "xyz"}
+    body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
+    load = pressure_of(case, FINER.get(name, CELLS_Y))
+    stress = stress_field(body, load, case.friction, *points.values(), inside_cells=load)
+    computed = np.array([stress[component].values for component in STRESSES])
+    expected = np.array([below[component].transpose("x", "y", "z").values for component in STRESSES])
+    label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
+    profile = {"x": 0.0, "y": 0.75}
+    curve = Curve(
+        "z / a",
+        "sigma_yy / p0, x = 0, y = 0.75a",
+        points["z"],
+        stress["sigma_yy"].sel(profile).values,
+        below["sigma_yy"].sel(profile).values,
+    )
+    quantity = f"six stresses / p0, z >= {float(below['z'].min()):g}a"
+    source = FINITE_ELEMENTS.format(below.attrs["error_estimate"], "p0")
+    yield compare_fields(label, quantity, source, computed, expected, 1e-3, curve=curve)
+    source = FINITE_ELEMENTS.format(below.attrs["error_estimate_median"], "p0")
+    yield compare_fields(label, quantity, source, computed, expected, 2e-4, median=True)
+
+
+def displacement_checks(name: str) -> Iterator[Check]:
+    """Displacement of the top under a symmetric load, relative to its middle."""
+    case, expected = LOAD_CASES[name], load_reference(STRESS_FILE, name)["displacement_z_young"]
+    young = unit_material(case.poisson).young
+    # Cell centres on the reference's points y, and x interpolated between them.
+    body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
+    grid = Grid((0.0, case.length), (-1.3125, 1.3125), round(32 * case.length), 105)
+    sunk = surface_displacement(body, on_grid(lambda g: case.pressure(g.x, g.y), grid), case.friction)
+    inside = expected.sel(x=slice(0.5 * grid.dx, case.length - 0.5 * grid.dx))
+    interpolated = sunk.interp(x=inside["x"], y=inside["y"], method="cubic")
+    middle = float(sunk.interp(x=0.5 * case.length, y=0.0, method="cubic"))
+    error = float(expected.attrs["error_estimate"])
+    yield compare_fields(
+        f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}",
+        "E u_z / (p0 a), relative to the middle",
+        FINITE_ELEMENTS.format(error, "p0 a"),
+        young * (interpolated - middle),
+        inside,
+        1e-3,
+    )
+
+
+def contact_checks(name: str) -> Iterator[Check]:
+    """Contact of a roller: pressure along its middle line, averaged over the cells.
+
+    At a sharp end inside the face neither solution resolves the singular pressure: wider tolerance within a / 2.
+    """
+    case, stored = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
+    grid = Grid((0.0, case.length), (-1.75, 1.75), round(CONTACT_CELLS * case.length), 113)
+    body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
+    contact = solve_contact(body, on_grid(lambda g: case.gap(g.x, g.y), grid), case.load)
+    under = contact["pressure"].sel(x=slice(case.start, case.stop))
+    x = under["x"].values
+    edges = np.append(x - 0.5 * grid.dx, x[-1] + 0.5 * grid.dx)
+    expected = _cell_means(stored["x"].values, stored["pressure"].sel(y=0).values, edges)
+    computed = under.sel(y=0, method="nearest").values
+    error = float(np.median(stored["pressure_error"].sel(y=0)))
+    source, label = (
+        FINITE_ELEMENTS.format(error, "p0 (median)"),
+        f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a",
+    )
+    label += f", crown {case.crown:g}" if case.crown else ""
+    curve = Curve("x / a", "p / p0 at y = 0", x, computed, expected)
+    singular = case.distance > 0 and not case.crown
+    away = slice(1, -1)
+    quantity = "pressure / p0 at y = 0, away from the last cell"
+    tolerance = 0.05 if singular else 0.01
+    yield compare_fields(label, quantity, source, computed[away], expected[away], tolerance, curve=curve)
+    if singular:
+        far = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
+        quantity = "pressure / p0 at y = 0, 0.5a and more from the roller's end"
+        yield compare_fields(label, quantity, source, computed[far], expected[far], 0.01)
+        load = stored["line_load"].values
+        near = slice(None, CONTACT_CELLS // 2)
+        computed_load = float(under.isel(x=near).sum()) * grid.cell_area
+        expected_load = float((_cell_means(stored["x"].values, load, edges)[near]).sum()) * grid.dx
+        quantity = "load on the roller's last 0.5a / (p0 a^2)"
+        yield compare_fields(label, quantity, source, computed_load, expected_load, 0.03)
+    else:
+        quantity = "pressure / p0 at y = 0 in the last cell"
+        yield compare_fields(label, quantity, source, computed[[0, -1]], expected[[0, -1]], 0.03)
+
+
+def _cell_means(nodes: FloatArray, values: FloatArray, edges: FloatArray) -> FloatArray:
+    """Means over cells of a function that is linear between its nodes."""
+    widths = np.diff(nodes)
+    integral = np.append(0.0, np.cumsum(0.5 * (values[1:] + values[:-1]) * widths))
+    panel = np.clip(np.searchsorted(nodes, edges) - 1, 0, nodes.size - 2)
+    ahead = edges - nodes[panel]
+    slope = np.diff(values)[panel] / widths[panel]
+    return np.asarray(np.diff(integral[panel] + ahead * (values[panel] + 0.5 * slope * ahead)) / np.diff(edges))
+
+
+def finite_element_checks(*, full: bool) -> Iterator[Check]:
+    """Every check against finite elements; some of the load cases only unless `full`."""
+    names = [name for name in LOAD_CASES if full or name in QUICK_STRESSES]
+    for name in names:
+        yield from stress_checks(name)
+    for name in names:
+        if LOAD_CASES[name].symmetric:
+            yield from displacement_checks(name)
+    for name in CONTACT_CASES:
+        yield from contact_checks(name)

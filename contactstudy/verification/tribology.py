@@ -1,0 +1,497 @@
+"""Checks of stick and slip, flash temperature and wear: closed forms, Kalker's coefficients, published numbers.
+
+* Carter, *Proc. R. Soc. Lond.* A 112 (1926) 151; Cattaneo (1938) and Mindlin, *J. Appl. Mech.* 16 (1949) 259: closed
+  forms, by Johnson (1985), sections 7.2 and 8.3.
+* Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact* (1990), table E.3: creep coefficients to three digits.
+  They belong to vanishing creepage, where no cell slips and the traction at the trailing edge is singular, so the error
+  is of first order in the cell; it is extrapolated from two grids.
+* Bentall and Johnson, *Int. J. Mech. Sci.* 9 (1967) 389, recomputed by the program CONTACT: unlike rollers.
+* A traction curve by CONTACT, 48 x 44 cells: its values are 1.4 % above those here at all creepages but the largest.
+  With the slip taken half a cell late, between neighbouring cells, this solver gives CONTACT's values to 0.2 % on as
+  many cells, and on twice as many half of the difference is gone: it is the cells' error.
+* Spence, *J. Elasticity* 5 (1975) 297: pressed with friction, a sphere sticks within the same part of the contact at
+  any load, so the load is raised in steps; by the program CONTACT half of the radius at this friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+from scipy import special
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.bodies import Counterbody, FiniteLengthSpace, HalfSpace, Material
+from contactstudy.case import Case, Roller, choose_grid
+from contactstudy.case.motion import Rolling, Shift, Sliding
+from contactstudy.checks import FloatArray
+from contactstudy.contact import ContactSettings
+from contactstudy.contact.rolling.fastsim import POISSONS, TABLE
+from contactstudy.contact.solve import solve_contact
+from contactstudy.heat import ThermalProperties, flash_temperature
+from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator
+from contactstudy.profiles import FullCrown
+from contactstudy.solution import solve
+from contactstudy.verification import closed_forms
+from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.problems import on_cells, on_grid
+from contactstudy.wear import wear_in, worn_profile
+
+LINE_CELLS = 52  # Cells along y over 2.6 half-widths of a line contact: 20 per half-width
+
+
+def material(shear: float, poisson: float) -> Material:
+    """Material of a shear modulus, Pa."""
+    return Material(2 * shear * (1 + poisson), poisson)
+
+
+def line_contact(
+    first: Material, second: Material, motion: Rolling, friction: float, *, coupled: bool = False
+) -> xr.Dataset:
+    """Contact of two cylinders of radius 2 on each other, half-width 1, in plane strain: ends that only mirror."""
+    modulus = 1 / (1 / first.plane_strain_modulus + 1 / second.plane_strain_modulus)
+    gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, 1), (-1.3, 1.3), (2, LINE_CELLS))
+    bodies = [FiniteLengthSpace(length=1.0, material=material_of, model="mirror") for material_of in (first, second)]
+    return solve_contact(
+        bodies[0],
+        gap,
+        0.25 * np.pi * modulus,
+        friction,
+        counterbody=Counterbody(bodies[1]),
+        motion=motion,
+        settings=ContactSettings(coupled=coupled),
+    )
+
+
+def carter_checks() -> Iterator[Check]:
+    """Like cylinders in steady rolling."""
+    steel, friction, radius = material(1.0, 0.28), 0.3, 1.0
+    source = "Carter (1926); Johnson (1985) 8.44 to 8.46"
+    for stick in (0.2, 0.6, 0.9):
+        creepage = closed_forms.carter_creepage(stick, friction, 1.0, radius)
+        rolled = line_contact(steel, steel, Rolling(longitudinal_creepage=creepage), friction).isel(x=0)
+        case = f"like cylinders rolling, stick zone {stick:g} of the contact"
+        step = float(rolled["y"][1] - rolled["y"][0])
+        sliding = friction * float(rolled["pressure"].sum()) * step
+        force = float(rolled["traction_y"].sum()) * step / sliding
+        yield compare(case, "force over full sliding's", source, force, closed_forms.carter_force(stick), 1e-3)
+        width = 0.5 * float(rolled["stick"].sum()) * step
+        yield compare(case, "half-width of the stick zone / a", source, width, stick, 0.5 * step + 1e-9)
+        inside = np.abs(rolled["y"].values) < 0.9
+        y = rolled["y"].values[inside]
+        peak = friction * 2 * float(rolled["pressure"].sum()) * step / np.pi
+        computed, expected = rolled["traction_y"].values[inside] / peak, closed_forms.carter_traction(y, stick)
+        # The traction has a vertical slope where slip begins, between two cells.
+        smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
+        yield compare_fields(
+            case,
+            "traction / (f p0), two cells from where slip begins",
+            source,
+            computed[smooth],
+            expected[smooth],
+            0.01,
+            curve=Curve("y / a", "q / (f p0)", y, computed, expected),
+        )
+
+
+def slope_check(length: float, cells: int, case: str, modulus: float, tolerance: float) -> Check:
+    """Compare the initial slope of the traction curve per length at mid-length of two like cylinders.
+
+    It is ``pi E' a / 2`` with E' of the pair in the plane, ``E / 2`` in plane stress (Johnson 8.46).
+    """
+    steel, friction, creepage = material(1.0, 0.3), 0.3, 0.015
+    gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, length), (-1.3, 1.3), (cells, LINE_CELLS))
+    body = FiniteLengthSpace(length=length, material=steel)
+    load = 0.25 * np.pi * 0.5 * steel.plane_strain_modulus * length
+    first, second = (
+        solve_contact(
+            body,
+            gap,
+            load,
+            friction,
+            counterbody=Counterbody(body),
+            motion=Rolling(longitudinal_creepage=number * creepage),
+        ).isel(x=cells // 2)
+        for number in (1, 2)
+    )
+    step = float(gap["y"][1] - gap["y"][0])
+    forces = [step * float(rolled["traction_y"].sum()) for rolled in (first, second)]
+    half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
+    slope = (4 * forces[0] - forces[1]) / (2 * creepage)
+    expected = 0.5 * np.pi * modulus * half_width
+    source = "Carter (1926); Johnson (1985) 8.46"
+    return compare(case, "initial slope of the force per length", source, slope, expected, tolerance, relative=True)
+
+
+def slope_checks(*, full: bool) -> Iterator[Check]:
+    """Plane stress of a thin disc, plane strain in the middle of a long body."""
+    young, poisson = 2.6, 0.3
+    yield slope_check(0.1, 2, "like discs rolling, L = 0.1 a", 0.5 * young, 5e-3)
+    if full:
+        yield slope_check(48.0, 96, "like cylinders rolling, L = 48 a", 0.5 * young / (1 - poisson**2), 5e-3)
+
+
+def spence_checks() -> Iterator[Check]:
+    """Press a rigid sphere with friction, without any shift."""
+    half, reach, cells, steps = HalfSpace(material=material(1.0, 0.0)), 1.25, 40, 9
+    gap = on_cells(lambda x, y: 0.05 * (x**2 + y**2), (-reach, reach), (-reach, reach), (cells, cells))
+    load = 4 / 3 * half.material.plane_strain_modulus * 0.1
+    pressed: xr.Dataset | None = None
+    for part in np.linspace(0.2, 1.0, steps):  # equal steps of the radius
+        pressed = solve_contact(
+            half,
+            gap,
+            load * part**3,
+            0.2986,
+            motion=Shift(),
+            settings=ContactSettings(coupled=True, after=pressed, tolerance=1e-5),
+        )
+    assert pressed is not None
+    areas = [float(pressed["stick"].sum()), float((pressed["pressure"] > 0).sum())]
+    case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
+    part = np.sqrt(areas[0] / areas[1])
+    yield compare(case, "radius of the stick zone over the contact's", source, part, 0.5, reach / cells)
+
+
+def shift_checks() -> Iterator[Check]:
+    """Shift a sphere on a plane."""
+    shear, poisson, radius, load, friction, part = 200e6, 0.42, 0.05, 9.1954, 0.4, 0.875
+    rubber = material(shear, poisson)
+    reach, cells = 1.25e-3, 76
+    gap = on_cells(lambda x, y: (x**2 + y**2) / (2 * radius), (-reach, reach), (-reach, reach), (cells, cells))
+    shifted = solve_contact(
+        HalfSpace(material=rubber),
+        gap,
+        load,
+        friction,
+        counterbody=Counterbody(HalfSpace(material=rubber)),
+        motion=Shift(force_y=part * friction * load),
+    )
+    case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
+    expected = closed_forms.mindlin_shift(part, load, friction, 1e-3, shear, poisson)
+    yield compare(case, "shift", source, float(shifted["shift_y"]), expected, 3e-3, relative=True)
+    step = 2 * reach / cells
+    stick = step * np.sqrt(float(shifted["stick"].sum()) / np.pi)
+    yield compare(case, "radius of the stick zone / a", source, stick / 1e-3, 0.5, 0.5 * step / 1e-3)
+
+
+def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
+    """Gap that two like bodies close to an ellipse of given semi-axes under a load (Johnson 3.61, 4.26)."""
+    modulus = 0.5 * of.plane_strain_modulus
+    peak = 1.5 * load / (np.pi * along_x * along_y)
+    long, short = max(along_x, along_y), min(along_x, along_y)
+    squared = 1 - (short / long) ** 2
+    if squared == 0:
+        gentle = steep = np.pi * peak / (4 * modulus * long)
+    else:
+        first, second = special.ellipk(squared), special.ellipe(squared)
+        scale = peak * short / (modulus * squared * long**2)
+        gentle, steep = scale * (first - second), scale * ((long / short) ** 2 * second - first)
+    of_x, of_y = (gentle, steep) if along_x >= along_y else (steep, gentle)
+    x_range = along_x * cells[0] / (cells[0] - 2)
+    y_range = along_y * cells[1] / (cells[1] - 6)  # rolling needs cells ahead
+    return on_cells(lambda x, y: of_x * x**2 + of_y * y**2, (-x_range, x_range), (-y_range, y_range), cells)
+
+
+def rolling_ellipse(
+    along_x: float, along_y: float, load: float, of: Material, friction: float, motion: Rolling, cells: tuple[int, int]
+) -> xr.Dataset:
+    """Two like bodies that touch on an ellipse, in steady rolling."""
+    body = HalfSpace(material=of)
+    gap = ellipse_gap(along_x, along_y, load, of, cells)
+    return solve_contact(
+        body,
+        gap,
+        load,
+        friction,
+        counterbody=Counterbody(body),
+        motion=motion,
+        settings=ContactSettings(tolerance=1e-5),
+    )
+
+
+# Coefficients c11, c22, c23, by half-width along rolling over that across, and Poisson's ratio
+KALKER = {
+    (1.0, 0.25): (4.12, 3.67, 1.47),
+    (1.0, 0.5): (5.20, 3.98, 1.63),
+    (0.5, 0.0): (2.88, 2.88, 0.827),
+    (5.0, 0.25): (7.78, 8.14, 6.63),
+}
+# Half-width along rolling over that across, of the coefficients at the full level
+WHOLE_RANGE = (0.1, 0.3, 1.0, 1 / 0.4, 10.0)
+# Cells each way of the two grids; of an ellipse of 10 to 1 those along rolling, which would be long otherwise
+KALKER_CELLS, LONG_CELLS = (34, 62), (62, 118)
+SMALL = 1e-6  # Creepage without slip but in a few cells
+
+
+def kalker_checks(*, full: bool) -> Iterator[Check]:
+    """Kalker's creep coefficients."""
+    table_of = dict(KALKER)
+    if full:
+        for ratio, first, second, third in TABLE:
+            if ratio in WHOLE_RANGE:
+                rows = zip(POISSONS, zip(first, second, third, strict=True), strict=True)
+                table_of |= {(ratio, poisson): values for poisson, values in rows}
+    names = ("c11", "c22")
+    motions = (Rolling(longitudinal_creepage=SMALL), Rolling(lateral_creepage=SMALL), Rolling(spin=-SMALL))
+    for (ratio, poisson), table in table_of.items():
+        within, counts = 0.015, KALKER_CELLS if ratio < 10 else LONG_CELLS
+        across, steel = 1.0 / ratio, material(1.0, poisson)
+        coefficients = []
+        for count in counts:
+            cells = (count if ratio < 10 else KALKER_CELLS[0], count)
+            forces = []
+            for motion in motions:
+                rolled = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion, cells)
+                force = float(rolled["force_y" if motion.longitudinal_creepage else "force_x"])
+                forces.append(force / (SMALL * across * (np.sqrt(across) if motion.spin else 1.0)))
+            coefficients.append(forces)
+        # Of first order in the cells that a semi-axis has, without the three beside the contact.
+        coarse, fine = (count - 6 for count in counts)
+        extrapolated = (fine * np.array(coefficients[1][:2]) - coarse * np.array(coefficients[0][:2])) / (fine - coarse)
+        case = f"vanishing creepage, a/b = {ratio:g}, Poisson's ratio {poisson:g}"
+        source = "Kalker (1990), table E.3"
+        for name, computed, expected in zip(names, extrapolated, table[:2], strict=True):
+            yield compare(case, f"{name}, extrapolated", source, computed, expected, within, relative=True)
+        # Under spin the traction is largest at the leading edge, where the error falls faster.
+        yield compare(case, "c23", source, coefficients[1][2], table[2], within, relative=True)
+
+
+# Force over full sliding's, by the longitudinal creepage
+CONTACT_CURVE = {4e-4: 0.2588, 1.2e-3: 0.6482, 2.0e-3: 0.8816, 2.8e-3: 0.9832}
+
+
+def published_checks() -> Iterator[Check]:
+    """Numbers of the program CONTACT."""
+    steel, load, friction = material(82e9, 0.28), 106.7e3, 0.33
+    for creepage, expected in CONTACT_CURVE.items():
+        motion = Rolling(longitudinal_creepage=creepage)
+        rolled = rolling_ellipse(12.61e-3, 6.304e-3, load, steel, friction, motion, (44, 48))
+        case = f"traction curve of an ellipse 2 to 1, creepage {creepage:g}"
+        force = float(rolled["force_y"]) / (friction * load)
+        source = "CONTACT, 48 x 44 cells, which are 1.4 % off"
+        yield compare(case, "force over full sliding's", source, force, expected, 0.016, relative=True)
+    soft, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
+    # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm there and 1 here.
+    scale = 0.1 / 25
+    for part, expected in ((0.0, 4.294e-4), (-0.75, 2.108e-4)):
+        modulus = 1 / (1 / soft.plane_strain_modulus + 1 / steel.plane_strain_modulus)
+        force = part * 0.05 * 0.25 * np.pi * modulus
+        rolled = line_contact(soft, steel, Rolling(force_y=force), 0.05, coupled=True)
+        case = f"unlike cylinders rolling, f = 0.05, force {part:g} of full sliding's"
+        computed = scale * float(rolled["longitudinal_creepage"])
+        yield compare(case, "creepage", source, computed, expected, 0.015, relative=True)
+
+
+def friction_checks(*, full: bool) -> Iterator[Check]:
+    """Every check of friction; at the full level over Kalker's whole table, and a long body."""
+    yield from carter_checks()
+    yield from slope_checks(full=full)
+    yield from shift_checks()
+    yield from spence_checks()
+    yield from kalker_checks(full=full)
+    yield from published_checks()
+
+
+STEEL_HEAT = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
+UNIT = ThermalProperties(conductivity=1.0, density=1.0, specific_heat=1.0)
+EVERYWHERE = Ends(-np.inf, np.inf)
+
+
+def rise(grid: Grid, heat: FloatArray, speed: float, ends: Ends, depth: float = 0.0) -> FloatArray:
+    """Rise of a body of unit properties."""
+    body = MovingBody(UNIT, speed, ends)
+    return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
+
+
+def line_case() -> tuple[Case, xr.Dataset]:
+    """Hertz' line pressure along a whole body, with friction."""
+    body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
+    case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
+    reach = 1.5 * case.hertz_half_width
+    grid = Grid((0.0, 1e-3), (-reach, reach), 4, 96)
+    pressure = 1.5e9 * np.sqrt(np.maximum(1 - (grid.y / case.hertz_half_width) ** 2, 0)) + 0 * grid.x[:, None]
+    fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), 0.05 * pressure)}
+    return case, xr.Dataset(fields, coords={"x": grid.x, "y": grid.y})
+
+
+def fast_checks() -> Iterator[Check]:
+    """Two like bodies in a fast line contact, the heat shared by equal surface temperature."""
+    case, result = line_case()
+    a, speed, sliding = case.hertz_half_width, 200.0, 1.0
+    motion = Sliding(body_speed=-speed - 0.5 * sliding, roller_speed=-speed + 0.5 * sliding)
+    hot = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
+    factor, behind = closed_forms.fast_line()
+    heat = 0.05 * 1.5e9 * sliding
+    expected = 0.5 * heat * np.sqrt(STEEL_HEAT.diffusivity * a / (np.pi * speed)) / STEEL_HEAT.conductivity * factor
+    name, source = "fast line contact of like bodies", "Blok (1937); Jaeger (1942)"
+    yield compare(name, "largest rise", source, float(hot.max_temperature_rise), expected, 5e-3, relative=True)
+    distance = -float(hot.max_temperature_rise_y) / a
+    yield compare(name, "distance behind the middle / a", source, distance, behind, 0.02)
+    share = float(hot.body_heat_share)
+    yield compare(name, "part of the heat in the body", "symmetry", share, 0.5, 2e-3)
+    apart = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
+    largest = float(apart.max() / hot.max_temperature_rise)
+    yield compare(name, "surfaces' difference where they touch, over the rise", "shared heat", largest, 0.0, 1e-6)
+    motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
+    unlike = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
+    name = "fast line contact, the body four times as fast"
+    source = "shares go with the root of the speed; Blok (1937)"
+    yield compare(name, "part of the heat in the body", source, float(unlike.body_heat_share), 2 / 3, 5e-3)
+
+
+def band_checks() -> Iterator[Check]:
+    """Uniform heat in a band, at all speeds."""
+    grid = Grid((0.0, 8.0), (-2, 2), 5, 64)
+    band = np.where(np.abs(grid.y) < 1, 1.0, 0.0)
+    for drift in (0.01, 0.3, 5.0, 100.0):
+        rises = rise(grid, band, 2 * drift, Ends(0.0, 8.0))[2]
+        exact = closed_forms.moving_band(grid.y, drift)
+        curve = Curve("y / a", "T lambda / (q a)", grid.y, rises, exact)
+        case = f"band of uniform heat between two ends, Peclet number {drift:g}"
+        yield compare_fields(
+            case, "rise over the largest", "Jaeger (1942)", rises / exact.max(), exact / exact.max(), 5e-6, curve=curve
+        )
+
+
+def resting_checks() -> Iterator[Check]:
+    """Rest sources on a half-space."""
+    grid = Grid((-1.2, 1.2), (-1.2, 1.2), 61, 61)
+    source = "Carslaw and Jaeger (1959), 10.5"
+    cells = Grid((-1.5, 1.5), (-1.5, 1.5), 45, 45)
+    square = np.where((np.abs(cells.x)[:, None] < 1) & (np.abs(cells.y) < 1), 1.0, 0.0)
+    side = 0.5 * float(square[22].sum()) * cells.dy
+    middle = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
+    expected = closed_forms.resting_square()
+    yield compare("square of uniform heat at rest", "rise in the middle", source, middle, expected, 1e-5, relative=True)
+    heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
+    middle, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), closed_forms.resting_hertz_circle()
+    case = "circle of Hertz' pressure at rest, 61 x 61 cells"
+    yield compare(case, "rise in the middle", source, middle, expected, 2e-3, relative=True)
+
+
+def end_checks() -> Iterator[Check]:
+    """Insulated ends, and the balance of heat."""
+    edges = np.array([0.0, 0.2, 0.5, 1.0, 1.7])
+    half, full = (Grid.from_edges(borders, (-1, 1), 20) for borders in (edges, np.concatenate([-edges[:0:-1], edges])))
+    heat = np.array([3.0, 2.0, 1.5, 1.0])[:, None] * (np.abs(half.y) < 0.5)
+    at_end = rise(half, heat, 3.0, Ends(0.0, np.inf))
+    doubled = rise(full, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
+    scale = doubled.max()
+    yield compare_fields(
+        "heat beside an insulated end", "rise over the largest", "symmetry", at_end / scale, doubled / scale, 1e-9
+    )
+    for speed in (1.0, -4.0):
+        outflow, power = heat_carried_away(speed)
+        case = f"heat in three cells between two ends, surface speed {speed:g}"
+        quantity = "heat through planes before and behind, over all of it"
+        yield compare(case, quantity, "conservation of energy", outflow / power, 1.0, 1e-6)
+
+
+def heat_carried_away(speed: float) -> tuple[float, float]:
+    """Heat that flows and is carried through planes before and behind some sources, and the heat of these, W."""
+    grid = Grid((0.0, 2.0), (-3, 3), 12, 60)
+    heat = np.zeros(grid.shape)
+    heat[2, 28:30], heat[7, 30] = 5.0, 1.0
+    points, weights = np.polynomial.legendre.leggauss(40)
+    nodes = 0.5 * (points + 1)
+    stencil = np.array([-1, 9, -45, 0, 45, -9, 1]) / (60 * grid.dy)  # first derivative, sixth order
+    outflow = 0.0
+    for depth, weight in zip(40 * nodes**4, weights * 80 * nodes**3, strict=True):
+        profile = grid.dx * rise(grid, heat, speed, Ends(0.0, 2.0), depth).sum(axis=0)
+        for side, row in ((-1, 8), (1, 51)):
+            outflow += side * weight * float(speed * profile[row] - stencil @ profile[row - 3 : row + 4])
+    return outflow, float(heat.sum()) * grid.cell_area
+
+
+def heat_checks() -> Iterator[Check]:
+    """Every check of heat."""
+    yield from fast_checks()
+    yield from band_checks()
+    yield from resting_checks()
+    yield from end_checks()
+
+
+STEEL = Material(210e9, 0.3)
+COEFFICIENT = 1e-17
+EXPLICIT_STEPS = 80  # Explicit steps: their error is of first order
+
+
+def sharp_roller() -> tuple[Case, Grid]:
+    """Return a rigid roller with sharp ends inside the face, and cells."""
+    body = FiniteLengthSpace(length=0.6e-3, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
+    return case, choose_grid(case, cells_x=3, cells_y=6)
+
+
+def sliding_checks() -> Iterator[Check]:
+    """Constant slip."""
+    case, grid = sharp_roller()
+    name = "sharp roller inside the face, full sliding"
+    distances = [0.0, 3e3, 2e5]
+    worn = wear_in(case, COEFFICIENT, distances, grid=grid)
+    ideal = COEFFICIENT * case.normal_load * distances[2]
+    volume = float(worn.worn_volume[2])
+    yield compare(name, "worn volume", "Archard (1953): k W s", volume, ideal, 1e-9, relative=True)
+    load = worn.line_load.values[2]
+    under = np.isfinite(case.gap(grid)).any(axis=1)
+    ratio = float(load[under].max() / load[under].min())
+    source = "a steady profile wears evenly"
+    yield compare(name, "largest load per length over the smallest, worn in", source, ratio, 1.0, 1e-3)
+    explicit = stepped_explicit(case, grid, distances[1])
+    depth, scale = worn.wear_depth.values[1], explicit.max()
+    curve = Curve("x / mm", "worn depth over the largest", 1e3 * grid.x, depth / scale, explicit / scale)
+    yield compare_fields(
+        name,
+        "worn depth early on, over the largest",
+        f"{EXPLICIT_STEPS} explicit steps",
+        depth / scale,
+        explicit / scale,
+        0.01,
+        curve=curve,
+    )
+    profile = worn_profile(case, worn, distances[1])
+    worn_case = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
+    pressed = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
+    load = worn.line_load.values[1]
+    yield compare_fields(
+        name,
+        "load per length of the worn profile, over the largest",
+        "the contact while it wore",
+        pressed / load.max(),
+        load / load.max(),
+        2e-3,
+    )
+
+
+def stepped_explicit(case: Case, grid: Grid, distance: float) -> FloatArray:
+    """Worn depth by many explicit steps."""
+    gap = on_grid(case.gap, grid)
+    depth = np.zeros((grid.cells_x, 1))
+    per_load = COEFFICIENT * distance / EXPLICIT_STEPS / (2 * np.pi * case.roller.radius)
+    for _ in range(EXPLICIT_STEPS):
+        pressure = solve_contact(case.body, gap + depth, load=case.normal_load)["pressure"].values
+        depth = depth + per_load * grid.dy * pressure.sum(axis=1, keepdims=True)
+    return depth[:, 0]
+
+
+def rolling_checks() -> Iterator[Check]:
+    """Wear by the work of steady rolling."""
+    body = FiniteLengthSpace(length=0.6e-3, material=STEEL)
+    roller = Roller(radius=5e-3, length=0.4e-3, material=STEEL, profile=FullCrown(crown_radius=0.05))
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.2, motion=Rolling(longitudinal_creepage=1e-3))
+    grid = choose_grid(case, cells_x=3, cells_y=8, window=2.5)
+    work = float(solve(case, grid, stresses=False).friction_work)
+    worn = wear_in(case, COEFFICIENT, [100.0], grid=grid, law="work")
+    volume, expected = float(worn.worn_volume[-1]), COEFFICIENT * work * 100.0
+    name = "crowned roller rolling at a creepage, little worn"
+    source = "k times the frictional work of the unworn contact"
+    yield compare(name, "worn volume", source, volume, expected, 2e-3, relative=True)
+
+
+def wear_checks() -> Iterator[Check]:
+    """Every check of wear."""
+    yield from sliding_checks()
+    yield from rolling_checks()

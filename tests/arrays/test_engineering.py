@@ -1,0 +1,30 @@
+"""Numbers in engineering units, and tables."""
+
+from __future__ import annotations
+
+import math
+
+from contactstudy.arrays.engineering import TEXT, html_table, quantity, unit_for, with_error, written
+
+
+def test_units_of_a_size() -> None:
+    assert [unit_for(*pair) for pair in ((1.5e9, "Pa"), (2e-6, "m"), (0.1, "1"))] == [
+        (1e9, "GPa"),
+        (1e-6, "\N{MICRO SIGN}m"),
+        (1.0, ""),
+    ]
+
+
+def test_written_numbers() -> None:
+    values = (0.000211234, 1531.52, 1e-9, math.inf)
+    assert [written(value) for value in values] == ["0.0002112", "1532", "1e-09", "\N{INFINITY}"]
+    assert [quantity(1.5e9, "Pa"), quantity(0.1, "1")] == ["1.5 GPa", "0.1"]
+    assert with_error(2.2531e9, 0.012e9, "Pa") == "2.253 ± 0.012 GPa"
+    assert with_error(65e-6, None, "m") == "65 \N{MICRO SIGN}m"
+    assert with_error(0.0, 0.0, "Pa") == "0 MPa"
+
+
+def test_table_escapes_texts() -> None:
+    table = html_table([("", [("radius", "<5 mm")])], styles=(TEXT,) * 2)
+    assert table.startswith("<table><tr><td style='text-align:left'>radius</td>")
+    assert "&lt;5 mm" in table

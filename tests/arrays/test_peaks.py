@@ -1,0 +1,41 @@
+"""The largest pressure of each cross-section between its cells."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.arrays.peaks import interpolate_about, local_polynomial, peak_width, section_maxima
+
+
+@given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
+def test_top_of_an_ellipse_wherever_the_cells_lie(offset: float, cells: int) -> None:
+    step = 3.0 / cells
+    y = step * (np.arange(cells) - 0.5 * cells + 0.5 + offset)
+    pressure = np.sqrt(np.maximum(1 - y**2, 0.0))[None, :]
+    assert section_maxima(pressure)[0] == pytest.approx(1.0, abs=1e-9)
+
+
+def test_columns_without_a_parabola_keep_their_largest_cell() -> None:
+    pressure = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0], [2.0, 1.0, 0.0, 0.0]])
+    found = section_maxima(pressure)
+    assert found[0] == 0
+    assert (found[1:] >= [3.0, 2.0]).all()
+    assert (found[1:] <= 1.25 * np.array([3.0, 2.0])).all()
+
+
+def test_polynomials_about_a_sample() -> None:
+    parabola = local_polynomial(np.array([0.0, 1.0, 3.0, 4.0]), 1, 1)
+    assert parabola.window == slice(0, 3)
+    assert np.allclose(parabola.matrix @ [0.0, 1.0, 9.0], parabola.points**2)
+    x = np.array([0.0, 1.0, 2.0, 3.0])
+    (points,), values = interpolate_about([x], [2], (x**2)[None], 1)
+    assert np.allclose(values[0], points**2)
+
+
+def test_width_of_a_crest() -> None:
+    x = np.linspace(-1.0, 1.0, 201)
+    crest = np.sqrt(np.maximum(1 - (x / 0.5) ** 2, 0))[:, None] * np.ones(20)
+    assert peak_width(crest, x, 0.1, 100) == pytest.approx(0.5, abs=0.05)

@@ -1,1 +1,0 @@
-"""Speed of the package beside that of published contact codes: `python -m tests.benchmarks`."""

@@ -1,0 +1,215 @@
+"""Warnings of magnitudes that suggest a mistake in the unit."""
+
+from __future__ import annotations
+
+import re
+import warnings
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    MagnitudeWarning,
+    Material,
+    Roller,
+    WindowError,
+    bearing,
+    choose_grid,
+    fatigue,
+    plasticity,
+    profiles,
+    roughness,
+    solve,
+)
+from contactstudy.case.magnitudes import doubts
+from contactstudy.cli import main
+from contactstudy.heat import ThermalProperties
+from contactstudy.study import Study, run_study
+from tests.small_study import BASE, as_toml, small_study
+from tests.stand_in_solver import solve_fake
+
+STEEL = Material(206e9, 0.3)
+USUAL = {"radius": 6e-3, "length": 14e-3, "body": 16e-3, "material": STEEL, "load": 9e3}
+
+
+def made(**changes) -> Case:
+    values = USUAL | changes
+    roller = Roller(radius=values.pop("radius"), length=values.pop("length"), material=values.pop("roller", None))
+    body = FiniteLengthSpace(length=values.pop("body"), material=values.pop("material"))
+    return Case(body=body, roller=roller, **values)
+
+
+def pressed(crown: profiles.Profile, length: float = 14e-3, radius: float = 6e-3) -> Case:
+    roller = Roller(radius=radius, length=length, profile=crown)
+    return Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"friction": 0.3, "tilt": 1e-3, "roller": STEEL},
+        {"radius": 1e-3, "length": 1e-3, "body": 1e-3, "load": 20.0},
+        {"radius": 0.7, "length": 2.0, "body": 2.5, "load": 2e7},
+        {"material": Material(2e6, 0.5), "load": 1.0},
+        {"material": Material(1.1e12, 0.1), "load": None, "max_pressure": 8e9},
+    ],
+)
+def test_usual_cases(changes) -> None:
+    """From a wire to a rolling mill, rubber to diamond."""
+    assert not doubts(made(**changes))
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        (
+            {"radius": 6, "length": 14, "body": 16},
+            r"roller.radius = 6 m, usual are 1e-05 to 1.5 m; 6 mm is 0.006 m; roller.length = 14 m.*; "
+            r"body.length = 16 m, usual are 1e-05 to 3 m; 16 mm is 0.016 m",
+        ),
+        ({"material": Material(206, 0.3), "load": 9e-6}, r"body.material.young = 206 Pa.*; 206 GPa is 2.06e\+11 Pa"),
+        ({"material": Material(206e3, 0.3), "load": 9e-3}, r"body.material.young = 206000 Pa.*; 206000 MPa is 2.06e"),
+        ({"roller": Material(1e13, 0.3)}, r"roller.material.young = 1e\+13 Pa, usual are 1e\+06 to 1.5e\+12 Pa"),
+        ({"friction": 5}, "friction = 5, usual are 0 to 1.5; 5 % is 0.05"),
+        ({"friction": xr.DataArray([0.1, -8.0], dims="x", coords={"x": [0.0, 1e-2]})}, "friction = 8"),
+        ({"tilt": 0.05}, "tilt = 0.05 rad, usual are 0 to 0.01 rad; 0.05 deg is 0.000872665 rad"),
+        ({"load": None, "max_pressure": 1.5e5}, "max_pressure = 150000 Pa is very low: Hertz pressure 0.15 MPa"),
+        ({"load": None, "approach": 5e-3}, "approach = 0.005 m, usual are up to 0.0006 m on .*; 0.005 mm is 5e-06 m"),
+        ({"load": 6e5}, "load = 600000 N is very high: Hertz pressure"),
+    ],
+)
+def test_doubtful_values_of_a_case(changes, message: str) -> None:
+    assert re.search(message, "; ".join(doubts(made(**changes))))
+
+
+@pytest.mark.parametrize(
+    ("crown", "message"),
+    [
+        (
+            profiles.Lundberg(8.0),
+            "0.4 of the length from the middle = 8.1.* m, usual are up to 0.0009 m .*; 8.1.* µm is 8",
+        ),
+        (profiles.Lundberg(8e-3), "= 0.008.* m, usual are up to 0.0009 m .*; 0.008.* mm is 8.*e-06 m"),
+        (profiles.Measured(1e-3 * np.array([-7, -6.5, 0, 6.5, 7]), [8.0, 0, 0, 0, 8.0]), "0.49 of .* µm is .*e-06 m"),
+    ],
+)
+def test_crowns_in_a_wrong_unit_are_questioned(crown: profiles.Profile, message: str) -> None:
+    assert re.search(message, doubts(pressed(crown))[0])
+
+
+@pytest.mark.parametrize(
+    "crown",
+    [
+        profiles.FullCrown(crown_radius=200),
+        profiles.FullCrown(crown_radius=200) + profiles.Cylinder(fillet_radius=0.2e-3),
+        profiles.PartialCrown(4e-3, crown_radius=200),
+    ],
+)
+def test_a_crown_radius_in_millimetres_is_questioned(crown: profiles.Profile) -> None:
+    message = r"Crown.crown_radius = 200 m drops by 6.2e-08 m over half .*, less than is ground; 200 mm is 0.2 m"
+    assert re.search(message, doubts(pressed(crown, length=10e-3))[0])
+
+
+@pytest.mark.parametrize(("length", "crown_radius"), [(50e-3, 900.0), (20e-3, 300.0), (10e-3, 100.0), (0.5e-3, 2.0)])
+def test_real_crowns_are_not_called_flat(length: float, crown_radius: float) -> None:
+    """A tenth of a micrometre and more, or of a pin of a watch some nanometres."""
+    assert not doubts(pressed(profiles.FullCrown(crown_radius), length=length, radius=0.5 * length))
+
+
+@pytest.mark.parametrize(
+    "crown",
+    [
+        profiles.Lundberg(8e-6),
+        profiles.Cylinder(fillet_radius=1e-3),
+        profiles.FullCrown(crown_radius=12e-3),
+        profiles.PartialCrown(4e-3, 1.2, dub_length=0.8e-3, dub_radius=0.06),
+        profiles.IsoTapered(diameter=12e-3),
+    ],
+)
+def test_usual_crowns_raise_no_question(crown: profiles.Profile) -> None:
+    assert not doubts(pressed(crown, length=10e-3))
+
+
+def test_solve_warns_once_at_the_line_of_the_call() -> None:
+    roller = Roller(radius=5e-3, length=0.3e-3, profile=profiles.FullCrown(0.5))
+    case = Case(body=HalfSpace(material=STEEL), roller=roller, max_pressure=1.5e9, friction=2.0)
+    with pytest.warns(MagnitudeWarning, match=r"friction = 2, usual are 0 to 1.5; 2 % is 0.02") as caught:
+        solve(case, accuracy=0.1, stresses=False)
+    (warning,) = [warning for warning in caught if warning.category is MagnitudeWarning]
+    assert warning.filename == __file__
+
+
+def test_a_study_asks_in_its_plan_and_when_it_runs(tmp_path: Path, capsys) -> None:
+    study = small_study(sweep={"e_over_a": [0.0, 1.0], "friction": [0.0, 5.0]})
+    assert study.plan().doubts == ("friction = 5, usual are 0 to 1.5; 5 % is 0.05 (2 contacts)",)
+    (tmp_path / "small.toml").write_text(as_toml(study))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert main(["plan", str(tmp_path / "small.toml"), "--out", str(tmp_path / "results")]) == 0
+        assert "friction = 5" in capsys.readouterr().out
+        report = run_study(study, tmp_path / "results", workers=0, solver=solve_fake, progress=False)
+    assert report.counts == {"ok": 4}
+    assert any("friction = 5" in remark for remark in report.remarks)
+    assert "friction = 5" in (tmp_path / "results" / "run.log").read_text()
+
+
+def test_a_study_in_millimetres(tmp_path: Path) -> None:
+    base = BASE | {"radius": 6.0, "roller_length": 14.0, "max_pressure": 1.5e9, "e_over_a": 0.0}
+    plan = Study(name="mm", base=base).plan()
+    assert [question.split(",")[0] for question in plan.doubts] == [
+        "roller.radius = 6 m",
+        "roller.length = 14 m",
+        "body.length = 14 m",
+    ]
+    assert np.isfinite(plan.review.cells)
+
+
+@pytest.mark.parametrize(("pressure", "modulus", "word"), [(1500.0, 113e9, "low"), (1.5e9, 113.0, "high")])
+def test_a_crown_for_a_load_in_the_wrong_unit_is_questioned(pressure: float, modulus: float, word: str) -> None:
+    crown = profiles.JohnsGohar.for_pressure(1.5e9, radius=6e-3, modulus=113e9)
+    wrong = profiles.Lundberg.for_pressure(pressure, radius=6e-3, modulus=modulus)
+    case = made()
+    for profile in (wrong, profiles.Halves(crown, wrong)):
+        messages = doubts(replace(case, roller=replace(case.roller, profile=profile)))
+        expected = f"Lundberg.amplitude = {wrong.amplitude:.3g} m belongs to a very {word} design load"
+        assert any(expected in message for message in messages)
+    assert not doubts(replace(case, roller=replace(case.roller, profile=crown)))
+
+
+@pytest.mark.parametrize(
+    ("make", "message"),
+    [
+        (lambda: fatigue.FatigueLimits(bending=500, torsion=300), r"bending = 500 Pa.*500 MPa is 5e\+08 Pa; torsion"),
+        (lambda: plasticity.ElasticPlastic(yield_stress=1.8), r"yield_stress = 1.8 Pa.*1.8 GPa is 1.8e\+09 Pa"),
+        (
+            lambda: ThermalProperties(conductivity=46.0, density=7.85, specific_heat=0.47),
+            r"density = 7.85 kg/m3.*7.85 g/cm3 is 7850 kg/m3; specific_heat = 0.47 .*is 470 J",
+        ),
+        (lambda: bearing.roller_ratings(50, rollers=14, gamma=0.2), r"dynamic_rating = 50 N.*50 kN is 50000 N"),
+    ],
+)
+def test_materials_and_ratings_are_questioned_where_they_are_made(make, message: str) -> None:
+    with pytest.warns(MagnitudeWarning, match=message) as caught:
+        make()
+    assert caught[0].filename == __file__
+
+
+def test_heights_in_micrometres_are_questioned() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=6e-3, length=1e-3), max_pressure=1e9)
+    grid = choose_grid(case)
+    rough = roughness.self_affine(grid, rms_height=0.2, hurst=0.8, longest=0.2e-3, shortest=0.05e-3, seed=1)
+    with pytest.warns(MagnitudeWarning, match=r"roughness = .* usual are 0 to 0.0002 m.* µm is"):
+        solve_or_not(case, rough)
+
+
+def solve_or_not(case: Case, rough: xr.DataArray) -> None:
+    with suppress(WindowError):  # heights of a metre fill no window
+        solve(case, roughness=rough, stresses=False)

@@ -1,0 +1,16 @@
+"""Gap of a roller on cells."""
+
+import numpy as np
+
+from contactstudy.arrays.grid import Grid
+from contactstudy.case.roller import gap_on_cells, onto_ends
+
+
+def test_cell_centre_within_rounding_of_the_end_lies_under_the_roller():
+    assert onto_ends(np.array([0.1 + 0.2]), 0.3, 0.1) == 0.3
+
+
+def test_gap_at_centres_of_uniform_cells():
+    grid = Grid((0.0, 4.0), (-1.0, 1.0), 4, 1)
+    gap = gap_on_cells(lambda x, y: x[:, None] ** 2 + 0 * y, grid, 2.0, 2.0)
+    assert gap[:, 0].tolist() == [2.25, 0.25, 0.25, 2.25]

@@ -1,0 +1,72 @@
+"""Closed forms that only tests use: surfaces of a Hertz circle, and sliding line contact of unlike materials."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from contactstudy.bodies.material import Material
+from contactstudy.checks import FloatArray
+from contactstudy.verification.closed_forms import Stress
+
+
+class SlidingLine(NamedTuple):
+    """Line contact with friction coupled into its geometry."""
+
+    half_width: float
+    centre: float
+    exponent: float
+    peak_scale: float
+
+    def pressure(self, y: ArrayLike) -> NDArray[np.float64]:
+        """Pressure at `y`, Pa."""
+        scaled = np.clip((np.asarray(y, dtype=float) - self.centre) / self.half_width, -1.0, 1.0)
+        shape = (1 + scaled) ** (0.5 + self.exponent) * (1 - scaled) ** (0.5 - self.exponent)
+        return np.asarray(self.peak_scale * self.half_width * shape)
+
+
+def sliding_line(
+    load_per_length: float, radius: float, friction: float, first: Material, second: Material | None = None
+) -> SlidingLine:
+    """Cylinder that slides on a plane, in plane strain, with the displacement from friction (Bufler 1959; Johnson 7.2).
+
+    Where the bodies touch their slopes add up to
+
+        (2 / (pi E*)) PV int p(s) / (s - y) ds + (2 / E*) f beta p(y) = -y / R,
+
+    with Dundurs' ``beta = [(1 - 2 nu1) / G1 - (1 - 2 nu2) / G2] / 2 / [(1 - nu1) / G1 + (1 - nu2) / G2]``. The
+    function ``(c + t)**(1/2 + gamma) (c - t)**(1/2 - gamma)`` of ``t = y - centre`` solves it for
+    ``tan(pi gamma) = -f beta`` and ``centre = 2 gamma c``; the load is ``pi E* c**2 (1/4 - gamma**2) / R``.
+    """
+    bodies = [first] if second is None else [first, second]
+    shear = [(1 - 2 * material.poisson) / material.shear_modulus for material in bodies]
+    normal = sum((1 - material.poisson) / material.shear_modulus for material in bodies)
+    beta = (shear[0] - (shear[1] if second is not None else 0.0)) / (2 * normal)
+    modulus = 2 / normal
+    gamma = float(-np.arctan(friction * beta) / np.pi)
+    half_width = float(np.sqrt(load_per_length * radius / (np.pi * modulus * (0.25 - gamma**2))))
+    return SlidingLine(half_width, 2 * gamma * half_width, gamma, float(modulus * np.cos(np.pi * gamma) / (2 * radius)))
+
+
+def hertz_circle_surface(
+    r: ArrayLike, radius: float, max_pressure: float, poisson: float
+) -> tuple[FloatArray, FloatArray]:
+    """`sigma_rr` and `sigma_tt` on the surface around a frictionless Hertz circle (Johnson 3.42, 3.43)."""
+    s = np.asarray(r, dtype=float) / radius
+    height = np.sqrt(np.clip(1 - s**2, 0, None))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        term = np.where(s > 1e-4, (1 - height**3) / s**2, 1.5) * (1 - 2 * poisson) / 3
+    return max_pressure * (term - height), max_pressure * (-term - 2 * poisson * height)
+
+
+def sliding_circle_surface(x: ArrayLike, y: ArrayLike, radius: float, max_traction: float, poisson: float) -> Stress:
+    """In-plane stresses on the surface inside the circle, from the traction `q` alone (Johnson section 7.1)."""
+    scale = -np.pi * max_traction / (8 * radius)
+    xs, ys = np.broadcast_arrays(np.asarray(x, dtype=float), np.asarray(y, dtype=float))
+    return {
+        "sigma_yy": scale * (4 + poisson) * ys,
+        "sigma_xx": scale * 3 * poisson * ys,
+        "tau_xy": scale * (2 - poisson) * xs,
+    }

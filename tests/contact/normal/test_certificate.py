@@ -1,0 +1,57 @@
+"""Each violation of a contact's conditions is measured by itself, over what it is to be measured by."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+from contactstudy.contact.normal.contact import CONVERGED_TOLERANCES, OPEN_TOLERANCES, Certificate, certify
+
+TOLERANCE = 1e-6
+DISPLACEMENT = 3e-5 * np.array([[1.0, 2.0, 3.0]])  # varies by 6e-5
+VARIATION = 6e-5
+PRESSURE = 1e9 * np.array([[0.0, 0.5, 2.0]])
+
+
+def certificate(opening: list[float], *, pressure: np.ndarray = PRESSURE, carried: float = 5.0, **other) -> Certificate:
+    """Of a gap over the variation of the displacement."""
+    values = {"load": 5.0, "off_position": 0.0} | other
+    gap = VARIATION * np.array([opening])
+    return certify(pressure, gap, DISPLACEMENT, carried=carried, tolerance=TOLERANCE, **values)
+
+
+def test_a_contact_without_violations() -> None:
+    assert set(asdict(certificate([0.3, 0.0, 0.0])).values()) == {0.0}
+    assert certificate([0.3, 0.0, 0.0]).holds(TOLERANCE)
+    assert certificate([np.inf, 0.0, 0.0]).holds(TOLERANCE)
+
+
+@pytest.mark.parametrize("opening", [[0.3, 2e-3, 0.0], [0.3, -2e-3, 0.0], [-2e-3, 0.0, 1e-3]])
+def test_gaps_under_pressure_and_overlaps_anywhere(opening: list[float]) -> None:
+    assert certificate(opening).penetration_error == pytest.approx(2e-3)
+    assert not certificate(opening).holds(TOLERANCE)
+
+
+def test_pressure_counts_as_open_beyond_first_share_tolerances_of_the_variation() -> None:
+    for factor, error in ((0.5, 0.0), (1.5, 0.25)):
+        opening = [0.3, factor * OPEN_TOLERANCES * TOLERANCE, 0.0]
+        assert certificate(opening).open_pressure_error == pytest.approx(error)
+    assert not certificate([0.3, 1.5 * OPEN_TOLERANCES * TOLERANCE, 0.0]).holds(TOLERANCE)
+
+
+def test_load_and_its_position() -> None:
+    assert certificate([0.3, 0.0, 0.0], carried=5.5).load_error == pytest.approx(0.1)
+    assert certificate([0.3, 0.0, 0.0], carried=4.5).load_error == pytest.approx(-0.1)
+    assert certificate([0.3, 0.0, 0.0], carried=5.5, load=None).load_error == 0.0
+    assert certificate([0.3, 0.0, 0.0], off_position=0.2).load_position_error == 0.2
+
+
+@pytest.mark.parametrize("name", ["load_error", "penetration_error", "open_pressure_error", "load_position_error"])
+@pytest.mark.parametrize("sign", [1, -1])
+def test_any_violation_beyond_the_bound_means_not_converged(name: str, sign: int) -> None:
+    whole = asdict(certificate([0.3, 0.0, 0.0]))
+    bound = CONVERGED_TOLERANCES * TOLERANCE
+    assert Certificate(**(whole | {name: 0.9 * sign * bound})).holds(TOLERANCE)
+    assert not Certificate(**(whole | {name: 1.1 * sign * bound})).holds(TOLERANCE)

@@ -1,0 +1,138 @@
+"""Contacts in plain arrays: what is stated of them, how much work they take, and that no unit decides anything."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material
+from contactstudy.bodies import Body, Counterbody
+from contactstudy.cache import ArrayKey
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, _off_position, contact_of
+from contactstudy.contact.normal.prescribed import Prescribed
+
+LENGTH, PRESSURE = 2.0**-17, 2.0**37
+"""Units of length and pressure, powers of two: numbers in them differ by nothing else."""
+
+COARSE, FINE = np.linspace(-1.5, 1.5, 21), np.linspace(-1.5, 1.5, 65)
+GRADED = np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)])
+ENDED = np.linspace(0.0, 3.0, 21)
+
+
+class Asked(NamedTuple):
+    """A ball, or a roller across a body with two ends, off the middle; lengths about 1, pressures about 1."""
+
+    edges: Any = COARSE
+    load: float | None = 0.05
+    position: float | None = None
+    approach: float | None = None
+    ended: bool = False
+    pair: bool = False
+    coupled: float = 0.0
+    cells_y: int = 20
+
+    def shape(self, length: float = 1.0, pressure: float = 1.0) -> Shape:
+        """Return what is pressed on what, in some units."""
+        grid = Grid.between(length * self.edges, (-1.5 * length, 1.5 * length), self.cells_y)
+        x, y = grid.x[:, None] / length, grid.y / length
+        gap = 0.02 * (x - 1.6) ** 2 + 0.1 * y**2 if self.ended else 0.05 * ((x - 0.1) ** 2 + y**2)
+        gap = np.where(x > 2.7, np.inf, gap)
+        material = Material(0.91 * pressure, 0.3)
+        body: Body = HalfSpace(material=material)
+        if self.ended:
+            body = FiniteLengthSpace(material=material, length=3.0 * length)
+        load = None if self.load is None else self.load * pressure * length**2
+        position, approach = (None if each is None else each * length for each in (self.position, self.approach))
+        prescribed = Prescribed(load, position, approach)
+        counterbody = Counterbody(HalfSpace(material=Material(0.5 * pressure, 0.2))) if self.pair else None
+        return Shape(body, grid, ArrayKey(length * gap), prescribed, counterbody, self.coupled)
+
+
+ASKED = {
+    "load": Asked(),
+    "graded": Asked(GRADED, pair=True),
+    "approach": Asked(load=None, approach=0.04),
+    "nested": Asked(FINE, pair=True, cells_y=64),
+    "nested approach": Asked(FINE, load=None, approach=0.04, cells_y=64),
+    "coupled": Asked(coupled=0.4),
+    "coupled approach": Asked(GRADED, load=None, approach=0.04, coupled=0.4),
+    "ends": Asked(ENDED, ended=True),
+    "position": Asked(ENDED, position=1.75, ended=True),
+    "nested position": Asked(np.linspace(0.0, 3.0, 65), position=1.7, ended=True, cells_y=64),
+    "coupled position": Asked(ENDED, position=1.7, ended=True, coupled=0.3),
+}
+
+
+@pytest.mark.parametrize("asked", ASKED.values(), ids=ASKED)
+def test_units_decide_nothing(asked: Asked) -> None:
+    plain, other = contact_of(asked.shape(), Settings()), contact_of(asked.shape(LENGTH, PRESSURE), Settings())
+    assert plain.converged
+    assert (plain.converged, plain.iterations) == (other.converged, other.iterations)
+    units = {"pressure": PRESSURE, "gap": LENGTH, "displacement": LENGTH, "approach": LENGTH, "tilt": 1.0}
+    units |= {"carried": PRESSURE * LENGTH**2, "load_position": LENGTH}
+    for name, unit in units.items():
+        value = getattr(plain, name)
+        least = 1e-9 * np.abs(np.where(np.isfinite(value), value, 0.0)).max()
+        assert getattr(other, name) / unit == pytest.approx(value, rel=1e-6, abs=least), name
+    for name, value in vars(plain.certificate).items():
+        assert getattr(other.certificate, name) == pytest.approx(value, rel=0.1, abs=1e-10), name
+
+
+def moved(found: Contact) -> Any:
+    """How far the surfaces have come towards each other, from what is stated of the shape."""
+    at = found.shape.prescribed.load_position
+    turned = 0.0 if at is None else found.tilt * (found.shape.grid.x[:, None] - at)
+    return found.approach + turned
+
+
+@pytest.mark.parametrize("name", ["load", "approach", "ends", "position"])
+def test_the_gap_is_that_of_the_displaced_body_and_the_shape_where_it_is_stated(name: str) -> None:
+    found = contact_of(ASKED[name].shape(), Settings())
+    facing = np.isfinite(found.gap)
+    expected = found.shape.gap.values + found.displacement - moved(found)
+    assert found.gap[facing] == pytest.approx(expected[facing], abs=1e-9)
+    assert (np.abs(found.tilt) > 1e-4) == (name == "position")
+    if name == "position":
+        assert found.load_position == pytest.approx(1.75, abs=1e-5)
+
+
+MOST = {
+    "load": 14,
+    "graded": 13,
+    "approach": 13,
+    "nested": 9,
+    "nested approach": 17,
+    "coupled": 42,
+    "coupled approach": 46,
+    "ends": 44,
+    "position": 16,
+    "nested position": 12,
+    "coupled position": 48,
+}
+"""A tenth more than it takes."""
+
+
+@pytest.mark.parametrize("name", MOST)
+def test_the_operator_is_applied_a_few_times_only(name: str) -> None:
+    assert contact_of(ASKED[name].shape(), Settings()).iterations <= MOST[name]
+
+
+def test_a_warning_points_at_who_asked() -> None:
+    found = contact_of(ASKED["load"].shape(), Settings(1e-6, 3))
+    with pytest.warns(ConvergenceWarning, match="after 3 operator applications|max_iterations .now 3") as said:
+        found.warn_unless_converged()
+    assert said[0].filename == __file__
+
+
+def test_distance_of_the_resultant_from_its_place_over_the_length_of_the_contact() -> None:
+    """Of two columns with the resultant halfway between: each weighted by its width, and in any place."""
+    for place in (0.0, 5.0):
+        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 3.0, 5.0, 6.0]), (0.0, 1.0), 2)
+        pressure = np.zeros(grid.shape)
+        pressure[1], pressure[3] = 2.0, 1.0  # centres 1.5 and 4, widths 1 and 2: half of the load on each
+        for at in (2.0, 3.5):
+            off = _off_position(Prescribed(1.0, place + at), grid, pressure)
+            assert off == pytest.approx(abs(2.75 - at) / 4.0)
+    assert _off_position(Prescribed(1.0), grid, pressure) == 0.0

@@ -1,0 +1,282 @@
+"""What may be prescribed of a contact: load, its position, the tilt, the approach; and rough surfaces."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    ConvergenceWarning,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    choose_grid,
+    displacement_field,
+    profiles,
+    solve,
+    solve_contact,
+)
+from contactstudy.contact import ContactSettings
+from contactstudy.contact.normal.prescribed import Prescribed
+from contactstudy.roughness import self_affine
+from tests.crowned_case import BODY, HALF_WIDTH, LENGTH, STEEL, case_with
+
+
+@pytest.mark.parametrize("offset", [-2.5, 0.0, 1.0, 3.5])
+def test_the_resultant_acts_where_it_was_prescribed(offset: float):
+    position = 0.5 * LENGTH + offset * HALF_WIDTH
+    result = solve(case_with(load_position=position), stresses=False)
+    assert bool(result.converged)
+    line = result.pressure.sum("y") * result.x_width
+    assert abs(float((line * line.x).sum() / line.sum()) - position) < 1e-6 * LENGTH
+    assert float(result.load_position) == pytest.approx(position, abs=1e-6 * LENGTH)
+    if offset == 0:
+        assert abs(float(result.tilt)) < 1e-9
+    else:
+        assert float(result.tilt) * offset > 1e-6 * abs(offset)
+    assert float(result.penetration_error) < 1e-5
+
+
+def test_the_tilt_that_follows_from_the_position_gives_the_position():
+    case = case_with(load_position=0.5 * LENGTH + HALF_WIDTH)
+    grid = choose_grid(case, cells_x=8, cells_y=8)
+    free = solve(case, grid, stresses=False)
+    held = solve(case_with(tilt=float(free.tilt)), grid, stresses=False)
+    np.testing.assert_allclose(held.pressure, free.pressure, atol=5e-5 * float(free.pressure.max()))
+    assert float(held.load_position) == pytest.approx(float(free.load_position), abs=1e-5 * LENGTH)
+
+
+def test_opposite_tilts_mirror_the_pressure():
+    results = [solve(case_with(tilt=tilt), stresses=False) for tilt in (2e-4, -2e-4)]
+    first, second = (result.pressure.values for result in results)
+    np.testing.assert_allclose(first, second[::-1], atol=1e-5 * first.max())
+    assert float(results[0].load_position) > 0.5 * LENGTH + 0.1 * HALF_WIDTH
+
+
+def test_a_load_on_mid_length_does_not_tilt():
+    free, held = (solve(case_with(load_position=at), stresses=False) for at in (0.5 * LENGTH, None))
+    assert abs(float(free.tilt)) < 1e-9
+    np.testing.assert_allclose(free.pressure, held.pressure, atol=1e-5 * float(held.pressure.max()))
+
+
+@pytest.mark.parametrize("body", [BODY, HalfSpace(material=STEEL)], ids=["finite", "half-space"])
+def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
+    case = case_with(body=body, end_distance=2 * HALF_WIDTH)
+    grid = choose_grid(case)
+    gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    by_load = solve_contact(body, gap, case.normal_load)
+    by_approach = solve_contact(body, gap, approach=float(by_load.approach))
+    assert bool(by_approach.converged)
+    assert float(by_approach["normal_load"]) == pytest.approx(case.normal_load, rel=1e-5)
+    np.testing.assert_allclose(by_approach.pressure, by_load.pressure, atol=1e-4 * float(by_load.pressure.max()))
+    assert float(by_approach.approach) == float(by_load.approach)
+
+
+def test_hertz_point_contact_by_its_approach():
+    centres = np.linspace(-1.5, 1.5, 97)
+    gap = xr.DataArray(0.5 * (centres[:, None] ** 2 + centres**2), coords={"x": centres, "y": centres}, dims=("x", "y"))
+    contact = solve_contact(HalfSpace(material=Material(0.75, 0.5)), gap, approach=1.0)  # contact radius 1, load 4/3
+    assert float(contact["normal_load"]) == pytest.approx(4 / 3, rel=1e-3)
+    assert float(contact.pressure.max()) == pytest.approx(2 / np.pi, rel=1e-3)
+
+
+@pytest.mark.parametrize("closure", [0.2, 0.5, 0.8, 1.2])
+def test_wavy_surface_against_westergaards_solution(closure: float):
+    """Part of a wave that touches, and the pressure on it, under a given mean pressure (Johnson, section 13.2).
+
+    The body with mirrored ends repeats without end, and a wave is so short that along y the mean pressure is uniform.
+    """
+    modulus, wavelength = STEEL.plane_strain_modulus, 0.25 * HALF_WIDTH
+    body = FiniteLengthSpace(length=wavelength, material=STEEL, model="mirror")
+    case = Case(body=body, roller=Roller(radius=5e-3, length=wavelength), max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=256, cells_y=32, window=1.5)
+    amplitude = 1.5e9 / closure * wavelength / (np.pi * modulus)
+    phase = np.pi * (grid.x / wavelength - 0.5)
+    heights = amplitude * np.cos(2 * phase)[:, None] + 0 * grid.y
+    rough = xr.DataArray(heights, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    result = solve(case, grid, roughness=rough, stresses=False)
+    assert bool(result.converged)
+    wave = result.pressure.sel(y=0.0, method="nearest")
+    mean = float(wave.mean())
+    ratio = mean * wavelength / (np.pi * modulus * amplitude)
+    if closure > 1:
+        assert bool((wave > 0).all())
+        expected = mean + (mean / ratio) * np.cos(2 * phase)
+    else:
+        edge = phase[wave.values > 0].max() + 0.5 * np.pi / grid.cells_x
+        assert np.sin(edge) ** 2 == pytest.approx(ratio, abs=0.025)
+        inside = np.maximum(ratio - np.sin(phase) ** 2, 0.0)
+        expected = 2 * mean * np.cos(phase) / ratio * np.sqrt(inside)
+    assert np.abs(wave - expected).max() < 0.05 * mean / min(ratio, 1.0)
+    assert np.abs(wave - expected).mean() < 0.01 * mean
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_self_affine_surfaces_converge(seed: int):
+    case = case_with()
+    grid = choose_grid(case, window=4.0, cells_y=8)
+    rough = self_affine(
+        grid, rms_height=0.1e-6, hurst=0.8, longest=2 * HALF_WIDTH, shortest=4 * max(grid.dx, grid.dy), seed=seed
+    )
+    result = solve(case, grid, roughness=rough, stresses=False)
+    smooth = solve(case, grid, stresses=False)
+    assert bool(result.converged)
+    assert int(result.iterations) < 150
+    assert abs(float(result.load_error)) < 1e-12
+    assert float(result.penetration_error) < 1e-5
+    assert float(result.pressure.max()) > 1.5 * float(smooth.pressure.max())
+    assert int((result.pressure > 0).sum()) < int((smooth.pressure > 0).sum())
+
+
+def test_roughness_on_other_cells_is_interpolated():
+    case = case_with()
+    grid = choose_grid(case)
+    wider = Grid((-0.1 * LENGTH, 1.1 * LENGTH), (-5 * HALF_WIDTH, 5 * HALF_WIDTH), 150, 90)
+
+    def sloping(on: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
+        heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
+        return xr.DataArray(heights, coords={"x": on.x, "y": on.y}, dims=("x", "y"))
+
+    own, other = (solve(case, grid, roughness=sloping(on), stresses=False) for on in (grid, wider))
+    np.testing.assert_allclose(other.initial_gap, own.initial_gap, atol=1e-18)
+    tilted = solve(case_with(tilt=1e-3), grid, stresses=False)
+    assert float(own.load_position) == pytest.approx(float(tilted.load_position), abs=1e-2 * HALF_WIDTH)
+
+
+def test_a_flat_height_map_changes_nothing_but_the_approach():
+    case = case_with()
+    grid = choose_grid(case)
+    flat = xr.DataArray(np.full(grid.shape, 1e-6), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    smooth, rough = (solve(case, grid, roughness=heights, stresses=False) for heights in (None, flat))
+    np.testing.assert_allclose(rough.pressure, smooth.pressure, atol=1e-6 * float(smooth.pressure.max()))
+    assert float(rough.approach) == pytest.approx(float(smooth.approach) - 1e-6, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({"tilt": 0.2}, "tilt"),
+        ({"tilt": np.nan}, "tilt"),
+        ({"load_position": -1e-3}, "load_position"),
+        ({"load_position": 0.5 * HALF_WIDTH}, "load_position"),
+        ({"load_position": np.inf}, "load_position"),
+    ],
+)
+def test_bad_cases(arguments, parameter: str):
+    with pytest.raises(InvalidInputError, match=parameter):
+        case_with(**arguments)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "parameter"),
+    [
+        ({}, "load, approach"),
+        ({"load": 1.0, "approach": 1e-6}, "load, approach"),
+        ({"approach": -1e-6}, "approach"),
+        ({"approach": np.nan}, "approach"),
+        ({"approach": 1e-6, "load_position": 0.5 * LENGTH}, "load_position"),
+        ({"load": 1.0, "load_position": 2 * LENGTH}, "load_position"),
+    ],
+)
+def test_bad_prescriptions(arguments, parameter: str):
+    case = case_with()
+    grid = choose_grid(case, cells_x=2, cells_y=4)
+    gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    settings = ContactSettings(load_position=arguments.pop("load_position", None))
+    with pytest.raises(InvalidInputError, match=parameter):
+        solve_contact(BODY, gap, **arguments, settings=settings)
+
+
+def test_roughness_must_cover_the_cells():
+    case = case_with()
+    grid = choose_grid(case, cells_x=2, cells_y=4)
+    rough = xr.DataArray(np.zeros((4, 4)), coords={"x": np.arange(4.0), "y": np.arange(4.0)}, dims=("x", "y"))
+    with pytest.raises(InvalidInputError, match="roughness"):
+        solve(case, grid, roughness=rough)
+
+
+def test_approach_and_tilt_say_what_they_are_relative_to():
+    result = solve(case_with(load_position=11 * HALF_WIDTH), stresses=False)
+    for name in ("approach", "tilt"):
+        assert f"{LENGTH:g} m" in result[name].attrs["reference"]
+    assert result.tilt.attrs["centre"] == "load_position"
+    assert solve(case_with(tilt=1e-4), stresses=False).tilt.attrs["centre"] == "the roller's mid-length"
+
+
+def test_a_load_near_the_end_of_a_short_contact_acts_where_it_was_prescribed():
+    """All the pressure of the first guess lies on one side of the load, so no factor on it could balance it."""
+    body = FiniteLengthSpace(length=2e-3, material=STEEL)
+    crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
+    arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}
+    for grid in (None, Grid((0.0, 2e-3), (-4e-4, 4e-4), 320, 64)):
+        result = solve(Case(roller=crowned, **arguments), grid, stresses=False)
+        assert bool(result.converged)
+        assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)
+    steep = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(5e-3))
+    with pytest.raises(InvalidInputError, match=r"load_position = 5e-05: must be None, .* inclined"):
+        Case(roller=steep, **arguments)
+
+
+def balanced_tilt(scale: float) -> float:
+    """Tilt relative to the body far away that balances a load beside the middle, all lengths times `scale`."""
+    length, cells = 0.2e-3 * scale, 16
+    x = (np.arange(cells) + 0.5) * length / cells
+    y = (np.arange(cells) + 0.5 - cells / 2) * 1e-5 * scale
+    gap = xr.DataArray(
+        np.broadcast_to(y**2 / (2 * 5e-3 * scale), (cells, cells)), coords={"x": x, "y": y}, dims=("x", "y")
+    )
+    body = FiniteLengthSpace(length=length, material=STEEL)
+    result = solve_contact(body, gap, load=5.0 * scale**2, settings=ContactSettings(load_position=0.6 * length))
+    assert bool(result.converged)
+    line = displacement_field(body, result.pressure, x=x, y=[0.0], z=[length]).u_z[:, 0, 0]
+    return float(result.tilt) + float(np.polynomial.polynomial.polyfit(x, line, 1)[1])
+
+
+def test_a_balanced_load_does_not_depend_on_the_unit_of_length() -> None:
+    tilt = balanced_tilt(1.0)
+    # Four times finer quadratures of what frees the ends give 1.341672e-3.
+    assert tilt == pytest.approx(1.341672e-3, rel=1e-5)
+    assert [balanced_tilt(scale) for scale in (1e-4, 1e-6)] == pytest.approx([tilt, tilt], rel=1e-9)
+
+
+def test_a_tolerance_beyond_rounding_is_not_converged(on_cells, half_space: HalfSpace):
+    gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (24, 24))
+    with pytest.warns(ConvergenceWarning, match="penetration_error"):
+        result = solve_contact(half_space, gap, load=4 / 3, settings=ContactSettings(tolerance=1e-40))
+    assert not bool(result.converged)
+
+
+def test_several_approaches_are_a_dimension(on_cells) -> None:
+    gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.6, 1.6), (-1.6, 1.6), (32, 32))
+    body = HalfSpace(material=Material(0.75, 0.5))
+    steps = [0.25, 0.5, 1.0]
+    found = solve_contact(body, gap, approach=steps)
+    assert found["pressure"].dims == ("approach", "x", "y")
+    assert found["approach"].values.tolist() == steps
+    assert found["approach"].attrs["units"] == "m"
+    xr.testing.assert_allclose(
+        found.sel(approach=0.5).drop_vars("approach"), solve_contact(body, gap, approach=0.5).drop_vars("approach")
+    )
+    # Hertz: W = 4/3 E* R**(1/2) d**(3/2), with E* = R = 1
+    np.testing.assert_allclose(found["normal_load"], 4 / 3 * np.array(steps) ** 1.5, rtol=0.02)
+    for wrong in ([], [0.1, np.nan], [[0.1]], "deep"):
+        with pytest.raises(InvalidInputError, match="approach"):
+            solve_contact(body, gap, approach=wrong)
+    with pytest.raises(InvalidInputError, match="after"):
+        solve_contact(body, gap, approach=steps, settings=ContactSettings(after=found))
+
+
+def test_levers_are_over_the_largest() -> None:
+    for place in (0.0, 5.0):
+        grid = Grid.between(place + np.array([0.0, 1.0, 2.0, 4.0]), (0.0, 1.0), 2)
+        asked = Prescribed(3.0, place + 1.0)
+        assert asked.largest_arm(grid) == pytest.approx(2.0)
+        found = asked.resultants(grid)
+        assert found.lever is not None
+        assert found.lever[:, 0] == pytest.approx([-0.25, 0.25, 1.0])
+        assert found.total == pytest.approx(3.0 / grid.cell_area)

@@ -1,0 +1,75 @@
+"""Short rollers whose contacts are settled, and their peaks on finer cells."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, QuarterSpace, Roller, profiles
+from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.contact import Settings, contact_of
+from contactstudy.contact.refinement.refined_contact import RefinedContact, _ColumnSolver, refine_contact
+
+STEEL = Material(210e9, 0.3)
+HALF = HalfSpace(material=STEEL)
+RADIUS, PRESSURE, LENGTH = 5e-3, 1.5e9, 10e-3
+A = 4 * PRESSURE * RADIUS / (2 * STEEL.plane_strain_modulus)
+"""Hertz half-width of a rigid roller; twice that of an elastic one."""
+SHORT, SHORT_ELASTIC = 8 * A, 16 * A
+
+
+def filleted(radius: float, length: float = LENGTH, material: Material | None = None) -> Roller:
+    return Roller(radius=RADIUS, length=length, profile=profiles.Cylinder(fillet_radius=radius), material=material)
+
+
+def finite(length: float = LENGTH) -> FiniteLengthSpace:
+    return FiniteLengthSpace(length=length, material=STEEL)
+
+
+def settled(case: Case, accuracy: float = 0.01) -> RefinedContact:
+    return refine_contact(case, accuracy, 1e-6)
+
+
+def top_of(pressure: FloatArray) -> float:
+    """Largest pressure, between the cells along y too: the squared pressure is a parabola across the contact."""
+    squared = pressure**2
+    column = squared[squared.max(axis=1).argmax()]
+    at = int(column.argmax())
+    coefficients = np.polynomial.polynomial.polyfit([-1.0, 0.0, 1.0], column[at - 1 : at + 2], 2)
+    return float(np.sqrt(coefficients[0] - coefficients[1] ** 2 / (4 * coefficients[2])))
+
+
+def finer_peak(case: Case, found: RefinedContact, factor: int) -> float:
+    """Peak on `factor` times finer cells, along both axes."""
+    edges, grid = found.refined.edges, found.contact.shape.grid
+    fine = np.interp(np.arange((edges.size - 1) * factor + 1) / factor, np.arange(edges.size), edges)
+    solver = _ColumnSolver(case, grid.y_range[1], grid.cells_y * factor)
+    return top_of(contact_of(solver.shape(fine), Settings(1e-6)).pressure)
+
+
+CASES: dict[str, Case] = {
+    "flush": Case(body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "inside": Case(body=finite(9 * A), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "half-space": Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE),
+    "quarter": Case(
+        body=QuarterSpace(material=STEEL),
+        roller=filleted(0.2e-3, SHORT),
+        max_pressure=PRESSURE,
+        end_distance=0.5 * A,
+    ),
+    "mirror": Case(
+        body=FiniteLengthSpace(length=SHORT, material=STEEL, model="mirror"),
+        roller=filleted(0.2e-3, SHORT),
+        max_pressure=PRESSURE,
+    ),
+    "tilt": Case(body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, tilt=1e-3),
+    "load position": Case(
+        body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, load_position=0.51 * SHORT
+    ),
+    "coupled": Case(
+        body=finite(SHORT), roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE, friction=0.3, coupled=True
+    ),
+    "elastic inside": Case(body=finite(SHORT_ELASTIC), roller=filleted(0.2e-3, 12 * A, STEEL), max_pressure=PRESSURE),
+    "elastic overhanging": Case(
+        body=finite(12 * A), roller=filleted(0.2e-3, SHORT_ELASTIC, STEEL), max_pressure=PRESSURE, end_distance=-2 * A
+    ),
+}

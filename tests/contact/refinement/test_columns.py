@@ -1,0 +1,115 @@
+"""First columns: how wide they are, and that they follow a shape where it is low enough to be pressed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement.columns import (
+    BENT,
+    FIRST_COLUMN,
+    MOST_COLUMNS,
+    NARROWEST_BENT,
+    WIDEST,
+    AxialShape,
+    centres_of,
+    first_edges,
+)
+
+LENGTH = 20.0
+SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "crown": lambda x: 4e-3 * (x - 9.0) ** 2,
+    "inclined crown": lambda x: 4e-3 * (x - 9.0) ** 2 + 0.02 * x + 7.0,
+    "fillets": lambda x: 0.2 * np.maximum(np.abs(x - 10.0) - 9.0, 0.0) ** 2,
+    "wave": lambda x: 0.03 * np.cos(2.0 * x) - 3.0,
+    "deep wave": lambda x: 0.7 * np.cos(2.0 * x) - 3.0,
+    "chamfer": lambda x: 0.05 * np.maximum(x - 13.0, 0.0),
+    "steps at the ends": lambda x: np.where((x > 0) & (x < LENGTH), 0.0, 10.0),
+}
+
+
+def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
+    """Half-width 1, depth 0.05; lengths in some unit, and from some place on."""
+    return AxialShape(
+        start, start + unit * LENGTH, unit, 0.05 * unit, lambda x: unit * height((x - start) / unit), (0.0, 0.0)
+    )
+
+
+def bends(height: Callable[[FloatArray], FloatArray], low: FloatArray, high: FloatArray) -> FloatArray:
+    """Distance of the shape from its chord between some positions."""
+    part = np.linspace(1e-6, 1 - 1e-6, 201)
+    heights = height(low[:, None] + (high - low)[:, None] * part)
+    chord = heights[:, :1] + (heights[:, -1:] - heights[:, :1]) * part
+    return np.asarray(np.abs(heights - chord).max(axis=1))
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_low_columns_follow_the_shape_and_high_ones_need_not(name: str) -> None:
+    height = SHAPES[name]
+    edges, plain = first_edges(asked(height)), first_edges(asked(np.zeros_like))
+    widths, bent = np.diff(edges), bends(height, edges[:-1], edges[1:])
+    fine = np.linspace(1e-6, LENGTH - 1e-6, 20001)
+    own = edges[:-1, None] + widths[:, None] * np.linspace(1e-6, 1 - 1e-6, 201)
+    above = height(own).min(axis=1) - height(fine).min()
+    depth = 0.05
+    followed = (widths > NARROWEST_BENT) & (above < 2.9 * depth)
+    assert bent[followed].max(initial=0.0) <= 1.03 * BENT * depth
+    # A column is split only where it leaves its chord, or beside one that is narrow.
+    assert np.isin(plain, edges).all()
+    if name in ("chamfer", "steps at the ends"):
+        split = ~np.isin(edges, plain)
+        assert not split.any() or (name == "chamfer" and (np.abs(edges[split] - 13.0) < 3.0).all())
+    if name == "deep wave":  # crests are never pressed
+        crests = above > 6 * depth
+        assert crests.any()
+        assert np.median(widths[crests]) > 1.9 * np.median(widths[above < 0.5 * depth])
+
+
+@pytest.mark.parametrize("name", SHAPES)
+@pytest.mark.parametrize(("unit", "start"), [(2.0**-17, 0.0), (1.0, -8.0), (1.0, 32.0)])
+def test_neither_unit_nor_place_decides_anything(name: str, unit: float, start: float) -> None:
+    plain, other = first_edges(asked(SHAPES[name])), first_edges(asked(SHAPES[name], unit, start))
+    assert (other - start) / unit == pytest.approx(plain, abs=1e-9)
+
+
+@pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
+def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> None:
+    edges = first_edges(AxialShape(0.0, LENGTH, half_width, 1.0, np.zeros_like, (0.0, 0.0)))
+    widths = np.diff(edges)
+    narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * WIDEST))
+    assert 0.5 * narrowest < widths[0] <= narrowest * (1 + 1e-9)
+    assert widths.max() <= LENGTH / WIDEST * (1 + 1e-9)
+    assert widths.size < 2 * WIDEST + 2 * np.log2(LENGTH / narrowest)
+    half = widths[: widths.size // 2]
+    ratios = half[1:] / half[:-1]
+    assert (ratios <= 2 * (1 + 1e-9)).all()
+    growing = half[1:] < 0.7 * widths.max()
+    assert ratios[growing] == pytest.approx(2.0)
+    assert widths == pytest.approx(widths[::-1])
+
+
+@pytest.mark.parametrize("slope", [0.1, -0.1])
+def test_a_straight_incline_has_the_columns_of_a_level(slope: float) -> None:
+    """It rises by more than the depth within a column, but never leaves its chord."""
+    plain, inclined = first_edges(asked(np.zeros_like)), first_edges(asked(lambda x: slope * x))
+    assert inclined == pytest.approx(plain)
+
+
+def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
+    edges = first_edges(AxialShape(0.0, LENGTH, 1e-3, 1e-9, lambda x: 1e-9 * np.sin(300 * x), (0.0, 0.0)))
+    assert MOST_COLUMNS < edges.size <= 2 * MOST_COLUMNS
+    assert centres_of(np.array([1.0, 2.0, 5.0])).tolist() == [1.5, 3.5]
+
+
+@pytest.mark.parametrize("position", [5.1, 7.43, 11.9, 12.77])
+@pytest.mark.parametrize("width", [0.02, 0.1])
+def test_first_columns_contain_narrow_ridges(position: float, width: float) -> None:
+    """Ridges of a measured profile, narrower than the widest first column by a factor of 12 to 60."""
+    shape = asked(lambda x: 4e-3 * (x - 9.0) ** 2 - 0.05 * np.exp(-(((x - position) / width) ** 2)))
+    edges = first_edges(shape)
+    columns = np.diff(edges)[np.abs(centres_of(edges) - position) < 0.1]
+    assert columns.size
+    assert columns.max() <= 0.1

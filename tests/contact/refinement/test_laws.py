@@ -1,0 +1,219 @@
+"""The law of a singular end: which one it is, its intensity, and what an edge of small radius makes of it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError
+from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement.laws import RIGID, EndLaw, Sample, edge_peak, elastic_exponent, law_of
+
+HALVINGS = 0.1 * 0.5 ** np.arange(7)
+
+
+def column_means(edges: FloatArray, exponent: float, intensity: float, bend: float) -> FloatArray:
+    """Means over columns of ``K d**-m (1 + c d)``."""
+    first, second = 1 - exponent, 2 - exponent
+    primitive = edges**first / first + bend * edges**second / second
+    return np.asarray(intensity * np.diff(primitive) / np.diff(edges))
+
+
+def graded_edges(width: float) -> FloatArray:
+    return width * np.concatenate([np.arange(9.0), 8 + 2 * np.arange(1, 9), 24 + 4 * np.arange(1, 17)])
+
+
+@given(intensity=st.floats(1e-3, 1e9), bend=st.floats(-3.0, 3.0))
+def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, bend: float) -> None:
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
+    law = EndLaw("power", 0.5).with_intensity(edges, pressure, np.inf)
+    assert law.intensity == pytest.approx(intensity, rel=1e-6)
+    assert 0 < law.intensity_error < 5e-3 * intensity
+
+
+def test_intensity_is_read_where_the_end_itself_is_pressed_most() -> None:
+    # Random case 4007234: friction pressed both ends at different places along y, the other end more.
+    edges = graded_edges(1e-3)
+    end = column_means(edges, 0.5, 2.0, 0.0)
+    elsewhere = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
+    law = EndLaw("power", 0.5).with_intensity(edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf)
+    assert law.intensity == pytest.approx(2.0, rel=1e-6)
+    lifted = law.with_intensity(edges, np.stack([elsewhere, elsewhere], axis=1), np.inf)
+    assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
+
+
+@pytest.mark.parametrize("exponent", [0.5, np.nan])
+def test_an_end_pressed_on_few_columns_has_no_error_of_its_intensity(exponent: float) -> None:
+    # Random case 4004708: friction left a contact of five columns.
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
+    pressure[5:] = 0.0
+    law = EndLaw("power", exponent).with_intensity(edges, pressure, np.inf)
+    assert law.intensity_error == np.inf
+    assert law.intensity > 0
+    if exponent == 0.5:
+        assert law.intensity == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("exponent", [0.15, 0.226, 0.3, 0.45])
+def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
+    edges = graded_edges(1e-3)
+    pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
+    law = EndLaw("power", np.nan).with_intensity(edges, pressure, np.inf)
+    assert law.exponent == pytest.approx(exponent, abs=1e-3)
+    assert law.intensity == pytest.approx(2.0, rel=1e-2)
+
+
+def slope_of_a_wedge(angle: float, s: float) -> float:
+    """Slope of its loaded face under the pressure ``r**(s - 1)``, over this and a constant of the material.
+
+    Airy's function ``r**(s + 1) F(t)``; its constants go out of the ratio of two slopes.
+    """
+
+    def shapes(t: float) -> FloatArray:
+        """F, F' and F'' of the four parts."""
+        above, below = s + 1, s - 1
+        parts = [
+            (np.cos(above * t), -above * np.sin(above * t), -(above**2) * np.cos(above * t)),
+            (np.sin(above * t), above * np.cos(above * t), -(above**2) * np.sin(above * t)),
+            (np.cos(below * t), -below * np.sin(below * t), -(below**2) * np.cos(below * t)),
+            (np.sin(below * t), below * np.cos(below * t), -(below**2) * np.sin(below * t)),
+        ]
+        return np.array(parts).T
+
+    loaded, free = shapes(0.0), shapes(angle)
+    # Stresses over r**(s - 1): across s (s + 1) F, shear -s F'.
+    conditions = np.array([s * (s + 1) * loaded[0], loaded[1], free[0], free[1]])
+    _, b, _, d = np.linalg.solve(conditions, [-1.0, 0.0, 0.0, 0.0])
+    # Displacement across r**s: of the parts with s + 1 by 2 G u = -dF / r, of those with s - 1 also by their Laplacian.
+    return float(s * (-(s + 1) * b - (s - 1) * d - 4 * d))
+
+
+@pytest.mark.parametrize("s", [0.55, 0.7, 0.7736, 0.9])
+def test_slopes_of_wedges_are_those_of_the_exponents_equation(s: float) -> None:
+    quarter = np.sin(np.pi * s) / (2 * (np.sin(0.5 * np.pi * s) ** 2 - s**2))
+    half = 1 / np.tan(np.pi * s)
+    assert slope_of_a_wedge(0.5 * np.pi, s) / slope_of_a_wedge(np.pi, s) == pytest.approx(quarter / half)
+
+
+@given(ratio=st.floats(1e-3, 1e3))
+def test_exponents_between_those_of_a_rigid_edge_and_a_rigid_face(ratio: float) -> None:
+    exponent = elastic_exponent(ratio, 1.0)
+    assert 0 < exponent < RIGID
+    assert exponent == pytest.approx(elastic_exponent(5 * ratio, 5.0))
+    assert elastic_exponent(1.1 * ratio, 1.0) < exponent
+
+
+def samples(pressure: FloatArray) -> list[Sample]:
+    return [Sample(float(width), float(value)) for width, value in zip(HALVINGS, pressure, strict=True)]
+
+
+@given(exponent=st.floats(0.15, 0.5))
+def test_growing_as_a_power_is_told(exponent: float) -> None:
+    known, unknown = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
+    assert known == EndLaw("power", RIGID)
+    assert unknown is not None
+    assert unknown.kind == "power"
+    assert np.isnan(unknown.exponent)
+
+
+@given(share=st.floats(0.02, 0.2))
+def test_growing_as_a_logarithm_is_told(share: float) -> None:
+    growing = samples(1 + share * np.log(1 / HALVINGS))
+    law = law_of(growing, np.nan)
+    assert law is not None
+    assert (law.kind, law.exponent) == ("logarithm", 0.0)
+    assert law_of(growing, 0.2264) == EndLaw("power", 0.2264)
+    assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
+
+
+@given(power=st.floats(0.6, 2.0), share=st.floats(0.0, 1.0))
+def test_an_end_that_settles_has_no_law(power: float, share: float) -> None:
+    assert law_of(samples(1 - share * HALVINGS**power), np.nan) is None
+
+
+def test_few_samples_and_falling_pressures_have_no_law() -> None:
+    assert law_of(samples(HALVINGS**-0.5)[:3], np.nan) is None
+    assert law_of(samples(HALVINGS**0.5), np.nan) is None
+
+
+def test_an_end_that_is_pressed_on_first_share_columns_only_has_no_law() -> None:
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.0, 0.3])), np.nan) is None
+
+
+def test_exponent_of_theory_is_the_law_of_a_pressed_end() -> None:
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw("power", RIGID)
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
+
+
+@given(intensity=st.floats(1e3, 1e9), radius=st.floats(1e-7, 1e-3), factor=st.floats(0.1, 10.0))
+def test_peak_at_an_edge_scales_as_its_formula(intensity: float, radius: float, factor: float) -> None:
+    peak = edge_peak(intensity, 231e9, radius)
+    assert edge_peak(intensity, 231e9, factor * radius) == pytest.approx(peak * factor ** (-1 / 3))
+    assert edge_peak(factor * intensity, 231e9, radius) == pytest.approx(peak * factor ** (2 / 3))
+    assert edge_peak(intensity, factor * 231e9, radius) == pytest.approx(peak * factor ** (1 / 3))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [((0.0, 1e9, 1e-5), "intensity"), ((1e7, -1.0, 1e-5), "modulus"), ((1e7, 1e9, np.nan), "edge_radius")],
+)
+def test_impossible_edges_are_refused(arguments: tuple[float, float, float], name: str) -> None:
+    with pytest.raises(InvalidInputError, match=name):
+        edge_peak(*arguments)
+
+
+EDGES = np.array(
+    [0.0, 1.0, 2.0, 3.0, 3.2, 4.0, 5.0, 6.0, 7.0, 9.0, 12.0, 17.0, 25.0, 38.0, 64.0, 66.0, 90.0, 128.0, 135.0]
+)
+
+
+@pytest.mark.parametrize("unit", [1.0, 1e-6, 1e3])
+def test_columns_between_3_and_64_widths_from_the_end_count(unit: float) -> None:
+    """And between 6 and 128 of them for the error; what is nearer or farther may be anything."""
+    pressure = column_means(unit * EDGES, 0.5, 2.0, 0.01 / unit)[:, None]
+
+    def found(first: float) -> EndLaw:
+        other = pressure.copy()
+        other[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
+        return EndLaw("power", 0.5).with_intensity(unit * EDGES, other, np.inf)
+
+    plain = EndLaw("power", 0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    assert plain.intensity == pytest.approx(2.0)
+    for first in (2.0, 128.0):
+        assert found(first) == plain
+    for first in (3.0, 38.0):
+        assert found(first).intensity != pytest.approx(2.0, rel=1e-3)
+    for first in (64.0, 90.0):
+        assert found(first).intensity == pytest.approx(2.0)
+        assert found(first).intensity_error > 2 * plain.intensity_error
+
+
+@pytest.mark.parametrize("width", [1e-5, 1.0, 1e3])
+def test_an_end_close_to_that_of_the_body_has_a_larger_error(width: float) -> None:
+    """Beyond half of the room between them the law does not hold; the fit reaches to 64 widths."""
+    edges = width * EDGES
+    pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
+    wide, narrow = (
+        EndLaw("power", 0.5).with_intensity(edges, pressure, room * width).intensity_error for room in (129.0, 127.0)
+    )
+    assert wide == pytest.approx(3e-3 * 2.0)
+    assert narrow - wide == pytest.approx(0.08 * 2.0)
+    nearly_flush = EndLaw("power", 0.5).with_intensity(edges, pressure, 2.9 * width)
+    assert nearly_flush.intensity_error == np.inf
+
+
+def test_no_elastic_end_is_sharper_than_a_rigid_one() -> None:
+    edges = graded_edges(1e-3)
+    law = EndLaw("power", np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
+    assert 0.49 < law.exponent <= 0.5
+
+
+def test_a_logarithm_is_told_however_the_columns_were_split() -> None:
+    widths = 0.1 * np.cumprod([1.0, 0.25, 0.25, 0.25, 0.5, 0.5])
+    law = law_of([Sample(float(each), float(1 - 0.1 * np.log(each))) for each in widths], np.nan)
+    assert law is not None
+    assert law.kind == "logarithm"

@@ -1,0 +1,167 @@
+"""A prescribed approach takes the load that Hertz states, and the load that gives this approach, with its error."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    Rolling,
+    profiles,
+    report,
+    solve,
+)
+from contactstudy.analysis import solved_case
+from contactstudy.case.case import SMALLEST_HALF_WIDTH
+from contactstudy.case.case import Case as AnyCase
+from contactstudy.contact.refinement import refined_contact
+from contactstudy.contact.refinement.refined_contact import (
+    ABOVE,
+    WIDTH_PART,
+    RefinedContact,
+    _slice_load,
+    contact_at_approach,
+    refine_contact,
+    search_load,
+)
+
+STEEL = Material(210e9, 0.3)
+RADIUS, APPROACH = 5e-3, 2e-6
+BALL = Case(
+    body=HalfSpace(material=STEEL),
+    roller=Roller(radius=RADIUS, length=0.8e-3, profile=profiles.FullCrown(crown_radius=RADIUS)),
+    approach=APPROACH,
+)
+HERTZ = 4 / 3 * STEEL.plane_strain_modulus * np.sqrt(RADIUS) * APPROACH**1.5  # Johnson (1985), 4.23
+SHORT = Case(
+    body=FiniteLengthSpace(length=0.3e-3, material=STEEL),
+    roller=Roller(radius=RADIUS, length=0.3e-3, profile=profiles.FullCrown(crown_radius=0.1)),
+    approach=1.5e-6,
+    tilt=5e-4,
+    friction=0.2,
+    coupled=True,
+)
+
+
+def test_a_ball_carries_hertz_load() -> None:
+    result = solve(BALL, stresses=False)
+    assert abs(float(result.normal_load) - HERTZ) < float(result.normal_load_error) < 2e-3 * HERTZ
+    assert float(result.approach) == APPROACH
+    assert bool(result.converged)
+    peak = 2 * STEEL.plane_strain_modulus / np.pi * np.sqrt(APPROACH / RADIUS)  # Johnson (1985), 4.24
+    assert abs(float(result.peak_pressure) - peak) < float(result.peak_pressure_error)
+
+
+@pytest.mark.slow
+def test_between_free_ends_it_is_the_approach_of_the_load() -> None:
+    pressed = solve(SHORT, stresses=False, accuracy=0.1)
+    loaded = replace(SHORT, approach=None, load=float(pressed.normal_load))
+    other = solve(loaded, stresses=False, accuracy=0.1)
+    assert float(pressed.approach) == SHORT.approach
+    assert float(other.approach) == pytest.approx(SHORT.approach, rel=1e-3)
+    assert float(pressed.peak_pressure) == pytest.approx(float(other.peak_pressure), rel=0.01)
+    assert float(pressed.hertz_half_width) == pytest.approx(loaded.hertz_half_width)
+    assert "normal_load_error" not in other
+
+
+def test_tractions_are_found_at_the_approach() -> None:
+    rolling = replace(BALL, friction=0.1, motion=Rolling(longitudinal_creepage=5e-4))
+    result = solve(rolling, stresses=False, accuracy=0.1)
+    assert float(result.approach) == APPROACH
+    assert float(result.normal_load) == pytest.approx(HERTZ, rel=5e-3)
+    assert 0 < abs(float(result.force_y)) < 0.1 * float(result.normal_load)
+    assert "normal_load_error" in result
+
+
+def test_given_cells_and_rough_surfaces_take_it_too() -> None:
+    cells = Grid((0.2e-3, 0.6e-3), (-0.2e-3, 0.2e-3), 64, 64)
+    assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ, rel=0.02)
+    flat = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
+    straight = replace(SHORT, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)
+    smooth = solve(straight, stresses=False, accuracy=0.1)
+    assert float(solve(straight, roughness=flat, stresses=False).normal_load) == pytest.approx(
+        float(smooth.normal_load), rel=0.02
+    )
+
+
+def test_a_far_first_guess_is_corrected() -> None:
+    """A steep crown carries a hundredth of what its slices as line contacts would."""
+    steep = replace(BALL, roller=replace(BALL.roller, radius=0.5, profile=profiles.FullCrown(crown_radius=1e-3)))
+    found = contact_at_approach(steep, 0.1, 1e-4)
+    assert found.refined.contact.approach == APPROACH
+
+
+def test_results_keep_what_was_asked_and_what_needs_a_load_says_so() -> None:
+    result = solve(BALL, stresses=False, accuracy=0.1)
+    case = solved_case(result)
+    assert case == BALL
+    assert "approach = 2 µm" in repr(case)
+    assert "approach" in report.case_table(case)._repr_html_()
+    with pytest.raises(InvalidInputError, match="give load = normal_load of its result"):
+        _ = BALL.hertz_half_width
+
+
+CYLINDER = Case(
+    body=FiniteLengthSpace(length=5e-3, material=STEEL),
+    roller=Roller(radius=RADIUS, length=2e-3),
+    end_distance=1.5e-3,
+    approach=3e-6,
+)
+
+
+def test_a_first_guess_is_hertz_line_contact_in_slices_of_a_part_of_the_cut() -> None:
+    """Of a slice at depth d: ``pi E* b**2 / 4 R`` with b a part of ``sqrt(2 R d)``, so the load is as all depths."""
+    part = np.pi / 2 * WIDTH_PART**2 * STEEL.plane_strain_modulus
+    assert _slice_load(CYLINDER) == pytest.approx(part * 3e-6 * 2e-3)
+    start, stop = BALL.contact_range
+    x = np.linspace(start, stop, 20001)
+    depth = np.maximum(APPROACH - (RADIUS - np.sqrt(RADIUS**2 - (x - 0.5 * (start + stop)) ** 2)), 0.0)
+    assert _slice_load(BALL) == pytest.approx(part * depth.mean() * (stop - start), rel=0.01)
+    # Of a contact between two slices: the least load that a case may have, or a little more.
+    tilted = replace(BALL, body=FiniteLengthSpace(length=2e-3, material=STEEL), end_distance=0.6e-3, tilt=4e-4)
+    least = _slice_load(replace(tilted, approach=tilted.first_touch + 1e-11))
+    assert replace(BALL, approach=None, load=least).hertz_half_width == pytest.approx(2 * SMALLEST_HALF_WIDTH * RADIUS)
+
+
+@pytest.mark.parametrize(("case", "most"), [(BALL, 4), (SHORT, 5)])
+def test_few_loads_are_tried(case: Case, most: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[float] = []
+
+    def noted(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+        tried.append(loaded.normal_load)
+        return refine_contact(loaded, accuracy, tolerance)
+
+    monkeypatch.setattr(refined_contact, "refine_contact", noted)
+    contact_at_approach(case, 0.1, 1e-4)
+    assert len(tried) <= most
+
+
+def test_loads_follow_the_power_of_the_depth_that_the_last_two_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a contact whose depth is made up: as a ball's."""
+    own = refine_contact(replace(BALL, approach=None, load=HERTZ), 0.1, 1e-4)
+    tried: list[float] = []
+
+    def made_up(loaded: AnyCase, accuracy: float, tolerance: float) -> RefinedContact:
+        tried.append(loaded.normal_load)
+        touch = float(own.contact.shape.gap.values.min())
+        depth = (APPROACH - touch) * (loaded.normal_load / HERTZ) ** (2 / 3)
+        return replace(own, contact=replace(own.contact, approach=touch + depth))
+
+    monkeypatch.setattr(refined_contact, "refine_contact", made_up)
+    search_load(BALL, APPROACH, 0.2 * HERTZ, 0.1, 1e-4)
+    factors = np.array(tried) / HERTZ
+    assert factors[:2] == pytest.approx([0.2, 0.2 * ABOVE * (0.2 ** (-2 / 3)) ** 1.2])
+    assert factors[2:] == pytest.approx([ABOVE])
+    tried.clear()
+    search_load(BALL, APPROACH, 1.06 * HERTZ, 0.1, 1e-4)
+    assert len(tried) == 1

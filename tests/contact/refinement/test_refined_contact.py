@@ -1,0 +1,302 @@
+"""Contacts on columns that follow them: against finer cells, uniform cells, known peaks; what is kept of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    Roller,
+    cache,
+    choose_grid,
+    profiles,
+    solve,
+)
+from contactstudy.checks import FloatArray
+from contactstudy.contact.refinement import refined_contact as module
+from contactstudy.contact.refinement.refined_contact import (
+    _axial_shape,
+    _cell_number_y,
+    _roller_columns,
+    refine_contact,
+)
+from contactstudy.errors import WindowError
+from tests.contact.refinement.rollers import (
+    CASES,
+    HALF,
+    LENGTH,
+    PRESSURE,
+    RADIUS,
+    SHORT,
+    STEEL,
+    A,
+    filleted,
+    finer_peak,
+    finite,
+    settled,
+    top_of,
+)
+
+KNOWN_FILLETS = {0.5e-3: 2.8565, 0.2e-3: 3.6418, 0.1e-3: 4.4744, 0.05e-3: 5.556}
+"""Peaks over p0 on a half-space from an independent refinement to 570 columns down to 0.0004 a."""
+
+
+@pytest.mark.parametrize("fillet", KNOWN_FILLETS)
+def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells(fillet: float) -> None:
+    case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
+    found = settled(case)
+    peak, error = found.refined.peak, found.refined.peak_error
+    finer = finer_peak(case, found, 2)
+    assert found.refined.settled
+    assert abs(peak - finer) <= error <= 0.01 * peak
+    assert abs(peak - finer) < 0.003 * peak
+    assert peak / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=2e-3)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("fillet", KNOWN_FILLETS)
+def test_stated_peak_of_a_fillet_is_within_its_error_of_four_times_finer_cells(fillet: float) -> None:
+    case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
+    found = settled(case)
+    finer = finer_peak(case, found, 4)
+    assert finer / PRESSURE == pytest.approx(KNOWN_FILLETS[fillet], rel=1e-3)
+    assert abs(found.refined.peak - finer) <= found.refined.peak_error <= 0.01 * found.refined.peak
+    assert abs(found.refined.peak - finer) < 0.01 * finer
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("body", [finite(), QuarterSpace(material=STEEL)], ids=["finite", "quarter"])
+def test_stated_peak_between_free_ends_is_within_its_error_of_finer_cells(
+    body: FiniteLengthSpace | QuarterSpace,
+) -> None:
+    case = Case(body=body, roller=filleted(0.2e-3), max_pressure=PRESSURE)
+    found = settled(case)
+    assert abs(found.refined.peak - finer_peak(case, found, 2)) <= found.refined.peak_error
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_contact_is_that_on_uniform_cells(name: str) -> None:
+    case = CASES[name]
+    found = solve(case, stresses=False)
+    uniform = solve(case, choose_grid(case, cells_x=24, cells_y=16, window=3.0), stresses=False)
+    peak, error = float(found.peak_pressure), float(found.peak_pressure_error)
+    assert bool(found.converged)
+    assert error <= 0.01 * peak
+    # A fillet of 3 a is within half a percent on these uniform cells, an edge of the body within three.
+    allowed = 0.03 if case.roller.material is not None else 0.006
+    assert peak == pytest.approx(top_of(uniform.pressure.values), rel=allowed)
+    assert float(found.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
+    assert float(found.tilt) == pytest.approx(float(uniform.tilt), rel=5e-3, abs=1e-9)
+    assert abs(float(found.load_error)) < 1e-9
+    forces = found.pressure * found.x_width * float(found.y[1] - found.y[0])
+    assert float(forces.sum()) == pytest.approx(case.normal_load, rel=1e-9)
+    if case.load_position is not None:
+        assert float((forces * found.x).sum() / forces.sum()) == pytest.approx(case.load_position, rel=1e-9)
+    # The load per length, over the same parts of the roller.
+    parts = np.linspace(*case.contact_range, 9)
+    loads = [load_up_to(each, parts) for each in (found, uniform)]
+    assert np.abs(loads[0] - loads[1]).max() < 2e-3 * case.normal_load
+
+
+def load_up_to(result: xr.Dataset, x: FloatArray) -> FloatArray:
+    widths = (
+        result.x_width.values
+        if "x_width" in result.coords
+        else np.full(result.x.size, float(result.x[1] - result.x[0]))
+    )
+    edges = np.append(result.x.values - 0.5 * widths, result.x.values[-1] + 0.5 * widths[-1])
+    carried = (result.pressure.values.sum(axis=1) * widths) * float(result.y[1] - result.y[0])
+    return np.interp(x, edges, np.append(0.0, np.cumsum(carried)))
+
+
+@pytest.mark.parametrize("name", ["flush", "half-space"])
+def test_mirrored_case_has_the_mirrored_contact(name: str) -> None:
+    tilts = [
+        settled(Case(body=CASES[name].body, roller=CASES[name].roller, max_pressure=PRESSURE, tilt=tilt), 0.02)
+        for tilt in (8e-4, -8e-4)
+    ]
+    there, back = (each.refined for each in tilts)
+    assert there.peak == pytest.approx(back.peak, rel=1e-4)
+    assert np.allclose(there.pressure.max(axis=1), back.pressure[::-1].max(axis=1), atol=1e-4 * there.peak)
+
+
+def test_table_of_points_of_a_fillet_has_the_peak_of_the_fillet() -> None:
+    made = filleted(0.2e-3).profile
+    near = np.concatenate([np.linspace(0, 0.2e-3, 401), np.linspace(0.21e-3, 1e-3, 80)])
+    x = np.unique(np.concatenate([-LENGTH / 2 + near, np.linspace(-4e-3, 4e-3, 161), LENGTH / 2 - near]))
+    table = profiles.Measured(x.tolist(), made.drop(x, LENGTH).tolist(), largest_spike=1e-3)
+    peaks = []
+    for profile in (made, table):
+        roller = Roller(radius=RADIUS, length=LENGTH, profile=profile)
+        found = settled(Case(body=HALF, roller=roller, max_pressure=PRESSURE)).refined
+        assert found.settled
+        peaks.append(found.peak)
+    assert peaks[1] == pytest.approx(peaks[0], rel=0.01)
+
+
+@pytest.mark.parametrize("accuracy", [0.0, -0.01, 9e-4, 0.11, np.nan, "high"])
+def test_accuracy_that_cannot_be_reached_is_refused(accuracy: object) -> None:
+    with pytest.raises(InvalidInputError, match="accuracy"):
+        solve(CASES["half-space"], accuracy=accuracy, stresses=False)  # type: ignore[arg-type]
+
+
+@pytest.mark.slow
+def test_coupled_friction_is_in_the_values_that_are_stated() -> None:
+    """The columns follow the uncoupled contact, but the values belong to the pressure that is returned."""
+    body = FiniteLengthSpace(length=8 * A, material=Material(210e9, 0.1))
+    roller = Roller(radius=RADIUS, length=8 * A)
+    case = Case(body=body, roller=roller, max_pressure=PRESSURE, friction=0.5, coupled=True)
+    found = solve(case, stresses=False)
+    fine = solve(case, choose_grid(case, cells_x=32, cells_y=32), stresses=False)
+    uncoupled = solve(Case(body=body, roller=roller, max_pressure=PRESSURE), stresses=False)
+    difference = abs(float(found["peak_pressure"] - fine["pressure"].max()))
+    assert difference < float(found["peak_pressure_error"])
+    assert float(found["peak_pressure"]) == pytest.approx(float(found["pressure"].max()), rel=3e-3)
+    assert abs(float(found["peak_pressure"] / uncoupled["peak_pressure"]) - 1) > 1e-3
+
+
+@pytest.mark.parametrize(("accuracy", "least"), [(0.05, 8), (0.01, 17), (0.002, 37), (0.001, 53)])
+def test_the_peak_has_cells_across_it_as_the_accuracy_asks(accuracy: float, least: int) -> None:
+    found = refine_contact(CASES["half-space"], accuracy, 1e-6)
+    pressure = found.contact.pressure
+    assert int((pressure[int(pressure.max(axis=1).argmax())] > 0).sum()) >= least
+
+
+class _Crown:
+    """A profile of a user's own, which can be changed after it has been used."""
+
+    def __init__(self, radius: float) -> None:
+        self.radius = radius
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        return np.asarray(x**2 / (2 * self.radius))
+
+
+def test_contacts_are_kept_for_values_only() -> None:
+    cache.clear()
+    case = Case(body=HALF, roller=filleted(0.2e-3, SHORT), max_pressure=PRESSURE)
+    first = refine_contact(case, 0.05, 1e-6)
+    assert refine_contact(replace(case, friction=0.2), 0.05, 1e-6) is first
+    assert refine_contact(case, 0.04, 1e-6) is not first
+    assert refine_contact(replace(case, friction=0.2, coupled=True), 0.05, 1e-6) is not first
+    own = _Crown(5e-3)
+    changed = Case(body=HALF, roller=Roller(radius=5e-3, length=SHORT, profile=own), max_pressure=PRESSURE)
+    before = refine_contact(changed, 0.05, 1e-6).refined.peak
+    own.radius = 2.5e-3
+    assert refine_contact(changed, 0.05, 1e-6).refined.peak > 1.05 * before
+
+
+def test_what_a_user_does_to_a_result_does_not_reach_the_next_one() -> None:
+    first = solve(CASES["half-space"], stresses=False, accuracy=0.05)
+    kept = first["pressure"].values.copy()
+    for name in ("pressure", "gap", "displacement_z", "initial_gap"):
+        first[name].values[:] = 0.0
+    np.testing.assert_array_equal(solve(CASES["half-space"], stresses=False, accuracy=0.05)["pressure"], kept)
+
+
+@pytest.mark.parametrize("part", [0.2, 0.5, 0.75, 0.95])
+@pytest.mark.parametrize("accuracy", [0.2, 0.05, 0.01, 0.002])
+def test_cells_across_are_the_fewest_that_leave_a_quarter_of_the_accuracy(accuracy: float, part: float) -> None:
+    """What lies between cells is 0.7 over the square of their number across the contact."""
+    cells = _cell_number_y(part, accuracy)
+
+    def left(cells: int) -> float:
+        return 0.7 / (cells * part) ** 2
+
+    assert left(cells) <= 0.25 * accuracy or cells == 256
+    assert left(cells // 2) > 0.25 * accuracy or cells == 32
+
+
+@pytest.mark.parametrize("distance", [-0.2e-3, 0.0, 1e-15, 1e-9, 0.3e-3])
+def test_the_face_goes_on_beyond_an_end_of_the_roller(distance: float) -> None:
+    """By what is left to the end of the body; by nothing where both end together, or where the roller overhangs."""
+    body = finite(1.5e-3)
+    case = Case(body=body, roller=filleted(0.1e-3, 1e-3), max_pressure=PRESSURE, end_distance=distance)
+    shape = _axial_shape(case)
+    room = shape.room
+    assert shape.depth == pytest.approx(case.hertz_half_width**2 / (2 * RADIUS))
+    assert (shape.start, shape.stop) == pytest.approx((max(distance, 0.0), min(distance + 1e-3, 1.5e-3)))
+    assert room == pytest.approx((max(distance, 0.0) if distance > 1e-12 else 0.0, 0.5e-3 - distance))
+    assert room[0] == 0.0 or distance > 1e-12
+
+
+def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, tried = Case(body=HALF, roller=filleted(0.2e-3), max_pressure=PRESSURE), []
+
+    def too_narrow(case: Case, half_window: float, accuracy: float, tolerance: float) -> object:
+        tried.append(half_window / case.hertz_half_width)
+        if len(tried) < 5:
+            raise WindowError("too narrow")
+        return "found"
+
+    monkeypatch.setattr(module, "_refine_in_window", too_narrow)
+    assert module._refine_contact(module._Request(case, 0.01, 1e-6)) == "found"
+    assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
+
+
+FITTED = {
+    "peaks at fillets": Case(body=HALF, roller=filleted(0.2e-3, 1e-3), max_pressure=PRESSURE),
+    "even": Case(
+        body=FiniteLengthSpace(length=1e-3, material=STEEL, model="mirror"),
+        roller=Roller(radius=RADIUS, length=1e-3),
+        max_pressure=PRESSURE,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FITTED)
+def test_the_window_fits_the_contact(name: str) -> None:
+    """A tenth wider at least, and by no more than one step of the windows that cases share, and a rough cell."""
+    contact = settled(FITTED[name], 0.05).contact
+    grid = contact.shape.grid
+    reach = np.abs(grid.y[contact.pressure.any(axis=0)]).max() + 0.5 * grid.dy
+    assert 1.05 < grid.y_range[1] / reach < 1.1 * 2 ** (1 / 6) * 1.15
+
+
+def test_columns_of_a_grid_that_begins_elsewhere() -> None:
+    grid = Grid.between(np.array([-3.0, -2.0, -1.0, 1.0, 1.5, 2.0, 4.0]), (0.0, 1.0), 2)
+    assert _roller_columns(grid, np.array([1.0, 1.5, 2.0])) == slice(3, 5)
+    assert _roller_columns(grid, np.array([-2.0 + 1e-12, -1.0])) == slice(1, 2)
+
+
+@dataclass(frozen=True)
+class Wavy(profiles.Shape):
+    """A slight crown with waves."""
+
+    crown_radius: float
+    amplitude: float
+    wave: float
+
+    def drop(self, x: FloatArray, length: float) -> FloatArray:
+        waves = self.amplitude * (1 - np.cos(2 * np.pi * np.asarray(x) / self.wave))
+        return np.asarray(x) ** 2 / (2 * self.crown_radius) + waves
+
+
+def test_every_crest_of_a_wavy_profile_is_followed() -> None:
+    """Some are pressed though they lie deeper than the first columns look: the approach is several a**2/2R."""
+    length, wave = 4e-3, 0.4e-3
+    roller = Roller(radius=RADIUS, length=length, profile=Wavy(2.0, 0.6e-6, wave))
+    case = Case(body=finite(length), roller=roller, max_pressure=0.7e9)
+    refined = solve(case, stresses=False)
+    uniform = solve(case, choose_grid(case, cells_x=4, cells_y=12, window=3.0), stresses=False)
+    for crest in range(5):
+        at = abs(abs(refined.x - length / 2) - crest * wave) < 0.35 * wave
+        others = abs(abs(uniform.x - length / 2) - crest * wave) < 0.35 * wave
+        loads = [
+            float((one.pressure.sum("y") * widths).where(where).sum() * (one.y[1] - one.y[0]))
+            for one, widths, where in (
+                (refined, refined.x_width, at),
+                (uniform, float(uniform.x[1] - uniform.x[0]), others),
+            )
+        ]
+        assert loads[0] == pytest.approx(loads[1], rel=0.02)
+    assert abs(float(refined.peak_pressure) - float(uniform.pressure.max())) <= 1.5 * float(refined.peak_pressure_error)

@@ -1,0 +1,382 @@
+"""Columns that follow a pressure: which are split, what is read, when the refinement ends; made-up pressures."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.refinement.columns import MOST_COLUMNS, STEEPEST, AxialShape, first_edges, split
+from contactstudy.contact.refinement.laws import RIGID, EndLaw
+from contactstudy.contact.refinement.refinement import (
+    END_COLUMN,
+    LAST_COLUMNS,
+    SHARPEST,
+    ColumnPressure,
+    RoughColumns,
+    _change_error,
+    _Refinement,
+    refine_columns,
+    replace_pressure,
+    rough_columns,
+)
+
+HALF_WIDTH, LENGTH = 1.0, 20.0
+Y = (np.arange(16) - 7.5) / 8
+
+
+def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), elastic: bool = False) -> AxialShape:
+    known = [np.nan if elastic or each == 0 else RIGID for each in room]
+    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, (known[0], known[1]))
+
+
+def pressed(pressure: FloatArray) -> ColumnPressure:
+    """Contact whose columns that are not pressed are far from it."""
+    return ColumnPressure(np.asarray(pressure), lambda: np.where(pressure.any(axis=1), 0.0, np.inf))
+
+
+def averaged(along: Callable[[FloatArray], FloatArray]) -> Callable[..., ColumnPressure]:
+    """Solver that returns means over columns of a made-up pressure along the axis, elliptic across."""
+    nodes, weights = np.polynomial.legendre.leggauss(20)
+
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        if start is not None:
+            assert start.shape == (edges.size - 1, Y.size)
+        within = 0.5 * (edges[1:] + edges[:-1])[:, None] + 0.5 * np.diff(edges)[:, None] * nodes
+        means = 0.5 * along(within) @ weights
+        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    return solve
+
+
+@st.composite
+def marked_edges(draw: st.DrawFn) -> tuple[FloatArray, BoolArray]:
+    ratios = draw(st.lists(st.floats(0.4, 2.5), min_size=1, max_size=20))
+    edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
+    chosen = draw(st.lists(st.booleans(), min_size=edges.size - 1, max_size=edges.size - 1))
+    return edges, np.array(chosen)
+
+
+@given(marked=marked_edges())
+def test_splitting_halves_marked_columns_and_keeps_edges_and_growth(marked: tuple[FloatArray, BoolArray]) -> None:
+    edges, marks = marked
+    finer = split(edges, marks)
+    assert np.all(np.isin(edges, finer))
+    centres = 0.5 * (edges[1:] + edges[:-1])
+    assert np.all(np.isin(centres[marks], finer))
+    widths = np.diff(finer)
+    assert np.all(widths > 0)
+    if marks.any():
+        assert np.all(np.maximum(widths[1:] / widths[:-1], widths[:-1] / widths[1:]) <= STEEPEST * (1 + 1e-12))
+
+
+@given(length=st.floats(1.0, 300.0))
+def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> None:
+    edges = first_edges(shape(length))
+    widths = np.diff(edges)
+    assert (edges[0], edges[-1]) == (0.0, length)
+    assert widths[0] <= 0.1 * HALF_WIDTH * (1 + 1e-9)
+    assert np.allclose(widths, widths[::-1])
+    assert np.all(widths[1 : widths.size // 2] / widths[: widths.size // 2 - 1] <= STEEPEST)
+
+
+def test_first_columns_are_split_where_the_shape_bends() -> None:
+    fillet, kink = 3.0, 17.0
+    bent = AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet, (0.0, 0.0))
+    widths = np.diff(first_edges(bent))
+    plain = np.diff(first_edges(shape()))
+    assert widths.size > plain.size
+    assert widths[-len(plain) // 3 :].max() < plain.max()
+
+
+BUMPS: dict[str, Callable[[FloatArray], FloatArray]] = {
+    "narrow": lambda x: 1 + 2 * np.exp(-(((x - 3.3) / 0.15) ** 2)),
+    "contact's end": lambda x: np.sqrt(np.maximum(1 - ((x - 10.0) / 8.0) ** 2, 0)),
+    "lesser peak": lambda x: 1 + np.exp(-(((x - 2.0) / 0.3) ** 2)) + 0.5 * np.exp(-(((x - 17.0) / 0.2) ** 2)),
+    "falls to the end": lambda x: 1 - 0.5 * np.exp(-x / 0.3) - 0.4 * np.exp(-(LENGTH - x) / 0.5),
+    "even": lambda x: np.ones_like(x),
+}
+
+
+@pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.003])
+@pytest.mark.parametrize("name", BUMPS)
+def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float) -> None:
+    along = BUMPS[name]
+    found = refine_columns(averaged(along), shape(), accuracy)
+    peak = float(along(np.linspace(0.0, LENGTH, 200001)).max())
+    assert found.settled
+    assert found.laws == (None, None)
+    assert abs(found.peak - peak) <= found.peak_error <= accuracy * peak * (1 + 1e-9)
+    ends = along(np.array([0.0, LENGTH]))
+    for end, error, exact in zip(found.ends, found.end_errors, ends, strict=True):
+        assert abs(end - exact) <= error + 1e-12
+
+
+def test_tighter_accuracy_takes_more_columns() -> None:
+    sizes = [refine_columns(averaged(BUMPS["narrow"]), shape(), each).edges.size for each in (0.02, 0.003, 0.0015)]
+    assert sizes[0] < sizes[1] < sizes[2]
+
+
+@given(at=st.floats(0.5, 19.5), height=st.floats(0.5, 3.0), width=st.floats(0.2, 2.0))
+def test_mirrored_pressure_is_refined_to_mirrored_columns(at: float, height: float, width: float) -> None:
+    def bump(x: FloatArray) -> FloatArray:
+        return np.asarray(1 + height * np.exp(-(((x - at) / width) ** 2)))
+
+    there = refine_columns(averaged(bump), shape(), 0.02)
+    back = refine_columns(averaged(lambda x: bump(LENGTH - x)), shape(), 0.02)
+    assert back.peak == pytest.approx(there.peak, rel=2e-3)
+    assert abs(back.edges.size - there.edges.size) <= 4
+    assert abs(there.peak - float(bump(np.linspace(0, LENGTH, 20001)).max())) <= there.peak_error
+
+
+@pytest.mark.parametrize("exponent", [0.5, 0.25])
+def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent: float) -> None:
+    bend = 0.02
+
+    def exact(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        first, second = (edges**power / power for power in (1 - exponent, 2 - exponent))
+        means = 0.7 * np.diff(first + bend * second) / np.diff(edges)
+        return pressed(means[:, None] * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    found = refine_columns(exact, shape(room=(np.inf, 0.0), elastic=exponent != RIGID), 0.01)
+    law, other = found.laws
+    assert law is not None
+    assert other is None
+    assert np.isinf([found.peak, found.peak_error, found.ends[0], found.end_errors[0]]).all()
+    assert law.kind == "power"
+    assert law.exponent == pytest.approx(exponent, abs=0.02)
+    assert np.diff(found.edges)[0] <= SHARPEST * HALF_WIDTH
+    assert found.ends[1] == pytest.approx(0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.end_errors[1])
+    # K is that of the row of cells beside y = 0.
+    assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
+
+
+def test_what_cannot_be_settled_ends_at_the_most_columns_and_says_so() -> None:
+    def restless(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        noise = np.random.default_rng(edges.size).random((edges.size - 1, 1))
+        noise[[0, 1, -2, -1]] = 0.0
+        return pressed((1 + noise) * np.sqrt(np.maximum(1 - Y**2, 0)))
+
+    found = refine_columns(restless, shape(), 0.001)
+    assert not found.settled
+    assert found.edges.size <= 2 * MOST_COLUMNS
+    assert found.peak_error > 0.001 * found.peak
+
+
+def power_law(x: FloatArray) -> FloatArray:
+    """A pressure that is singular at the first end."""
+    return np.asarray(0.7 / np.sqrt(x))
+
+
+FOLLOWED = BUMPS | {
+    "singular": power_law,
+    "a logarithm": lambda x: 1 - 0.3 * np.log(x / LENGTH),
+    "one half only": lambda x: np.sqrt(np.maximum(1 - ((x - 4.0) / 3.0) ** 2, 0)),
+    "rises to one end": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2),
+    "rises to one end below a peak": lambda x: 1 + np.exp(-(LENGTH - x) / 0.2) + 3 * np.exp(-((x - 5.0) ** 2)),
+}
+
+
+@pytest.mark.parametrize(
+    ("unit", "place", "side"), [(2.0**-17, 0.0, 0), (1.0, -8.0, 0), (1.0, 64.0, 1), (2.0**-17, 0.0, 1)]
+)
+@pytest.mark.parametrize("name", FOLLOWED)
+def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float, place: float, side: int) -> None:
+    """Found from either end, elsewhere and in other units, of length and of pressure, the columns are the same."""
+    pressure, along = 2.0**37 if unit < 1 else 1.0, averaged(FOLLOWED[name])
+
+    def own(x: FloatArray) -> FloatArray:
+        """Distances from the first end, in the plain unit."""
+        return x / unit - place if side == 0 else LENGTH - (x / unit - place)
+
+    def height(x: FloatArray) -> FloatArray:
+        return np.asarray(0.02 * np.maximum(x - 17.0, 0) ** 2)
+
+    def solve(edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
+        back = slice(None, None, 1 - 2 * side)
+        return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
+
+    room, known = (3.0, 0.0), (RIGID, np.nan)
+    plain = refine_columns(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room, known), 0.02)
+    limits, beyond = unit * (place + np.array([0.0, LENGTH])), (unit * room[side], unit * room[1 - side])
+    sharp = known[:: 1 - 2 * side]
+    elsewhere = AxialShape(*limits, unit * HALF_WIDTH, unit * 0.05, lambda x: unit * height(own(x)), beyond, sharp)
+    other = refine_columns(solve, elsewhere, 0.02)
+    assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
+    assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
+    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads", "load_errors"):
+        factor = pressure * unit if key.startswith("load") else pressure
+        values = np.array(getattr(other, key)) / factor
+        assert (values if side == 0 else values[::-1]) == pytest.approx(getattr(plain, key), rel=1e-6), key
+    for found, law in zip(other.laws if side == 0 else other.laws[::-1], plain.laws, strict=True):
+        assert (found is None) == (law is None)
+        if found and law:
+            factor = pressure * unit**law.exponent
+            assert (found.kind, found.exponent) == (law.kind, pytest.approx(law.exponent))
+            for key in ("intensity", "intensity_error"):
+                assert getattr(found, key) / factor == pytest.approx(getattr(law, key), rel=1e-5, nan_ok=True)
+
+
+def outermost(name: str, room: tuple[float, float] = (0.0, 0.0)) -> tuple[float, float]:
+    """Widths of the first and the last column of a refined pressure, over the half-width."""
+    widths = np.diff(refine_columns(averaged(FOLLOWED[name]), shape(room=room), 0.02).edges) / HALF_WIDTH
+    return float(widths[0]), float(widths[-1])
+
+
+def test_pressed_ends_are_resolved_the_more_the_sharper_they_are() -> None:
+    for width in outermost("falls to the end"):
+        assert SHARPEST < 0.3 * END_COLUMN < width <= END_COLUMN
+    for name in ("rises to one end", "rises to one end below a peak"):
+        assert 0.3 * SHARPEST < outermost(name)[1] <= SHARPEST
+    for room in ((2.0, 0.0), (0.0, 2.0)):
+        widths = outermost("falls to the end", room)
+        sharp = room.index(2.0)
+        assert 0.1 * SHARPEST < widths[sharp] <= SHARPEST
+        assert 0.3 * END_COLUMN < widths[1 - sharp] <= END_COLUMN
+    assert min(outermost("contact's end", (2.0, 2.0))) > END_COLUMN  # neither is pressed
+
+
+def test_columns_about_the_ends_of_a_contact_are_narrow() -> None:
+    found = refine_columns(averaged(FOLLOWED["contact's end"]), shape(), 0.05)
+    edges, widths = found.edges, np.diff(found.edges)
+    touched = np.flatnonzero(found.pressure.any(axis=1))
+    for end in (edges[touched[0]], edges[touched[-1] + 1]):
+        near = (edges[:-1] < end + 0.99 * HALF_WIDTH) & (edges[1:] > end - 0.99 * HALF_WIDTH)
+        assert near.sum() > 4
+        assert widths[near].max() <= LAST_COLUMNS * HALF_WIDTH
+    assert widths.max() > 2 * LAST_COLUMNS * HALF_WIDTH
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, unit: float) -> None:
+    """Half the difference of two like columns counts four times; its square, 0.03 of the largest one, does not."""
+    edges = np.concatenate([0.01 * np.arange(11), np.linspace(0.2, LENGTH, 100)])
+    along = np.where(np.arange(edges.size - 1) == 0, 0.1, 0.2)
+    along[40:] = 1.0
+    if side:
+        edges, along = LENGTH - edges[::-1], along[::-1]
+    asked = AxialShape(0.0, unit * LENGTH, unit * HALF_WIDTH, 0.05 * unit, np.zeros_like, (0.0, 0.0))
+    state = _Refinement(lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), asked, unit * edges)
+    for theta, marked in ((0.19, True), (0.21, False)):
+        assert state._marks(theta)[-side] == marked
+
+
+def test_half_of_the_last_changes_is_the_error() -> None:
+    assert _change_error([5.0, 1.0, 1.2, 1.25], 0.0) == pytest.approx(0.5 * 0.25)
+    assert _change_error([1.0, 1.25, 1.2], 0.2) == 0.2
+    assert _change_error([1.0, np.inf, 1.2], 0.0) == pytest.approx(0.1)
+    assert _change_error([1.2], 0.0) == _change_error([1.2, np.inf], 0.0) == np.inf
+    assert _change_error([3.0, 0.0, 0.0, 0.0], 0.2) == 0.0
+
+
+@pytest.mark.parametrize("length", [20.0, 0.5])
+def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(length: float) -> None:
+    found = refine_columns(averaged(BUMPS["even"]), shape(length), 0.02)
+    usual = float(found.pressure[0].sum()) * min(HALF_WIDTH, length)
+    assert found.loads == pytest.approx((usual, usual))
+    for load_error, peak_error, peak in zip(found.load_errors, found.peak_errors, found.peaks, strict=True):
+        assert load_error / usual == pytest.approx(peak_error / peak)
+
+
+@pytest.mark.parametrize("name", ["lesser peak", "singular"])
+def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name: str) -> None:
+    asked = shape(room=(3.0, 0.0))
+    found = refine_columns(averaged(FOLLOWED[name]), asked, 0.02)
+    other = replace_pressure(found, 1.25 * found.pressure, asked)
+    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads"):
+        assert getattr(other, key) == pytest.approx([1.25 * each for each in getattr(found, key)]), key
+    assert other.load_errors == found.load_errors
+    for law, again in zip(found.laws, other.laws, strict=True):
+        assert (law is None) == (again is None)
+        if law and again:
+            assert again.intensity == pytest.approx(1.25 * law.intensity)
+
+
+def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
+    # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
+    asked = shape()
+    found = refine_columns(averaged(FOLLOWED["contact's end"]), asked, 0.02)
+    assert (found.ends, found.end_errors) == ((0.0, 0.0), (0.0, 0.0))
+    pressed = found.pressure.copy()
+    pressed[:20] += 0.02 * found.pressure.max()
+    first, last = replace_pressure(found, pressed, asked).ends
+    assert first > 0
+    assert replace_pressure(found, pressed, asked).end_errors == (first, last) == (first, 0.0)
+
+
+@pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
+def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float]) -> None:
+    found = refine_columns(averaged(FOLLOWED["even"]), shape(), 0.02)
+    assert np.isinf(replace(found, peaks=(1.0, 1.0), peak_errors=errors).peak_error)
+    assert replace(found, peaks=(1.0, 0.5)[:: 1 if errors[0] < 1 else -1], peak_errors=errors).peak_error == 0.1
+
+
+def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
+    state = _Refinement(averaged(FOLLOWED["rises to one end"]), shape(), first_edges(shape()))
+    with caplog.at_level("INFO"):
+        for theta in (0.5, 0.3, 0.2):
+            state.refine(theta)
+    assert caplog.messages[-1] == f"refined to {state.edges.size - 1} columns"
+    for side, samples in enumerate(state.samples):
+        widths = np.array([sample.width for sample in samples])
+        assert len(samples) > 3
+        assert widths[:-1] / widths[1:] == pytest.approx(2.0)
+        assert widths[-1] == pytest.approx(np.diff(state.edges)[-side])
+        assert samples[-1].pressure == pytest.approx(state.pressure[-side].max(), rel=1e-3)
+
+
+@pytest.mark.parametrize("side", [0, 1])
+def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
+    """The other end is pressed and settles; the pressure begins one column behind the sharp end."""
+
+    def along(x: FloatArray) -> FloatArray:
+        place = x if side == 0 else LENGTH - x
+        return np.asarray(np.where(place > 0.06, 1.0, 0.0) * (1 - 0.2 * place / LENGTH))
+
+    room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
+    found = refine_columns(averaged(along), shape(room=room), 0.05)
+    assert found.laws == (None, None)
+    assert found.ends[side] == 0.0
+    assert np.isfinite(found.end_errors).all()
+    assert np.isfinite(found.peak_errors).all()
+
+
+@pytest.mark.parametrize("slope", [0.5, -0.5])
+@pytest.mark.parametrize("side", [0, 1])
+def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: float) -> None:
+    def pressure(x: FloatArray) -> FloatArray:
+        distance = x if side == 0 else LENGTH - x
+        return np.asarray(1 + slope * distance / LENGTH)
+
+    columns = refine_columns(averaged(pressure), shape(room=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05)
+    for errors in (columns.end_errors, columns.peak_errors):
+        assert np.isinf(errors[side])
+        assert np.isfinite(errors[1 - side])
+
+
+@pytest.mark.parametrize("side", [0, 1])
+@pytest.mark.parametrize("law", [None, EndLaw("power", 0.5)])
+def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
+    pressure = np.zeros((4, 3))
+    pressure[-side] = 1.0
+    rough = RoughColumns(np.arange(5.0), pressure, (law, None) if side else (None, law))
+    sharp, blunt = ((2.0, 0.0), (0.0, 2.0))[:: 1 - 2 * side]
+    assert rough.singular(shape(room=sharp))
+    assert rough.singular(shape(room=blunt)) == (law is not None)
+    assert rough.singular(shape(room=sharp, elastic=True)) == (law is not None)
+
+
+def test_a_rough_contact_has_the_columns_of_the_second_threshold() -> None:
+    solve, asked = averaged(FOLLOWED["lesser peak"]), shape()
+    rough, fine = rough_columns(solve, asked), refine_columns(solve, asked, 0.02)
+    assert np.isin(rough.edges, fine.edges).all()
+    again = refine_columns(solve, asked, 0.02, rough.edges)
+    assert again.edges == pytest.approx(fine.edges)
+    assert again.first == pytest.approx(rough.edges)
+    assert rough.laws == (None, None)

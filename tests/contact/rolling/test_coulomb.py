@@ -1,0 +1,231 @@
+"""Coulomb's law on few cells, where every condition can be looked at."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from contactstudy.checks import BoolArray, FloatArray
+from contactstudy.contact.rolling import coulomb
+from contactstudy.contact.rolling.coulomb import (
+    CoulombProblem,
+    CoulombSolution,
+    Guess,
+    _first_share,
+    _largest_excess,
+    law_violation,
+    limit_tractions,
+    solve_coulomb,
+)
+
+
+def problem(
+    rigid: FloatArray, bound: FloatArray, *, forces: FloatArray | None = None, skew: float = 0.0, seed: int = 0
+) -> CoulombProblem:
+    """Cells with a random positive compliance; `skew` makes it as unsymmetric as that of rolling."""
+    random = np.random.default_rng(seed)
+    size = 2 * bound.size
+    root = random.standard_normal((size, size)) / np.sqrt(size)
+    twist = random.standard_normal((size, size)) / np.sqrt(size)
+    matrix = root @ root.T + 0.3 * np.eye(size) + skew * (twist - twist.T)
+    inverse = np.linalg.inv(matrix)
+    modes = np.zeros((0, 2, bound.size))
+    if forces is not None:
+        modes = np.zeros((2, 2, bound.size))
+        modes[0, 0] = modes[1, 1] = 1.0
+    return CoulombProblem(
+        relief=lambda traction: (matrix @ traction.ravel()).reshape(traction.shape),
+        inverse=lambda slip: (inverse @ slip.ravel()).reshape(slip.shape),
+        bound=bound,
+        rigid=rigid,
+        modes=modes,
+        works=modes,
+        resultants=np.zeros(0) if forces is None else forces,
+        shares=np.random.default_rng(seed).uniform(0.1, 2.0, bound.size),
+        tolerance=1e-8,
+    )
+
+
+def holds(asked: CoulombProblem, found: CoulombSolution) -> None:
+    """Every condition, looked at cell by cell."""
+    slip = asked.slip(found.traction, found.amplitudes)
+    size = np.hypot(*found.traction)
+    assert (size <= asked.bound * (1 + 1e-9)).all()
+    sticking = size < asked.bound * (1 - 1e-9)
+    scale = np.hypot(*asked.rigid).max() + np.abs(found.amplitudes).sum()
+    assert np.hypot(*slip[:, sticking]).max(initial=0.0) <= 1e-6 * scale
+    along = (slip * found.traction).sum(axis=0)[~sticking]
+    assert (along >= -1e-6 * scale * asked.bound[~sticking]).all()
+    assert np.allclose(along, (np.hypot(*slip) * size)[~sticking], atol=1e-6 * scale * asked.bound.max())
+
+
+@pytest.mark.parametrize("skew", [0.0, 1.0])
+@pytest.mark.parametrize("size", [0.01, 0.3, 1.0, 30.0])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_law_holds_from_stick_to_full_sliding(size: float, skew: float, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    bound = random.uniform(0.2, 1.0, 24)
+    asked = problem(size * random.standard_normal((2, 24)), bound, skew=skew, seed=seed)
+    found = solve_coulomb(asked)
+    assert found.converged
+    holds(asked, found)
+
+
+@pytest.mark.parametrize("part", [0.0, 0.4, 0.95])
+def test_forces_are_met_by_the_rigid_slip(part: float) -> None:
+    bound = np.random.default_rng(5).uniform(0.2, 1.0, 30)
+    force = part * bound.sum() * np.array([0.6, 0.8])
+    asked = problem(np.zeros((2, 30)), bound, forces=force, skew=0.5)
+    found = solve_coulomb(asked)
+    assert found.converged
+    holds(asked, found)
+    assert found.traction.sum(axis=1) == pytest.approx(force, abs=1e-6 * bound.sum())
+
+
+def test_a_guess_changes_the_work_and_not_the_result() -> None:
+    random = np.random.default_rng(7)
+    bound = random.uniform(0.2, 1.0, 40)
+    asked = problem(random.standard_normal((2, 40)), bound, skew=0.5)
+    plain = solve_coulomb(asked)
+    guessed = solve_coulomb(asked, Guess(plain.traction, plain.amplitudes))
+    assert guessed.steps < plain.steps
+    assert guessed.traction == pytest.approx(plain.traction, abs=1e-6)
+
+
+def test_what_does_not_converge_says_so() -> None:
+    random = np.random.default_rng(0)
+    asked = problem(random.standard_normal((2, 24)), random.uniform(0.2, 1.0, 24))
+    assert not solve_coulomb(CoulombProblem(**{**vars(asked), "max_steps": 1})).converged
+
+
+def test_violations_are_seen() -> None:
+    traction, bound = np.array([[1.0, 0.5], [0.0, 0.0]]), np.array([1.0, 1.0])
+    sticks = np.array([False, True])
+    right = law_violation(traction, np.array([[2.0, 0.0], [0.0, 0.0]]), bound, sticks, 1.0)
+    assert right == (0.0, 0.0)
+    assert law_violation(1.1 * traction, np.zeros((2, 2)), bound, sticks, 1.0)[0] == pytest.approx(0.1)
+    for slip in ([[-2.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [2.0, 0.0]], [[0.0, 2.0], [0.0, 0.0]]):
+        assert law_violation(traction, np.array(slip), bound, sticks, 1.0)[1] == pytest.approx(2.0)
+
+
+@pytest.mark.parametrize("length", [1.0, 1e-9])
+def test_every_cell_may_slip_under_a_prescribed_force_in_any_unit_of_length(length: float) -> None:
+    """Along one axis the rigid slip is prescribed and large; force and moment are not, and no cell is left to stick."""
+    random = np.random.default_rng(3)
+    bound = random.uniform(0.2, 1.0, 12)
+    rigid = np.stack([np.zeros(12), np.full(12, 30.0)])
+    asked = problem(rigid, bound, skew=0.5)
+    modes = np.zeros((2, 2, 12))
+    modes[0, 0] = 1.0
+    modes[1] = length * random.standard_normal((2, 12))
+    wanted = np.array([0.1 * bound.sum(), 0.05 * length * bound.sum()])
+    asked = replace(asked, modes=modes, works=modes, resultants=wanted)
+    found = solve_coulomb(asked)
+    assert found.converged
+    assert not found.sticks.any()
+    assert found.traction[0].sum() == pytest.approx(wanted[0], rel=1e-6)
+    assert (modes[1] * found.traction).sum() == pytest.approx(wanted[1], rel=1e-6)
+
+
+def test_tractions_beyond_their_bound_are_put_back_onto_it() -> None:
+    traction = np.array([[3.0, 0.3, 0.0, 0.0], [4.0, 0.4, 0.0, -2.0]])
+    found = limit_tractions(traction, np.array([1.0, 1.0, 1.0, 0.5]))
+    assert found == pytest.approx(np.array([[0.6, 0.3, 0.0, 0.0], [0.8, 0.4, 0.0, -0.5]]))
+
+
+@pytest.mark.parametrize("sticking", [1, 2, 5, 6, 150, 400])
+def test_half_of_the_cells_that_stick_begin_at_most_the_farthest_above_their_bound(sticking: int) -> None:
+    excess = np.random.default_rng(sticking).uniform(0.5, 2.0, 400)
+    sticks = np.arange(400) < sticking
+    begins = (excess > 1) & sticks
+    found = _largest_excess(begins, excess, sticks)
+    assert found.sum() == min(begins.sum(), (sticking + 1) // 2)
+    assert not (found & ~begins).any()
+    assert excess[found].min(initial=9.0) >= excess[begins & ~found].max(initial=0.0)
+
+
+def test_half_of_many_cells_begin_whatever_their_order() -> None:
+    """Numbers in one order may be right by chance, so there are twenty."""
+    for seed in range(20):
+        excess, sticks = np.random.default_rng(seed).uniform(0.5, 2.0, 2000), np.ones(2000, bool)
+        found = _largest_excess(excess > 1, excess, sticks)
+        assert found.sum() == 1000
+        assert excess[found].min() > excess[~found].max()
+
+
+def test_first_share_of_cells() -> None:
+    cells = np.array([False, True, True, False, True, True, True])
+    assert _first_share(cells, 1.0) is cells
+    for share, count in ((0.9, 4), (0.5, 2), (0.2, 1), (0.01, 1)):
+        assert np.flatnonzero(_first_share(cells, share)).tolist() == [1, 2, 4, 5, 6][:count]
+
+
+def test_what_a_guess_slips_is_on_its_bound_and_where_it_sticks_stays() -> None:
+    """A cell just below its bound counts as slipping; one on which nothing acts sticks. One step is all it takes."""
+    random = np.random.default_rng(7)
+    bound = random.uniform(0.2, 1.0, 40)
+    asked = replace(problem(random.standard_normal((2, 40)), bound, skew=0.5), max_steps=1)
+    plain = solve_coulomb(replace(asked, max_steps=40))
+    nearly = np.where(plain.sticks, 1.0, 1 - 1e-7) * plain.traction
+    for guess in (plain.traction, nearly):
+        found = solve_coulomb(asked, Guess(guess, plain.amplitudes))
+        assert found.converged
+        assert found.traction == pytest.approx(plain.traction, abs=1e-6)
+        assert np.array_equal(found.sticks, plain.sticks)
+
+
+@pytest.mark.parametrize(("forces", "most"), [(False, (83, 468)), (True, (94, 520))])
+def test_steps_and_applications_are_few(*, forces: bool, most: tuple[int, int]) -> None:
+    """Of many small problems, from partial slip to almost full sliding; cells that go round in circles among them."""
+    steps, applications = 0, []
+    for seed in range(12):
+        random = np.random.default_rng(seed)
+        bound = random.uniform(0.2, 1.0, 24)
+        wanted = random.uniform(-0.5, 0.5, 2) * bound.sum() if forces else None
+        rigid = random.uniform(0.1, 2.0) * random.standard_normal((2, 24))
+        asked = problem(rigid, bound, forces=wanted, skew=0.2 * (seed % 6), seed=seed)
+
+        def relief(traction: FloatArray, asked: CoulombProblem = asked) -> FloatArray:
+            applications.append(1)
+            return asked.relief(traction)
+
+        found = solve_coulomb(replace(asked, relief=relief))
+        assert found.converged
+        steps += found.steps
+    assert steps <= most[0]
+    assert len(applications) <= most[1]
+
+
+def test_cells_that_go_round_in_circles_change_one_by_one_in_the_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A compliance that is another one at every look: three cells soon stick and slip as they did before."""
+    random = np.random.default_rng(0)
+    asked = problem(random.standard_normal((2, 3)), np.ones(3))
+    shares: list[float] = []
+
+    def noted(cells: BoolArray, share: float) -> BoolArray:
+        shares.append(share)
+        return _first_share(cells, share)
+
+    monkeypatch.setattr(coulomb, "_first_share", noted)
+    restless = replace(asked, relief=lambda traction: random.standard_normal(traction.shape), max_steps=80)
+    assert not solve_coulomb(restless).converged
+    steps = np.array(shares[::2])
+    assert steps[0] == steps.max() == 1.0
+    assert steps.min() < 2.0**-4
+    ratios = steps[1:] / steps[:-1]
+    assert set(ratios[steps[:-1] < 0.7].tolist()) <= {0.5, 1.0, 2.0}
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_prescribed_forces_are_met_to_the_tolerance_of_full_slidings(seed: int) -> None:
+    """However small the unit of the forces is, or large."""
+    random = np.random.default_rng(seed)
+    bound = random.uniform(0.2, 1.0, 24)
+    whole = problem(random.standard_normal((2, 24)), bound, forces=0.5 * bound.sum() * np.array([0.6, 0.7]), seed=seed)
+    for unit in (1e-6, 1.0, 1e6):
+        asked = replace(whole, works=unit * whole.works, resultants=unit * whole.resultants, tolerance=1e-3)
+        found = solve_coulomb(asked)
+        assert found.converged
+        assert np.abs(found.traction.sum(axis=1) - whole.resultants).max() <= 1e-3 * bound.sum()

@@ -1,0 +1,92 @@
+"""First guesses of stick and slip: from coarser cells, and from almost the same bound."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid
+from contactstudy.checks import FloatArray
+from contactstudy.contact.rolling.leading_edge import RollingCells
+from contactstudy.contact.rolling.surfaces import Tractions
+from contactstudy.contact.rolling.tractions import (
+    LARGEST_STICKING,
+    CoarseTractions,
+    cell_means,
+    guess_from_coarse,
+    guess_from_last,
+)
+
+COARSE = Grid((0.0, 6.0), (0.0, 4.0), 6, 4)
+FINE = Grid((0.0, 6.0), (0.0, 4.0), 12, 8)
+ALONG_Y_ONLY = Grid((0.0, 6.0), (0.0, 4.0), 6, 8)
+
+
+def found_on(grid: Grid, traction: FloatArray, sticks: FloatArray) -> Tractions:
+    rigid = {"x": 0.5, "y": -0.25, "spin": 3.0}
+    zeros = dict.fromkeys(("force_x", "force_y", "moment_z", "work"), 0.0)
+    return Tractions(traction=traction, slip=np.zeros_like(traction), sticks=sticks, rigid=rigid, **zeros)
+
+
+def all_cells(grid: Grid) -> RollingCells:
+    none = np.zeros((2, 0), dtype=np.int64)
+    unknown = np.argwhere(np.ones(grid.shape, bool)).T
+    return RollingCells(unknown, np.zeros(unknown.shape[1]), none, none[0], np.zeros(0))
+
+
+def plane(grid: Grid) -> FloatArray:
+    """Parts of the bound, in two components, that are linear on the grid."""
+    x, y = grid.x[:, None], grid.y
+    return np.stack([0.02 * x + 0.03 * y + 0.05, 0.3 - 0.04 * x - 0.01 * y + 0 * y])
+
+
+@pytest.mark.parametrize("grid", [FINE, ALONG_Y_ONLY])
+def test_parts_of_the_bound_are_on_lines_where_cells_stick(grid: Grid) -> None:
+    bound, fine_bound = 2.0 + COARSE.x[:, None] * COARSE.y, 3.0 + grid.x[:, None] + grid.y
+    coarse = CoarseTractions(COARSE, bound, found_on(COARSE, bound * plane(COARSE), np.ones(COARSE.shape, bool)))
+    guess = guess_from_coarse(coarse, all_cells(grid), fine_bound, ("y", "spin"))
+    found = guess.traction.reshape(2, *grid.shape) / fine_bound
+    inside = slice(2, -2) if grid is FINE else slice(None)
+    assert found[:, inside, 1:-1] == pytest.approx(plane(grid)[:, inside, 1:-1], rel=1e-12)
+    assert guess.amplitudes.tolist() == [-0.25, 3.0]
+
+
+def test_cells_that_slip_keep_their_whole_bound_and_others_less() -> None:
+    """Towards cells that slip, those that stick come near the bound; what has none carries nothing."""
+    sticks = np.broadcast_to(COARSE.x[:, None] < 3, COARSE.shape)
+    bound = np.where(COARSE.y > 1, 2.0, 0.0) * np.ones(COARSE.shape)
+    direction = np.array([0.6, 0.8])[:, None, None]
+    traction = direction * bound * np.where(sticks, 0.9 + 0.05 * COARSE.x[:, None], 1.0)
+    fine_bound = np.full(FINE.shape, 5.0)
+    coarse = CoarseTractions(COARSE, bound, found_on(COARSE, traction, sticks))
+    found = guess_from_coarse(coarse, all_cells(FINE), fine_bound, ()).traction.reshape(2, *FINE.shape)
+    part = np.hypot(*found) / fine_bound
+    slips, bare = FINE.x > 3, FINE.y < 0.9
+    assert part[slips][:, ~bare] == pytest.approx(1.0)
+    assert (part[slips][:, bare] == 0).all()
+    assert part[~slips][:, ~bare].max() == pytest.approx(LARGEST_STICKING)
+    assert part[2:4, 4:] == pytest.approx(0.9 + 0.05 * np.array([1.25, 1.75])[:, None] * np.ones(4))
+    assert (part[~slips][:, :1] == 0).all()
+    loaded = part > 0
+    assert (found[1] / found[0].clip(1e-9))[loaded] == pytest.approx(4 / 3)
+
+
+def test_under_almost_the_same_bound_what_slips_follows_it() -> None:
+    random = np.random.default_rng(0)
+    last = random.standard_normal((2, *FINE.shape))
+    last[:, 0] = 0.0
+    sticks = FINE.x[:, None] < 3 + 0 * FINE.y
+    bound = np.hypot(*last) * random.uniform(0.9, 1.1, FINE.shape) + np.where(FINE.x[:, None] < 0.5, 1.0, 0.0)
+    guess = guess_from_last(found_on(FINE, last, sticks), all_cells(FINE), bound, ("x",))
+    found = guess.traction.reshape(2, *FINE.shape)
+    assert guess.amplitudes.tolist() == [0.5]
+    size, before = np.hypot(*found), np.hypot(*last)
+    assert found[0] * last[1] == pytest.approx(found[1] * last[0])
+    assert size[~sticks] == pytest.approx(bound[~sticks])
+    assert size[sticks] == pytest.approx(np.minimum(before, LARGEST_STICKING * bound)[sticks])
+    assert (found[:, 0] == 0).all()
+    assert ((found * last).sum(axis=0)[1:] > 0).all()
+
+
+def test_cells_of_twice_the_size_have_the_mean() -> None:
+    assert cell_means(np.arange(8.0).reshape(2, 4)).tolist() == [[2.5, 4.5]]

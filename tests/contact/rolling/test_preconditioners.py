@@ -1,0 +1,82 @@
+"""The rough inverse of the tangential compliance against dense matrices of unit loads that repeat as it does."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Grid, HalfSpace, Material
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.contact.rolling.preconditioners import tangential_inverse
+from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.kernels.load import Load
+
+MATERIALS = [Material(210e9, 0.3), Material(70e9, 0.2)]
+TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)
+ROWS, COLUMNS = 3, 4
+DY = 2e-5
+STEP = 3e-5
+GRADED = 1e-5 * np.cumsum([0.0, 1.0, 2.0, 4.0])
+
+
+def displaced(edges: FloatArray, row: int) -> FloatArray:
+    """Displacements (direction, load, row, offset along y) of two half-spaces under a unit traction on a row."""
+    grid = Grid.between(edges, (-(COLUMNS + 0.5) * DY, (COLUMNS + 0.5) * DY), 2 * COLUMNS + 1)
+    unit, found = np.zeros(grid.shape), np.zeros((2, 2, *grid.shape))
+    unit[row, COLUMNS] = 1.0
+    for material in MATERIALS:
+        request = OperatorRequest(HalfSpace(material=material), grid, TANGENTIAL, directions=TANGENTIAL)
+        for number, load in enumerate(TANGENTIAL):
+            each = surface_operator(request).displaced({load: unit}, TANGENTIAL)
+            found[:, number] += np.stack([each[direction] for direction in TANGENTIAL])
+    return found
+
+
+def offsets(period: int) -> IntArray:
+    """From each cell of a period to each, from less than minus half a period to plus half of it."""
+    numbers = np.arange(period)
+    return (np.subtract.outer(numbers, numbers) + period // 2 - 1) % period - (period // 2 - 1)
+
+
+def matrix_on(*, uniform: bool) -> FloatArray:
+    """Compliance (direction, row, column, load, row, column) on cells that repeat with twice the patch."""
+    at_y = offsets(2 * COLUMNS)
+    if uniform:
+        table = displaced(STEP * np.arange(2 * ROWS + 2.0), ROWS)
+        at_x = offsets(2 * ROWS)
+        found = table[:, :, (at_x + ROWS)[:, :, None, None], (at_y + COLUMNS)[None, None]]
+        return found.transpose(0, 2, 4, 1, 3, 5)
+    tables = np.stack([displaced(GRADED, row) for row in range(ROWS)], axis=3)
+    # Cells half a period away lie on both sides.
+    tables[..., 0] = tables[..., -1] = 0.5 * (tables[..., 0] + tables[..., -1])
+    return tables[..., at_y + COLUMNS].transpose(0, 2, 4, 1, 3, 5)
+
+
+@pytest.mark.parametrize("uniform", [True, False])
+@pytest.mark.parametrize("rolling", [False, True])
+def test_it_is_the_inverse_on_cells_that_repeat(*, uniform: bool, rolling: bool) -> None:
+    edges = STEP * np.arange(ROWS + 3.0) if uniform else np.concatenate([[-4e-5], GRADED, [12e-5]])
+    grid = Grid.between(edges, (0.0, (COLUMNS + 2) * DY), COLUMNS + 2)
+    mask = np.zeros(grid.shape, bool)
+    mask[1 : 1 + ROWS, 1 : 1 + COLUMNS] = True
+    mask[1, COLUMNS] = False
+    cells = np.argwhere(mask).T
+    matrix = matrix_on(uniform=uniform)
+    shape, size = matrix.shape[:3], matrix[..., 0, 0, 0].size
+    matrix = matrix.reshape(size, size)
+    if rolling:  # less what the cell ahead moves; a constant, which has no change, changes a little
+        period = 2 * COLUMNS
+        change = (1 + 1.5 * 2 * np.pi / period) * np.eye(period) - np.roll(np.eye(period), 1, axis=1)
+        matrix = np.kron(np.eye(size // period), change / DY) @ matrix
+    # Tractions begin as a root behind the leading edge of each row.
+    length = mask.sum(axis=1)[cells[0]]
+    root = np.sqrt((length - (cells[1] - 1) - 0.5) / length) if rolling else np.ones(cells.shape[1])
+    slip = np.random.default_rng(1).standard_normal((2, cells.shape[1]))
+    spread = np.zeros(shape)
+    spread[:, cells[0] - 1, cells[1] - 1] = slip / root
+    expected = np.linalg.solve(matrix, spread.ravel()).reshape(shape)[:, cells[0] - 1, cells[1] - 1] * root
+    found = tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(slip)
+    assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+    assert tangential_inverse(MATERIALS, cells, grid, rolling=rolling)(3e-9 * slip) == pytest.approx(
+        3e-9 * expected, abs=3e-14 * np.abs(expected).max()
+    )

@@ -1,0 +1,80 @@
+"""Contact on a user's operator of the surface: two bodies, a thin and a thick layer."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+from scipy.sparse.linalg import LinearOperator, aslinearoperator
+
+from contactstudy import Counterbody, FiniteLengthSpace, Grid, HalfSpace, InvalidInputError, Material, solve_contact
+from contactstudy.case.motion import Rolling
+from contactstudy.contact import ContactSettings
+from contactstudy.operators import surface_displacement
+
+RADIUS = 5e-3
+POLYMER = Material(3e9, 0.35)
+SQUARE = Grid((-0.16e-3, 0.16e-3), (-0.16e-3, 0.16e-3), 64, 64)
+
+
+def labelled(grid: Grid, values: np.ndarray) -> xr.DataArray:
+    return xr.DataArray(values, {"x": grid.x, "y": grid.y}, ("x", "y"))
+
+
+SPHERE = labelled(SQUARE, (SQUARE.x[:, None] ** 2 + SQUARE.y**2) / (2 * RADIUS))
+
+
+def layer(material: Material, thickness: float, grid: Grid) -> LinearOperator:
+    """Displacement of the top of a layer on a rigid base, periodic with twice the window."""
+    shape = (2 * grid.cells_x, 2 * grid.cells_y)
+    k_x, k_y = np.fft.fftfreq(shape[0], grid.dx), np.fft.rfftfreq(shape[1], grid.dy)
+    k = np.maximum(2 * np.pi * np.hypot(k_x[:, None], k_y), 1e-3 / thickness)
+    kappa, t = 3 - 4 * material.poisson, np.minimum(2 * k * thickness, 50.0)
+    factor = (2 * kappa * np.sinh(t) - 2 * t) / (2 * kappa * np.cosh(t) + t**2 + 1 + kappa**2)
+    compliance = 2 * factor / (material.plane_strain_modulus * k)
+
+    def displacement(pressure: np.ndarray) -> np.ndarray:
+        spectrum = compliance * np.fft.rfft2(pressure.reshape(grid.shape), shape)
+        return np.fft.irfft2(spectrum, shape)[: grid.cells_x, : grid.cells_y].ravel()
+
+    return LinearOperator((grid.cells_x * grid.cells_y,) * 2, displacement, rmatvec=displacement)
+
+
+def test_sum_of_two_bodies() -> None:
+    length, grid = 1e-3, Grid((0.0, 1e-3), (-0.1e-3, 0.1e-3), 32, 32)
+    first, second = (FiniteLengthSpace(length=length, material=Material(*e)) for e in ((210e9, 0.3), (310e9, 0.26)))
+    waves = 0.2e-6 * np.cos(3 * np.pi * grid.x / length) + 0.1e-6 * np.cos(5 * np.pi * grid.x / length + 0.4)
+    gap = labelled(grid, (waves.max() - waves)[:, None] + grid.y**2 / (2 * RADIUS))
+    surface = surface_displacement(first, grid) + surface_displacement(second, grid)
+    settings = ContactSettings(load_position=0.5 * length)
+    contact = solve_contact(first, gap, 60.0, surface=surface, settings=settings)
+    pair = solve_contact(first, gap, 60.0, settings=settings, counterbody=Counterbody(second))
+    assert bool(contact.converged)
+    assert np.abs(contact.pressure - pair.pressure).max() < 1e-5 * pair.pressure.max()
+
+
+def test_thin_layer_is_a_foundation_of_independent_columns() -> None:
+    thickness, approach, nu = 2e-6, 1e-6, POLYMER.poisson
+    contact = solve_contact(
+        HalfSpace(material=POLYMER), SPHERE, approach=approach, surface=layer(POLYMER, thickness, SQUARE)
+    )
+    stiffness = POLYMER.young * (1 - nu) / ((1 + nu) * (1 - 2 * nu)) / thickness
+    assert float(contact.normal_load) == pytest.approx(np.pi * RADIUS * stiffness * approach**2, rel=2e-3)
+    assert float(contact.pressure.max()) == pytest.approx(stiffness * approach, rel=3e-3)
+
+
+def test_thick_layer_is_a_half_space() -> None:
+    load = 0.2
+    contact = solve_contact(HalfSpace(material=POLYMER), SPHERE, load=load, surface=layer(POLYMER, 1e-3, SQUARE))
+    hertz = (6 * load * POLYMER.plane_strain_modulus**2 / (np.pi**3 * RADIUS**2)) ** (1 / 3)
+    assert float(contact.pressure.max()) == pytest.approx(hertz, rel=3e-3)
+
+
+def test_refused() -> None:
+    body, surface = HalfSpace(material=POLYMER), layer(POLYMER, 1e-6, SQUARE)
+    with pytest.raises(InvalidInputError, match="surface"):
+        solve_contact(body, SPHERE, load=1.0, surface=aslinearoperator(np.eye(3)))
+    with pytest.raises(InvalidInputError, match="counterbody"):
+        solve_contact(body, SPHERE, load=1.0, surface=surface, counterbody=Counterbody(body))
+    with pytest.raises(InvalidInputError, match="motion"):
+        solve_contact(body, SPHERE, load=1.0, friction=0.1, surface=surface, motion=Rolling())

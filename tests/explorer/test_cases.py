@@ -1,0 +1,27 @@
+"""Texts and numbers of the cases on the page."""
+
+import pytest
+import xarray as xr
+
+pytest.importorskip("panel")
+from contactstudy.explorer.cases import _value_text, numbers_by_subject, status_sentence
+
+
+def test_sentence_of_an_unsolved_case():
+    skipped = status_sentence("skipped", "profile: must fit the length")
+    assert skipped == "This case cannot be solved. profile: must fit the length"
+    assert status_sentence("missing", "") == "This case is not solved yet."
+
+
+def test_values_in_engineering_units():
+    assert [_value_text(*entry) for entry in ((1.5e9, "Pa"), ("cylinder", ""), (0.1, "1"))] == [
+        "1.5 GPa",
+        "cylinder",
+        "0.1",
+    ]
+
+
+def test_subjects_of_numbers():
+    names = ("seconds", "peak_von_mises", "peak_pressure")
+    groups = numbers_by_subject(xr.Dataset({name: ("friction", [1.0, 2.0]) for name in names}))
+    assert [list(group.values()) for group in groups.values()] == [["peak_pressure"], ["peak_von_mises"], ["seconds"]]

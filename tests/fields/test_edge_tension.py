@@ -1,0 +1,56 @@
+"""Tension at the trailing edge of a sliding contact: 2 f p0 of a cylinder, mirror symmetry, errors."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, Rolling, solve
+from contactstudy.analysis import half_width, line_load
+from contactstudy.fields.edge_tension import edge_tension
+
+# Uncoupled: the traction causes no normal displacement.
+INCOMPRESSIBLE = Material(210e9, 0.5)
+STEEL = Material(210e9, 0.3)
+P0, RADIUS = 1e9, 5e-3
+
+
+def solved(material: Material, friction: float) -> xr.Dataset:
+    length = 20 * 2 * P0 * RADIUS / material.plane_strain_modulus
+    body = FiniteLengthSpace(length=length, material=material)
+    case = Case(body=body, roller=Roller(radius=RADIUS, length=length), max_pressure=P0, friction=friction)
+    return solve(case, stresses=False)
+
+
+@pytest.mark.parametrize("material", [STEEL, INCOMPRESSIBLE])
+@pytest.mark.parametrize("friction", [0.05, 0.1, 0.3])
+def test_sliding_cylinder(material: Material, friction: float) -> None:
+    """The stress per friction is 2 p0 of the section; the normal load adds a stress of its own."""
+    results = [solved(material, value) for value in (friction, 1e-6)]
+    middle = 0.5 * float(results[0]["x"][0] + results[0]["x"][-1])
+    tension, normal = (edge_tension(result, [middle]) for result in results)
+    width = float(half_width(results[0])["half_width"].sel(x=middle, method="nearest"))
+    pressure = 2 * float(line_load(results[0]).sel(x=middle, method="nearest")) / (np.pi * width)
+    added = float(tension["edge_tension"][0] - normal["edge_tension"][0])
+    assert added == pytest.approx(2 * friction * pressure, rel=5e-3)
+    assert abs(added - 2 * friction * pressure) < float(tension["edge_tension_error"][0])
+    assert float(tension["edge_tension_error"][0]) < 0.025 * float(tension["edge_tension"][0])
+    assert float(tension["trailing_edge"][0]) == pytest.approx(-width, rel=1e-2)
+
+
+def test_mirror() -> None:
+    first, second = (edge_tension(solved(STEEL, friction)) for friction in (0.2, -0.2))
+    np.testing.assert_allclose(first["edge_tension"], second["edge_tension"], rtol=1e-6)
+    np.testing.assert_allclose(first["trailing_edge"], -second["trailing_edge"], rtol=1e-6)
+    assert first["edge_tension"].attrs["error_kind"] == "estimated"
+
+
+def test_contacts_without_sliding() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=RADIUS, length=1e-3), max_pressure=P0)
+    with pytest.raises(InvalidInputError, match="without friction"):
+        edge_tension(solve(case, stresses=False, accuracy=0.1))
+    motion = Rolling(longitudinal_creepage=1e-3)
+    rolling = Case(body=case.body, roller=case.roller, max_pressure=P0, friction=0.3, motion=motion)
+    with pytest.raises(InvalidInputError, match="stick and slip"):
+        edge_tension(solve(rolling, stresses=False, accuracy=0.1))

@@ -1,0 +1,63 @@
+"""Film of line contacts against tables, limits and formulas."""
+
+import numpy as np
+import pytest
+
+from contactstudy import Lubricant
+from contactstudy.film.formulas import moes_line, nijenbanning
+from contactstudy.film.line_contact import solve_line
+
+pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
+
+BARUS = [
+    (2, 5, 4.451, 3.470),
+    (10, 5, 3.813, 2.881),
+    (20, 5, 3.500, 2.632),
+    (20, 10, 5.270, 3.968),
+    (100, 10, 4.367, 3.265),
+    (200, 10, 4.009, 2.990),
+    (1000, 10, 3.265, 2.434),
+]
+ROELANDS = [(5, 5, 3.5005, 2.9753), (10, 10, 4.6225, 4.0084), (20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
+
+
+# The table's inlets end about four half-widths from the middle, which matters at low load.
+@pytest.mark.parametrize(("load", "lubricant", "central", "least"), BARUS)
+def test_table_of_barus_oil(load, lubricant, central, least):
+    film = solve_line(load, lubricant, finest=0.1, inlet=4.0 if load < 100 else None)
+    assert film.central == pytest.approx(central, rel=5e-3)
+    assert film.least == pytest.approx(least, rel=5e-3)
+    assert film.solution.residual < 1e-6
+    assert film.solution.load_error < 1e-8
+
+
+@pytest.mark.parametrize(("load", "lubricant", "central", "least"), ROELANDS)
+def test_table_of_compressible_roelands_oil(load, lubricant, central, least):
+    oil = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, roelands_exponent=0.68)
+    film = solve_line(load, lubricant, finest=0.1, inlet=4.0, oil=oil, max_pressure=1e9)
+    assert film.central == pytest.approx(central, rel=5e-3)
+    assert film.least == pytest.approx(least, rel=5e-3)
+
+
+@pytest.mark.slow
+def test_rigid_isoviscous_limit_is_martins():
+    assert 0.1 * solve_line(0.1, 0.01, finest=0.4).central == pytest.approx(2.448, rel=5e-3)
+
+
+@pytest.mark.parametrize(("load", "lubricant"), [(20, 10), (200, 10)])
+def test_rolling_moment(load, lubricant):
+    film = solve_line(load, lubricant, inlet=4.0)
+    assert film.rolling == pytest.approx(1.45 * load**-1.5, rel=0.04)
+    # w delta = 2 t: the moment of the pressure is twice that of its force on the slopes.
+    assert abs(film.moment) == pytest.approx(2 * film.rolling, rel=0.01)
+
+
+def test_formulas():
+    assert float(moes_line(100.0, 10.0)) == pytest.approx(4.297, abs=1e-3)
+    assert nijenbanning(20.0, 10.0) == pytest.approx(4.71, abs=0.005)
+
+
+def test_pressure_of_a_heavy_load_is_that_of_hertz():
+    film = solve_line(2000, 10)
+    inner = np.abs(film.y) < 0.9
+    assert np.abs(film.pressure - np.sqrt(np.maximum(1 - film.y**2, 0)))[inner].max() < 0.01

@@ -1,0 +1,63 @@
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, Lubricant
+from contactstudy.bodies.lubricant import OILS, walther
+
+
+def test_slopes_are_derivatives():
+    for law in ("barus", "roelands"):
+        oil = Lubricant(viscosity=0.02, pressure_viscosity=2e-8, viscosity_law=law)
+        p = np.array([1e6, 1e8, 1e9])
+        for function, slope in (
+            (oil.log_viscosity, oil.log_viscosity_slope),
+            (oil.density_ratio, oil.density_ratio_slope),
+        ):
+            numeric = (function(p * 1.0001) - function(p * 0.9999)) / (2e-4 * p)
+            assert slope(p) == pytest.approx(numeric, rel=1e-5)
+
+
+def test_roelands_begins_with_the_coefficient_and_ends_below_barus():
+    oil = Lubricant(viscosity=0.02, pressure_viscosity=2e-8)
+    assert float(oil.log_viscosity_slope(0.0)) == pytest.approx(2e-8)
+    assert float(oil.log_viscosity(1e9)) < 2e-8 * 1e9
+
+
+def test_walther_through_two_viscosities():
+    law = walther({40: 100.0, 100: 11.0})
+    assert law.at(40.0).viscosity == pytest.approx(100.0)
+    step = 1e-3
+    fall = np.log(law.at(70.0 - step).viscosity / law.at(70.0 + step).viscosity) / (2 * step)
+    assert law.at(70.0).fall == pytest.approx(fall, rel=1e-6)
+
+
+@pytest.mark.parametrize("name", OILS)
+def test_presets_meet_their_table(name):
+    for column, temperature in enumerate((30.0, 60.0, 100.0)):
+        oil = Lubricant.preset(name, temperature)
+        assert oil.viscosity == pytest.approx(OILS[name].viscosities[column])
+    step = 0.01
+    fall = np.log(Lubricant.preset(name, 60 - step).viscosity / Lubricant.preset(name, 60 + step).viscosity) / 0.02
+    assert Lubricant.preset(name, 60.0).temperature_viscosity == pytest.approx(fall, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("values", "named"),
+    [
+        ({"viscosity": 0.0}, "viscosity"),
+        ({"pressure_viscosity": -1e-8}, "pressure_viscosity"),
+        ({"viscosity_law": "reynolds"}, "viscosity_law"),
+        ({"viscosity": 1e-5}, "viscosity"),
+        ({"density": -1.0}, "density"),
+    ],
+)
+def test_bad_values(values, named):
+    with pytest.raises(InvalidInputError, match=named):
+        Lubricant(**({"viscosity": 0.02, "pressure_viscosity": 2e-8} | values))
+
+
+def test_bad_temperatures():
+    with pytest.raises(InvalidInputError, match="temperature"):
+        Lubricant.preset("spindle oil", 20.0)
+    with pytest.raises(InvalidInputError, match="viscosities"):
+        walther({40: 10.0, 100: 20.0})

@@ -1,0 +1,125 @@
+"""The film of cases: certificate, limits, ends, refused input."""
+
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import contactstudy as cs
+from contactstudy.film import Asperities, solve_film
+from contactstudy.film.line_contact import solve_line
+
+pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
+
+STEEL = cs.Material(210e9, 0.3)
+HALF_WIDTH, RADIUS = 65e-6, 5e-3
+PRESSURE = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
+
+
+def oil_of(case, load, lubricant, speed=1.0):
+    """Barus' oil of constant density with which a case has Moes' numbers."""
+    modulus = 2 * case.modulus
+    root = case.normal_load / (case.contact_length * modulus * RADIUS * load)
+    return cs.Lubricant(
+        viscosity=0.5 * root**2 * modulus * RADIUS / speed,
+        pressure_viscosity=lubricant / (modulus * root**0.5),
+        viscosity_law="barus",
+        density_law="constant",
+    )
+
+
+def film_case(length, load=20.0, lubricant=10.0, *, body=None, profile=None, speed=1.0):
+    roller = cs.Roller(radius=RADIUS, length=length, profile=profile or cs.profiles.Cylinder())
+    body = cs.FiniteLengthSpace(length=length, material=STEEL) if body is None else body
+    case = cs.Case(body=body, roller=roller, max_pressure=PRESSURE)
+    motion = cs.Sliding(body_speed=speed, roller_speed=speed)
+    return replace(case, lubricant=oil_of(case, load, lubricant, abs(speed)), motion=motion)
+
+
+def crown(length=16 * HALF_WIDTH):
+    return cs.profiles.Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
+
+
+@pytest.fixture(scope="module")
+def crowned():
+    return solve_film(film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown()), accuracy=0.1)
+
+
+def test_certificate(crowned):
+    assert bool(crowned.converged)
+    assert float(crowned.mass_error) < 1e-6
+    assert float(crowned.film_load_error) < 1e-8
+    assert float(crowned.film_complementarity_error) < 1e-6
+
+
+def test_the_pressure_carries_the_load(crowned):
+    dy = float(crowned.y[1] - crowned.y[0])
+    load = float((crowned.pressure * crowned.x_width).sum() * dy)
+    assert load == pytest.approx(float(crowned.normal_load), rel=1e-9)
+    assert float(crowned.pressure.min()) >= 0.0
+
+
+def test_a_symmetric_roller_has_a_symmetric_film(crowned):
+    assert float(crowned.least_film_first) == pytest.approx(float(crowned.least_film_last), rel=1e-3)
+    middle = 8 * HALF_WIDTH
+    assert float(crowned.least_film_first_x + crowned.least_film_last_x) == pytest.approx(2 * middle, rel=1e-3)
+
+
+def test_film_at_the_ends_of_a_half_space_is_thinner(crowned):
+    body = cs.HalfSpace(material=STEEL)
+    other = solve_film(film_case(16 * HALF_WIDTH, 10.0, 5.0, body=body, profile=crown()), accuracy=0.2)
+    assert float(other.least_film) < 0.6 * float(crowned.least_film)
+    assert float(other.central_film) == pytest.approx(float(crowned.central_film), rel=0.05)
+
+
+def test_the_middle_of_a_long_roller_is_a_line_contact():
+    case = film_case(100 * HALF_WIDTH, profile=crown())
+    film = solve_film(case, accuracy=0.05)
+    scale = RADIUS * np.sqrt(2 * case.lubricant.viscosity / (2 * case.modulus * RADIUS))
+    line = solve_line(float(film.moes_load), float(film.moes_lubricant), finest=0.1)
+    error = float(film.central_film_error) + 5e-3 * float(film.central_film)
+    assert abs(float(film.central_film) - line.central * scale) < error
+
+
+def test_surfaces_that_move_backwards_mirror_the_film(crowned):
+    case = film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown(), speed=-1.0)
+    turned = solve_film(case, accuracy=0.1)
+    assert float(turned.least_film_y) == pytest.approx(-float(crowned.least_film_y), rel=1e-6)
+    assert turned.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
+
+
+def test_asperities_carry_what_the_film_does_not():
+    rough = Asperities(rms=5e-8)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", cs.ConvergenceWarning)
+        mixed = solve_film(film_case(16 * HALF_WIDTH, 50.0, 5.0, profile=crown()), accuracy=0.2, asperities=rough)
+    assert bool(mixed.converged)
+    assert 0.0 < float(mixed.asperity_load_share) < 1.0
+    assert float(mixed.film_thickness.min()) > 0.0
+    assert bool((mixed.asperity_pressure <= mixed.pressure * (1 + 1e-9)).all())
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"lubricant": None}, "lubricant"),
+        ({"motion": cs.Sliding()}, "motion"),
+        ({"motion": cs.Sliding(body_speed=1.0, roller_speed=-1.0)}, "motion"),
+        ({"coupled": True, "friction": 0.1}, "coupled"),
+    ],
+)
+def test_bad_cases(changes, named):
+    case = replace(film_case(16 * HALF_WIDTH), **changes)
+    with pytest.raises(cs.InvalidInputError, match=named):
+        solve_film(case)
+
+
+def test_bad_arguments():
+    case = film_case(16 * HALF_WIDTH)
+    with pytest.raises(cs.InvalidInputError, match="accuracy"):
+        solve_film(case, accuracy=1e-5)
+    with pytest.raises(cs.InvalidInputError, match="inlet"):
+        solve_film(case, inlet=0.5 * HALF_WIDTH)
+    with pytest.raises(cs.InvalidInputError, match="rms"):
+        Asperities(rms=0.0)

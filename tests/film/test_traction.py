@@ -1,0 +1,57 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import contactstudy as cs
+from contactstudy.film import film_traction
+from contactstudy.film.formulas import thermal_reduction
+from contactstudy.film.traction import shear_stress
+from tests.film.test_solve import HALF_WIDTH, film_case
+
+OIL = cs.Lubricant(viscosity=0.03, pressure_viscosity=2e-8, conductivity=0.14, temperature_viscosity=0.04)
+
+
+@pytest.fixture
+def film():
+    """A film of one thickness under a uniform pressure."""
+    case = replace(film_case(16 * HALF_WIDTH), lubricant=OIL)
+    x, y = (np.arange(16) + 0.5) * HALF_WIDTH, (np.arange(8) - 3.5) * 0.25 * HALF_WIDTH
+    pressure = np.full((16, 8), 1e8)
+    load = 1e8 * 16 * 2 * HALF_WIDTH**2
+    fields = {"pressure": (("x", "y"), pressure), "film_thickness": (("x", "y"), np.full((16, 8), 1e-6))}
+    return case, xr.Dataset(fields | {"entrainment_speed": 2.0, "normal_load": load}, coords={"x": x, "y": y})
+
+
+def test_newtonian_traction(film):
+    case, result = film
+    curve = film_traction(case, result, [-0.02, 0.0, 0.02])
+    expected = float(OIL.viscosity_at(1e8)) * 0.02 * 2.0 / 1e-6 / 1e8
+    assert curve.traction_coefficient.values == pytest.approx([-expected, 0.0, expected])
+    assert float(curve.rolling_force) == 0.0
+    area = 16 * 2 * HALF_WIDTH**2
+    assert float(curve.power_loss[2]) == pytest.approx(expected * 1e8 * area * 0.04)
+    assert float(curve.thermal_reduction[1]) < 1
+
+
+def test_eyring_and_limit():
+    rates = np.geomspace(1.0, 1e9, 50)
+    eyring = shear_stress(OIL.replaced(eyring_stress=5e6), np.full(50, 5e8), rates)
+    assert (np.diff(eyring) > 0).all()
+    assert (eyring <= shear_stress(OIL, np.full(50, 5e8), rates) * (1 + 1e-12)).all()
+    limited = shear_stress(OIL.replaced(limiting_shear=0.05), np.full(50, 5e8), rates)
+    assert limited.max() == pytest.approx(0.05 * 5e8)
+
+
+def test_hot_inlets_thin_the_film():
+    assert thermal_reduction(3e-3, 0.0, 1.0) == 1.0
+    assert thermal_reduction(3e-3, 1.0, 1.0) < thermal_reduction(3e-3, 1.0, 0.0) < thermal_reduction(3e-3, 0.1, 0.0) < 1
+
+
+def test_bad_input(film):
+    case, result = film
+    with pytest.raises(cs.InvalidInputError, match="lubricant"):
+        film_traction(replace(case, lubricant=None), result, [0.0, 0.1])
+    with pytest.raises(cs.InvalidInputError, match="film_thickness"):
+        film_traction(case, result[["pressure"]], [0.0, 0.1])

@@ -1,0 +1,51 @@
+"""Displacements of the top relative to the material line at the reference depth, against finite elements."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.polynomial import legendre
+
+from benchmarks.finite_elements import superpose
+from benchmarks.finite_elements.harmonics import HarmonicBody, Line
+from contactstudy import FiniteLengthSpace, displacement_field
+from contactstudy.verification.problems import Uniform, on_cells, quartic, unit_material
+
+LENGTH, POISSON = 2.5, 0.3
+RESOLUTION = superpose.Resolution(order=4, nodes=5, growth=2.0, panels=superpose.PANELS[:-2])
+
+
+def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
+    """``E u_z`` at mid-length of the top less the mean along the line at each depth."""
+    mesh = RESOLUTION.mesh_x(LENGTH), RESOLUTION.mesh_z()
+    body = HarmonicBody(*(Line(edges, RESOLUTION.order) for edges in mesh), POISSON)
+    node, weight = legendre.leggauss(8)
+    middle = body.x.evaluate([0.5 * LENGTH])[0]
+    along, below = body.x.evaluate(0.5 * LENGTH * (1 + node))[0], body.z.evaluate(depths)[0]
+    edges = np.array(RESOLUTION.panels, dtype=float)
+    roots = legendre.leggauss(RESOLUTION.nodes)[0]
+    wavenumbers = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (roots + 1)).ravel()
+    response = []
+    for k in wavenumbers:
+        sunk = body.solve(float(k), [(Uniform(), "z")])[0, 2]
+        line = 0.5 * weight @ (along @ (below @ sunk.T).T)
+        response.append(2 * ((middle @ (sunk @ body.top))[0] - line))
+    values = np.array(response)
+    total = np.zeros(len(depths))
+    for part, _, weights, interpolate in superpose._panels(RESOLUTION, superpose.transform_quartic):
+        total += weights @ interpolate @ values[part]
+    return (1 + POISSON) * total
+
+
+@pytest.mark.slow
+def test_top_relative_to_the_line_at_the_reference_depth() -> None:
+    """The contact's approach is this difference, see `tests/contact/normal/test_reference.py`."""
+    depths = (0.5 * LENGTH, LENGTH, 3 * LENGTH)
+    material = unit_material(POISSON)
+    load = on_cells(lambda x, y: quartic(y) + 0 * x, (0.0, LENGTH), (-1.25, 1.25), (80, 120))
+    node, weight = legendre.leggauss(8)
+    x = np.append(0.5 * LENGTH, 0.5 * LENGTH * (1 + node))
+    body = FiniteLengthSpace(length=LENGTH, material=material)
+    sunk = displacement_field(body, load, x=x, y=[0.0], z=[0.0, *depths], inside_cells=load).u_z.values[:, 0]
+    difference = material.young * (sunk[0, 0] - 0.5 * weight @ sunk[1:, 1:])
+    np.testing.assert_allclose(difference, finite_elements(depths), rtol=1e-3)

@@ -1,0 +1,446 @@
+"""Fields under columns of any width: against uniform cells, splitting, additivity, distant columns."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from contactstudy import Grid
+from contactstudy.cache import ArrayKey
+from contactstudy.checks import FloatArray
+from contactstudy.kernels.column_fields import (
+    AlongY,
+    SplitRequest,
+    _Surroundings,
+    _surroundings,
+    columns_field,
+    common_step,
+    split_columns,
+)
+from contactstudy.kernels.corner_sums import AlignedPoints, EvenOffsets, Layer, merge_columns, midpoint_cells
+from contactstudy.kernels.field import STRESS_PARITIES, displacement_influence, half_space_field
+from contactstudy.kernels.fine_cells import FineCells, resolved_columns
+from contactstudy.kernels.images import Influence
+from contactstudy.kernels.load import Load
+from contactstudy.kernels.patch import STRESS_CORNERS
+
+LENGTH, POISSON = 2.0, 0.3
+EXTENTS = {
+    "none": (-np.inf, np.inf),
+    "first": (0.0, np.inf),
+    "last": (-np.inf, LENGTH),
+    "both": (0.0, LENGTH),
+}
+X, Z = np.array([0.0, 0.3, 1.0, LENGTH]), np.array([0.05, 0.5])
+
+
+def stresses_of(load: Load) -> Influence:
+    return Influence.of(STRESS_CORNERS[load], POISSON, load, STRESS_PARITIES)
+
+
+def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
+    return displacement_influence(load, POISSON, extent[1] - extent[0], 20.0)
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_field_of_uniform_cells(load: Load, extent: str) -> None:
+    grid = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    cells = np.random.default_rng(0).random(grid.shape)
+    cells[:, :3] = 0
+    # Displacements of a row without end are differences of large numbers.
+    for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
+        for y in (grid.y, np.array([0.1, 0.33])):
+            expected = half_space_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            found = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            assert found.shape == expected.shape
+            assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
+    fields = []
+    for place in (0.0, 8.0):
+        grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
+        ends = (EXTENTS[extent][0] + place, EXTENTS[extent][1] + place)
+        cells = np.random.default_rng(2).random(grid.shape)
+        fields.append(columns_field(cells, None, stresses_of(load), grid, place + X, np.array([0.1]), Z, extent=ends))
+    assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
+
+
+GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
+"""Edges that are kept of twenty uniform cells."""
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
+    uniform = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
+    cells = np.random.default_rng(1).random(graded.shape)
+    spread = np.repeat(cells, np.diff(GRADED), axis=0)
+    influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
+    expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
+    found = columns_field(cells, None, influence, graded, X, y, Z, extent=EXTENTS[extent])
+    assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("load", Load)
+@pytest.mark.parametrize("extent", EXTENTS)
+@pytest.mark.parametrize("column", [7, 10])
+def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
+    load: Load, extent: str, column: int
+) -> None:
+    # Columns are split so that each point lies in the middle of one, which moved the force beside a step of the load.
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    fine = FineCells(cells, cells, graded, EXTENTS[extent], load.sign_x)
+    uniform = Grid((0.0, LENGTH), (float(fine.y_edges[0]), float(fine.y_edges[-1])), 20, 9 * fine.cells.shape[1])
+    smooth = fine.along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
+    spread = np.repeat(smooth, np.diff(GRADED), axis=0)
+    influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
+    for z in (np.array([0.15]), np.array([0.4])):
+        expected = half_space_field(spread, influence, uniform, x, y, z, extent=EXTENTS[extent])
+        found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS[extent])
+        assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize("extent", EXTENTS)
+def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
+    """In thirds of columns 0.4 wide; as steps it would be 9 % off."""
+    scale = 1e-3
+    graded = Grid.from_edges(scale * np.linspace(0.0, LENGTH, 21)[GRADED], (-scale, scale), 16)
+    across = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
+    cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * across
+    ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
+    fine = FineCells(cells, cells, graded, ends)
+    y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
+    uniform = Grid((0.0, scale * LENGTH), y_range, 100, 9 * fine.cells.shape[1])
+    along_x = fine.columns([uniform.x_edges])
+    spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
+    influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
+    for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
+        expected = half_space_field(spread, influence, uniform, x, y, z, extent=ends)
+        found = columns_field(cells, cells, influence, graded, x, y, z, extent=ends)
+        assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
+
+
+@pytest.mark.parametrize(
+    ("column", "extent", "image", "expected"),
+    [
+        (3, "none", 1, [0.3, 0.5]),
+        (3, "last", 1, [0.3, 0.5, 3.5, 3.7]),
+        (10, "both", 1, [-1.9, 1.9, 2.1]),
+        (10, "both", -1, [-2.0, -1.9, 1.9, 2.0, 2.1]),
+    ],
+)
+def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[float]) -> None:
+    graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
+    cells = np.zeros(graded.shape)
+    cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
+    steps = FineCells(1e-3 * cells, 1e-3 * cells, graded, EXTENTS[extent], image).steps
+    assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("load", Load)
+def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
+    # What columns far away do is interpolated over the depth; at a single depth it is not.
+    edges = np.concatenate([np.linspace(0.0, 2.0, 9), np.geomspace(2.5, 60.0, 24)])
+    graded = Grid.from_edges(edges, (-1.0, 1.0), 16)
+    cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
+    influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
+    x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
+    together = columns_field(cells, cells, influence, graded, x, y, z, extent=extent)
+    for number in (0, 1, 8, 24):
+        alone = columns_field(cells, cells, influence, graded, x, y, z[number : number + 1], extent=extent)
+        # Nearer to the top than the others see it, columns are split into more.
+        assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
+
+
+@pytest.mark.parametrize("load", Load)
+def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
+    graded = Grid.from_edges([0.0, 0.2, 0.6, 1.0], (-1.0, 1.0), 16)
+    cells = np.ones((3, 1)) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
+    point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
+    force = float((cells * graded.widths[:, None]).sum() * graded.dy)
+    influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
+    found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS["none"])
+    expected = columns_field(np.full((1, 1), force / 0.01), None, influence, point, x, y, z, extent=EXTENTS["none"])
+    assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
+
+
+def test_nothing_loaded_leaves_nothing() -> None:
+    grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
+    field = half_space_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
+    assert field.shape == (6, X.size, grid.y.size, Z.size)
+    assert not field.any()
+
+
+@st.composite
+def graded_loads(draw: st.DrawFn) -> tuple[Grid, FloatArray]:
+    """Columns of any widths, and a load on them."""
+    ratios = draw(st.lists(st.floats(0.3, 3.0), min_size=1, max_size=10))
+    edges = np.append(0.0, np.cumsum(np.cumprod([1.0, *ratios])))
+    grid = Grid.from_edges(LENGTH * edges / edges[-1], (-1.0, 1.0), 6)
+    return grid, np.random.default_rng(draw(st.integers(0, 1000))).random(grid.shape)
+
+
+@settings(max_examples=20)
+@given(loaded=graded_loads(), load=st.sampled_from(list(Load)), extent=st.sampled_from(["none", "both"]))
+def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray], load: Load, extent: str) -> None:
+    grid, cells = loaded
+    backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
+    influence, y = stresses_of(load), np.array([-0.4, 0.1])
+    there = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
+    back = columns_field(cells[::-1], None, influence, backwards, LENGTH - X[::-1], y, Z, extent=EXTENTS[extent])
+    sign = np.array(influence.sign_along_x)[:, None, None, None]
+    assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
+
+
+@settings(max_examples=2)
+@given(loaded=graded_loads())
+def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, FloatArray]) -> None:
+    grid, cells = loaded
+    depth, reach, points = 0.6, 40.0, 81
+    # Points that crowd where the load is: y = sinh(s).
+    s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
+    wide, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
+    field = columns_field(
+        cells, None, stresses_of(Load.NORMAL), grid, 1.0 + wide, wide, np.array([depth]), extent=EXTENTS["none"]
+    )[2, :, :, 0]
+    carried = -float(steps @ field @ steps)
+    total = float((cells * grid.widths[:, None]).sum() * grid.dy)
+    assert carried == pytest.approx(total, rel=2e-3)
+
+
+EDGES = np.array([0.0, 0.1, 0.3, 0.6, 1.0, 1.5, 2.0, 2.4, 2.7, 2.9, 3.0])
+UNIT, PRESSURE = 2.0**-17, 2.0**37
+PLACES = (0.0, 1e-12, 0.02, 0.05, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95, 3.0)
+
+
+def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1, steps: bool = False) -> FineCells:
+    """A load that is pressed at both ends, and may end in steps between columns."""
+    grid = Grid.between(unit * (EDGES + place), (-unit, unit), 8)
+    x, y = grid.x[:, None] / unit - place, grid.y / unit
+    cells = np.sqrt(np.maximum(1 - (y / 0.9) ** 2, 0.0)) * (1 + 0.4 * np.sin(2 * x))
+    if steps:
+        cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
+    extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
+    load = (PRESSURE if unit < 1 else 1.0) * cells
+    return FineCells(load, load, grid, extent, image)
+
+
+def around(x: float, own: FineCells, narrow: float = 0.0) -> _Surroundings:
+    return _surroundings(x, own, narrow)
+
+
+@pytest.mark.parametrize("x", PLACES)
+@pytest.mark.parametrize("narrow", [0.0, 0.15, 5.0])
+@pytest.mark.parametrize("steps", [False, True])
+def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, steps: bool) -> None:
+    for ends in (0, 1, 2):
+        plain_cells = fine(ends=ends, steps=steps)
+        plain = around(x, plain_cells, narrow)
+        for place, unit in ((0.0, UNIT), (8.0, 1.0), (-32.0, 1.0)):
+            cells = fine(place, unit, ends=ends, steps=steps)
+            other = around(unit * (x + place), cells, unit * narrow)
+            if x == 1e-12 and place:  # not to be told from 0 there
+                continue
+            assert (other.lowest, other.highest) == (plain.lowest, plain.highest)
+            assert other.inserted / unit - place == pytest.approx(plain.inserted, abs=1e-9)
+            factor = PRESSURE if unit < 1 else 1.0
+            assert other.moment_loads(cells) / factor == pytest.approx(plain.moment_loads(plain_cells), abs=1e-9)
+            for reach in (0.0, 0.3137, 1.0731, 9.0):
+                there = other.within(cells.edges, unit * (x + place), unit * reach)
+                assert there == plain.within(plain_cells.edges, x, reach)
+
+
+@pytest.mark.parametrize("x", PLACES)
+@pytest.mark.parametrize("image", [1, -1])
+def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int) -> None:
+    own = fine(image=image)
+    each = around(x, own)
+    forces = own.far_load * np.diff(own.edges)[:, None]
+    inserted = own.columns([each.inserted]) + each.moment_loads(own)
+    inside = (inserted * np.diff(each.inserted)[:, None]).sum(axis=0)
+    outside = forces.sum(axis=0) - forces[each.lowest : each.highest].sum(axis=0)
+    assert inside + outside == pytest.approx(forces.sum(axis=0), abs=1e-9)
+    assert each.inserted[0] == own.edges[each.lowest]
+    assert each.inserted[-1] == own.edges[each.highest]
+    assert (np.diff(each.inserted) > 0).all()
+
+
+@pytest.mark.parametrize("x", [0.02, 0.07, 0.3, 0.4, 0.75, 1.5, 1.7, 2.2, 2.95])
+def test_a_point_lies_in_the_middle_of_a_narrow_column_and_two_like_it(x: float) -> None:
+    """A quarter as wide as what it lies in; on an edge as the narrower of both."""
+    own = fine()
+    edges = around(x, own).inserted
+    at = int(np.searchsorted(edges, x)) - 1
+    assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
+    widths = np.diff(edges)
+    assert widths[at - 1] == pytest.approx(widths[at])
+    assert widths[at + 1] == pytest.approx(widths[at])
+    split = own.x_edges
+    beside = np.flatnonzero((split[:-1] <= x + 1e-12) & (split[1:] >= x - 1e-12))
+    assert widths[at] == pytest.approx(0.25 * np.diff(split)[beside].min())
+    low, high = resolved_columns(own.edges, x)
+    assert np.isin(edges[[0, -1]], own.edges[[max(low - 1, 0), min(high + 1, own.edges.size - 1)]]).all()
+    left = split[(split > own.edges[low]) & (split < own.edges[high]) & (np.abs(split - x) > 2.1 * widths[at])]
+    assert np.isin(left, edges).all()
+
+
+def test_no_column_around_a_point_reaches_over_a_step_of_the_load() -> None:
+    own = fine(steps=True)
+    (step,) = own.steps[np.abs(own.steps - 0.6) < 1e-9]
+    for distance in (0.001, 0.004, 0.01):
+        for x in (step - distance, step + distance):
+            edges = around(float(x), own).inserted
+            at = int(np.searchsorted(edges, x)) - 1
+            assert 0.5 * (edges[at] + edges[at + 1]) == pytest.approx(x)
+            assert not edges[at - 1] < step - 1e-12 < step + 1e-12 < edges[at + 2]
+    edges = around(float(step), own).inserted  # on the step itself as little as may be
+    assert np.diff(edges).min() == pytest.approx(1e-3 * 0.1, rel=0.5)
+
+
+@pytest.mark.parametrize("narrow", [0.0, 0.02])
+def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None:
+    """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
+    edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
+    grid = Grid.between(edges, (-1.0, 1.0), 4)
+    own = FineCells(PRESSURE * np.ones(grid.shape), PRESSURE * np.ones(grid.shape), grid)
+    on = around(2.0, own, narrow).inserted
+    for towards in (-np.inf, np.inf):
+        beside = around(float(np.nextafter(2.0, towards)), own, narrow).inserted
+        assert np.diff(beside).min() == pytest.approx(np.diff(on).min(), rel=0.6)
+
+
+def test_a_point_on_an_end_is_not_in_the_middle_of_a_column() -> None:
+    """There the mirrored load goes on smoothly, or is reversed; of a body without an end the point is like another."""
+    for place in (0.0, 8.0):
+        for end in (place, place + 3.0):
+            assert np.abs(around(end, fine(place)).inserted - end).min() < 1e-12
+        beside = around(place + 1e-3, fine(place)).inserted
+        at = int(np.searchsorted(beside, place + 1e-3)) - 1
+        assert 0.5 * (beside[at] + beside[at + 1]) == pytest.approx(place + 1e-3)
+
+
+def test_within_reach_are_columns_up_to_it_the_nearest_and_those_replaced() -> None:
+    edges = np.array([0.0, 1.0, 2.0, 4.0, 5.0, 7.0])
+    none = _Surroundings(edges[:1], 2, 2)
+    assert none.within(edges, 3.0, 0.0) == (2, 3)
+    assert none.within(edges, 3.0, 1.5) == (1, 4)
+    assert none.within(edges, -3.0, 1.0) == (0, 2)
+    assert none.within(edges, 9.0, 2.5) == (2, 5)
+    assert _Surroundings(edges[:3], 0, 2).within(edges, 4.5, 0.1) == (0, 4)
+    assert _Surroundings(edges[3:], 3, 5).within(edges, 0.5, 0.1) == (0, 5)
+
+
+@pytest.mark.parametrize("parts", range(1, 9))
+def test_distances_between_positions_have_a_common_step_of_up_to_six_parts(parts: int) -> None:
+    y = np.array([0.0, 0.1 * parts, 0.1 * parts + 0.1 * (parts + 1)])
+    assert common_step(y) == (pytest.approx(0.1) if parts <= 6 else None)
+    assert common_step(y[:1]) is None
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.03, 0.1, -0.04, 0.15, 0.35, -0.052, 0.048])
+@pytest.mark.parametrize("span", [1.6, 1.55])
+def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) -> None:
+    places, step, start = np.array([-3, 0, 4, 20]), 0.1, 5.0
+    column, edges = midpoint_cells(AlignedPoints(offset, np.arange(4), places), start, span, step)
+    layer = Layer.of(column, np.array([0.5]), np.array([0]), step=step, edges=edges, parts=1)
+    assert layer.edges is not None
+    at = (start + offset + step * places - layer.edges[0]) / step
+    assert at == pytest.approx(np.floor(at) + 0.5)
+    # All that is loaded, and no more than a cell beyond it.
+    assert start - step - 1e-9 < layer.edges[0] <= start + 1e-9
+    assert start + span - 1e-9 <= layer.edges[-1] < start + span + step - 1e-9
+    assert layer.edges[1:] - layer.edges[:-1] == pytest.approx(step)
+    # Distances from every point to every corner are among the offsets.
+    count = layer.edges.size
+    for place, first in zip(places, layer.offset_indices, strict=True):
+        distances = np.sort(start + offset + step * place - layer.edges)
+        offsets = layer.corners.along_y[layer.corners.index[first : first + count]]
+        assert np.sort(offsets) == pytest.approx(np.sort(np.abs(distances)))
+
+
+def seen(y: FloatArray, parts: int | None) -> list[Layer]:
+    grid = Grid((0.0, 1.0), (-0.75, 1.25), 4, 8)
+    along_y, numbers = AlongY(grid, y, 1, 6), np.array([1])
+    z = np.array([0.1, 0.2])
+    return along_y.uniform(z, numbers) if parts is None else along_y.layers(z, numbers, fine=bool(parts))
+
+
+def test_positions_with_a_common_step_share_cells_and_others_do_not() -> None:
+    together = seen(np.array([-0.1, 0.0, 0.3]), 5)
+    assert len(together) == 1
+    (layer,) = together
+    assert layer.edges is not None
+    for y in (-0.1, 0.0, 0.3):
+        at = (y - layer.edges[0]) / np.diff(layer.edges)[0]
+        assert at == pytest.approx(np.floor(at) + 0.5)
+    # No wider than a fifth of a cell, and an odd part of the step of 0.1.
+    assert np.diff(layer.edges)[0] == pytest.approx(0.1 / 3)
+    assert len(seen(np.array([-0.1, 0.0, 0.1 * np.pi]), 5)) == 3
+    assert len(seen(np.array([-0.1, 0.0, 0.3]), None)) == 3
+    assert len(seen(np.array([-0.25, 0.0, 0.5]), 5)) == 1
+    assert len(seen(np.array([0.0, 0.003, 0.999]), 5)) == 3
+    assert len(seen(np.linspace(-0.7, 1.1, 601), 5)) == 1
+    assert seen(np.array([0.0]), 5)[0].edges is not None
+
+
+def test_narrow_columns_are_taken_together_wherever_they_are() -> None:
+    """Within three percent of their distance from the point, with their force."""
+    edges, loads = np.linspace(0.0, 10.0, 401), np.random.default_rng(0).random((400, 2))
+    for place in (0.0, 100.0):
+        for x in (-1.0, 10.5, 20.0):
+            found, together = merge_columns(edges + place, loads, x + place)
+            assert (together * np.diff(found)[:, None]).sum(axis=0) == pytest.approx(loads.sum(axis=0) * 0.025)
+            widths, distance = np.diff(found), np.abs(0.5 * (found[1:] + found[:-1]) - place - x)
+            assert (widths <= 0.0301 * distance + 0.0251).all()
+            assert widths.size < 0.8 * 400
+            assert np.array_equal(found - place, merge_columns(edges, loads, x)[0]) or place
+
+
+@pytest.mark.parametrize(
+    ("start", "halved"), [(-3.0, True), (-3.25, False), (-2.75, False), (-2.5, True), (1.0, True), (-9.0, True)]
+)
+def test_offsets_about_zero_are_evaluated_on_one_side(start: float, halved: bool) -> None:
+    offsets = start + np.arange(7.0)
+    corners = EvenOffsets(offsets, np.zeros(1))
+    assert np.all(corners.along_y >= 0) == halved
+    values = np.stack([np.cos(corners.along_y), np.sin(corners.along_y)])[:, None, None, :]
+    unfolded = corners.unfold(values, np.array([False, True]), 10)[:, 0, 0]
+    assert unfolded[:, :7] == pytest.approx(np.stack([np.cos(offsets), np.sin(offsets)]))
+    assert not unfolded[:, 7:].any()
+
+
+@pytest.mark.parametrize("x", [0.002, 0.005, 0.01, 2.99, 2.995, 2.998])
+def test_no_column_reaches_beyond_those_that_it_replaces(x: float) -> None:
+    """Beside the first and the last edge of a load without images there is no room for narrow ones."""
+    own = fine(ends=0)
+    each = around(x, own)
+    assert (each.inserted[0], each.inserted[-1]) == (own.edges[each.lowest], own.edges[each.highest])
+    assert (np.diff(each.inserted) > 0).all()
+
+
+@pytest.mark.parametrize("uniform", [True, False])
+def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
+    found = []
+    for unit in (1.0, UNIT):
+        cells = fine(unit=unit)
+        x, y, z = np.array([0.3, 1.3, 2.9]), np.array([-0.1, 0.0, 0.3]), np.linspace(0.01, 6.0, 30)
+        axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
+        found.append(split_columns(SplitRequest(load, None if uniform else load, cells.grid, cells.extent, 1, axes)))
+    plain, other = found
+    assert plain.depths == other.depths
+    assert len(plain.layers) == len(other.layers)
+    for (near, sides), (same, alike) in zip(plain.jumps, other.jumps, strict=True):
+        for one, two in zip(near, same, strict=True):
+            assert two.edges / UNIT == pytest.approx(one.edges, abs=1e-9)
+        assert [[jumps.edges.size for jumps in side] for side in sides] == [
+            [jumps.edges.size for jumps in side] for side in alike
+        ]

@@ -1,0 +1,309 @@
+"""Kernels of strips: integrals over columns, observers at centres, images."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import fft, integrate
+
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
+from contactstudy.bodies.models import Body
+from contactstudy.checks import FloatArray
+from contactstudy.fields.part import ColumnsOperator
+from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
+from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
+from contactstudy.kernels.strips import (
+    FAR_COLUMNS,
+    GRADIENT_X,
+    GRADIENT_Y,
+    INVERSE,
+    MIXED,
+    SQUARE_X,
+    ColumnsRequest,
+    Strip,
+    row_level,
+    strips_of,
+    surface_kernel,
+)
+from contactstudy.overlapping.quadrature import Resolution
+
+WHOLE, ONE_END, TWO_ENDS = (-np.inf, np.inf), (0.0, np.inf), (0.0, 3.0)
+STRIPS = [INVERSE, SQUARE_X, GRADIENT_Y, GRADIENT_X, MIXED]
+strips = pytest.mark.parametrize("strip", STRIPS, ids=["inverse", "across", "ahead", "beside", "diagonal"])
+
+
+def influence(
+    strip: Strip,
+    edges: FloatArray,
+    dy: float,
+    cells_y: int,
+    extent: tuple[float, float],
+    reference: float = np.inf,
+    image: int = 1,
+) -> FloatArray:
+    """Influence of a strip (wavenumber, cell, cell)."""
+    return ColumnsRequest(edges, dy, cells_y, extent, reference).influence(((1.0, strip),), image)
+
+
+def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:
+    """Integral over y from low to high of what the strip is made of, from the definition."""
+    r_low, r_high = float(np.hypot(x, low)), float(np.hypot(x, high))
+    inverse = np.arcsinh(high / abs(x)) - np.arcsinh(low / abs(x))
+    return {
+        INVERSE: float(inverse),
+        SQUARE_X: float(high / r_high - low / r_low),
+        GRADIENT_Y: float(np.log(r_high / r_low)),
+        GRADIENT_X: float(np.arctan(high / x) - np.arctan(low / x)),
+        MIXED: x * (1 / r_low - 1 / r_high),
+    }[strip]
+
+
+def mean_influence(
+    strip: Strip, seen: tuple[float, float], loaded: tuple[float, float], low: float, high: float
+) -> float:
+    """Mean over one column of what a unit force per length of y on another does, by quadrature over the distance."""
+    (a, b), (c, d) = seen, loaded
+
+    def weighted(t: float) -> float:
+        together = max(0.0, min(b, d + t) - max(a, c + t))
+        return together * strip_kernel(strip, t if abs(t) > 1e-300 else 1e-300, low, high)
+
+    corners = sorted({a - d, a - c, b - d, b - c, *((0.0,) if a - d < 0 < b - c else ())})
+    pieces = [
+        integrate.quad(weighted, start, stop, epsabs=1e-13, epsrel=1e-10, limit=200)[0]
+        for start, stop in pairwise(corners)
+    ]
+    return sum(pieces) / ((b - a) * (d - c))
+
+
+def along_y(kernel: FloatArray, strip: Strip) -> FloatArray:
+    """Influence (offset along y, cell, cell) from its transform, offsets from 0."""
+    if strip.sign_y > 0:
+        return np.asarray(fft.idct(kernel, type=1, axis=0))
+    inner = -fft.idst(kernel[1:-1], type=1, axis=0)
+    return np.pad(np.asarray(inner), ((1, 1), (0, 0), (0, 0)))
+
+
+EDGES = np.array([0.0, 0.02, 0.05, 0.12, 0.3, 0.62, 0.9, 1.4, 1.9])
+
+
+@strips
+@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize("extent", [WHOLE, ONE_END, (-np.inf, 3.0), TWO_ENDS], ids=str)
+def test_a_body_elsewhere_has_the_same_influence(strip: Strip, image: int, extent: tuple[float, float]) -> None:
+    edges = np.array([0.0, 0.2, 0.7, 1.9, 2.5, 3.0])
+    here = influence(strip, edges, 0.3, 5, extent, 20.0, image)
+    there = influence(strip, edges + 8.0, 0.3, 5, (extent[0] + 8.0, extent[1] + 8.0), 20.0, image)
+    assert np.abs(there - here).max() < 1e-9 * np.abs(here).max()
+
+
+@strips
+@pytest.mark.parametrize(("seen", "loaded"), [(0, 0), (0, 1), (3, 1), (7, 2), (6, 7)])
+@pytest.mark.parametrize("offset", [0, 1, 4])
+def test_influence_between_columns_is_the_double_integral(strip: Strip, seen: int, loaded: int, offset: int) -> None:
+    dy, cells_y = 0.2, 6
+    kernel = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
+    pairs = (EDGES[seen], EDGES[seen + 1]), (EDGES[loaded], EDGES[loaded + 1])
+    exact = mean_influence(strip, *pairs, (offset - 0.5) * dy, (offset + 0.5) * dy)
+    assert kernel[offset, seen, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("image", [1, -1])
+@strips
+def test_image_in_an_end_is_the_column_behind_it(strip: Strip, image: int) -> None:
+    dy, cells_y, end = 0.2, 6, -0.1
+    plain = along_y(influence(strip, EDGES, dy, cells_y, WHOLE), strip)
+    mirrored = along_y(influence(strip, EDGES, dy, cells_y, (end, np.inf), image=image), strip) - plain
+    for seen, loaded, offset in ((0, 0, 0), (2, 5, 1), (7, 7, 3)):
+        behind = (2 * end - EDGES[loaded + 1], 2 * end - EDGES[loaded])
+        pair = (EDGES[seen], EDGES[seen + 1])
+        exact = image * mean_influence(strip, pair, behind, (offset - 0.5) * dy, (offset + 0.5) * dy)
+        assert mirrored[offset, seen, loaded] == pytest.approx(exact, rel=2e-9, abs=1e-12)
+
+
+@strips
+def test_derivatives_and_primitive_of_a_strip_belong_to_its_kernel(strip: Strip) -> None:
+    step = 1e-4
+    x, y = np.meshgrid(np.linspace(0.3, 4.0, 7), np.array([0.05, 0.4, 2.0]))
+    before, here, after = (strip.kernel(x + move, y) for move in (-step, 0.0, step))
+    assert np.allclose((after - 2 * here + before) / step**2, strip.curvature(x, y), rtol=1e-5, atol=2e-7)
+    rise = (strip.primitive(x + step, y) - strip.primitive(x - step, y)) / (2 * step)
+    # What does not depend on y is left out.
+    apart = rise - here
+    assert np.allclose(apart, apart[:1], atol=1e-7)
+
+
+@st.composite
+def increasing_edges(draw: st.DrawFn) -> FloatArray:
+    """Edges whose widths differ by a factor of 2.5 from cell to cell at most."""
+    ratios = draw(st.lists(st.floats(0.4, 2.5), min_size=1, max_size=14))
+    widths = np.cumprod([1.0, *ratios])
+    edges = np.append(0.0, np.cumsum(widths))
+    return np.asarray(3.0 * edges / edges[-1])
+
+
+SAMPLED = st.sampled_from(STRIPS)
+
+
+@settings(max_examples=30)
+@given(edges=increasing_edges(), strip=SAMPLED)
+def test_influence_is_reciprocal_to_the_last_bit(edges: FloatArray, strip: Strip) -> None:
+    """What an odd strip with images of one sign does is reciprocal to one with images of the other."""
+    for extent in (WHOLE, ONE_END):
+        kernel, other = (influence(strip, edges, 0.1, 6, extent, image=image) for image in (1, strip.sign_x))
+        assert np.array_equal(kernel, strip.sign_x * other.transpose(0, 2, 1))
+    kernel, other = (influence(strip, edges, 0.1, 6, TWO_ENDS, 30.0, image=image) for image in (1, strip.sign_x))
+    # Far images of a traction are differences of large numbers; the contact's matrix is that of the pressure.
+    allowed = 1e-12 if strip is INVERSE else 1e-7
+    assert np.abs(kernel - strip.sign_x * other.transpose(0, 2, 1)).max() < allowed * np.abs(kernel).max()
+
+
+@settings(max_examples=30)
+@given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans())
+def test_columns_seen_from_the_other_side_act_the_same(edges: FloatArray, strip: Strip, two: bool) -> None:
+    extent = TWO_ENDS if two else WHOLE
+    kernel = influence(strip, edges, 0.1, 6, extent, 30.0)
+    backwards = influence(strip, 3.0 - edges[::-1], 0.1, 6, extent, 30.0)
+    assert np.abs(kernel - strip.sign_x * backwards[:, ::-1, ::-1]).max() < 1e-7 * np.abs(kernel).max()
+
+
+@settings(max_examples=30)
+@given(edges=increasing_edges())
+def test_pressure_does_work_on_a_half_space_whatever_the_columns(edges: FloatArray) -> None:
+    for matrix in influence(INVERSE, edges, 0.1, 6, WHOLE):
+        assert np.linalg.eigvalsh(matrix).min() > 0
+
+
+@settings(max_examples=30)
+@given(edges=increasing_edges(), strip=SAMPLED, two=st.booleans(), at=st.integers(0, 20))
+def test_split_columns_act_as_the_one_they_were(edges: FloatArray, strip: Strip, two: bool, at: int) -> None:
+    """Galerkin's averages are consistent: forces on the halves in the whole's proportion, displacements averaged."""
+    at %= edges.size - 1
+    extent = TWO_ENDS if two else WHOLE
+    finer = np.insert(edges, at + 1, edges[at] + 0.3 * (edges[at + 1] - edges[at]))
+    widths, owner = np.diff(finer), np.searchsorted(edges, 0.5 * (finer[1:] + finer[:-1])) - 1
+    shares = np.zeros((edges.size - 1, widths.size))
+    shares[owner, np.arange(widths.size)] = widths / np.diff(edges)[owner]
+    coarse = influence(strip, edges, 0.1, 6, extent, 30.0)
+    fine = shares @ influence(strip, finer, 0.1, 6, extent, 30.0) @ shares.T
+    assert np.abs(fine - coarse).max() < 1e-7 * np.abs(coarse).max()
+
+
+@strips
+def test_expansion_of_far_columns_meets_the_integral(strip: Strip) -> None:
+    dy, cells_y = 0.01, 4
+    edges = np.array([0.0, 1e-3, 2e-3, 4e-3, 1.0, 1.03])
+    kernel = along_y(influence(strip, edges, dy, cells_y, WHOLE), strip)
+    assert edges[4] - edges[3] > FAR_COLUMNS * (edges[5] - edges[4])
+    for offset in (0, 2):
+        exact = mean_influence(strip, (0.0, 1e-3), (1.0, 1.03), (offset - 0.5) * dy, (offset + 0.5) * dy)
+        scale = max(np.abs(kernel[:, 4, 4]).max(), np.abs(kernel[:, 0, 4]).max())
+        assert abs(kernel[offset, 0, 4] - exact) < 1e-7 * scale
+        assert kernel[offset, 0, 4] == pytest.approx(exact, rel=1e-6, abs=1e-15)
+        assert kernel[offset, 4, 0] == strip.sign_x * kernel[offset, 0, 4]
+
+
+def test_very_narrow_columns_keep_their_digits() -> None:
+    """A column of 1e-5 a between wide ones at 150 a from each other."""
+    edges = np.concatenate([1e-5 * 2.0 ** np.arange(24), [150.0, 150.0 + 1e-5]])
+    edges = np.insert(edges, 0, 0.0)
+    kernel = along_y(influence(INVERSE, edges, 0.1, 4, WHOLE), INVERSE)
+    last, y = edges.size - 2, (-0.05, 0.05)
+    for seen, loaded in ((0, 0), (5, 0), (0, last), (last, last)):
+        pair = (edges[seen], edges[seen + 1]), (edges[loaded], edges[loaded + 1])
+        apart = 0.5 * (sum(pair[0]) - sum(pair[1]))
+        # Far from each other both are points.
+        far = abs(apart) > 1
+        exact = strip_kernel(INVERSE, abs(apart), *y) if far else mean_influence(INVERSE, *pair, *y)
+        assert kernel[0, seen, loaded] == pytest.approx(exact, rel=1e-6)
+
+
+STEEL = Material(210e9, 0.3)
+LENGTH = 1e-3
+BODIES: list[Body] = [
+    HalfSpace(material=STEEL),
+    QuarterSpace(material=STEEL),
+    QuarterSpace(material=STEEL, model="mirror-factor"),
+    FiniteLengthSpace(length=LENGTH, material=STEEL),
+    FiniteLengthSpace(length=LENGTH, material=STEEL, model="mirror"),
+    FiniteLengthSpace(length=LENGTH, material=STEEL, model="single-mirror"),
+]
+
+
+LOADS = (Load.NORMAL, Load.ALONG_X, Load.ALONG_Y)
+
+
+@pytest.mark.parametrize("body", BODIES, ids=lambda body: f"{type(body).__name__}-{getattr(body, 'model', '')}")
+def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body) -> None:
+    finer, cells_x, cells_y = 8, 30, 12
+    y_range = (-1.2e-4, 1.2e-4)
+    fine, coarse = (Grid((0.0, LENGTH), y_range, cells_x * factor, cells_y) for factor in (finer, 1))
+    pressure = np.random.default_rng(0).random(coarse.shape)
+    sinks_only = getattr(body, "model", "") == "single-mirror"
+    loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
+    request = OperatorRequest(body, fine, loads, directions=directions)
+    own = SurfaceOperator.of(request)
+    columns = SurfaceOperator(
+        body,
+        [
+            (part.weight, ColumnsOperator.of(body.material, part, coarse, request.responses, Resolution()))
+            for part in body.parts
+        ],
+    )
+    for load in loads:
+        displaced = own.displaced({load: np.repeat(pressure, finer, axis=0)}, directions)
+        means = {each: values.reshape(cells_x, finer, cells_y).mean(axis=1) for each, values in displaced.items()}
+        found = columns.displaced({load: pressure}, directions)
+        largest = max(float(np.ptp(each)) for each in means.values())
+        for direction, mean in means.items():
+            assert np.abs(found[direction] - mean).max() < 1.5e-3 * largest, (load, direction)
+
+
+def test_operator_converges_to_that_of_uniform_cells() -> None:
+    """What is left of the difference above is the finer cells' own: it falls with their square."""
+    body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
+    coarse = Grid((0.0, LENGTH), (-1.2e-4, 1.2e-4), cells_x, cells_y)
+    pressure = np.random.default_rng(1).random(coarse.shape)
+    operator = ColumnsOperator.of(STEEL, body.parts[0], coarse, (NORMAL_RESPONSE,), Resolution())
+    columns = operator({Load.NORMAL: pressure}, (Load.NORMAL,))[Load.NORMAL]
+    apart = []
+    for finer in (4, 8, 16):
+        fine = Grid((0.0, LENGTH), (-1.2e-4, 1.2e-4), cells_x * finer, cells_y)
+        own = SurfaceOperator.of(OperatorRequest(body, fine))({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
+        apart.append(np.abs(own.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns))
+    assert apart[1] < 0.35 * apart[0]
+    assert apart[2] < 0.35 * apart[1]
+
+
+P, X, Y = Load.NORMAL, Load.ALONG_X, Load.ALONG_Y
+
+
+@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**10])
+@pytest.mark.parametrize("poisson", [0.0, 0.3, 0.5])
+@pytest.mark.parametrize("response", [Response(P, P), Response(Y, Y)])
+def test_a_row_of_images_displaces_nothing_at_the_reference(response: Response, poisson: float, unit: float) -> None:
+    """And about that, like a line load: ``2 (1 - nu) / L ln(r / y)`` per force."""
+    length, reference, cell = 0.8 * unit, 8.0 * unit, 0.1 * unit
+    x, y = cell * np.arange(4.0), cell * np.array([40.0, 80.0, 160.0])
+    found = np.stack(
+        [
+            surface_kernel(response, poisson, x, one * np.ones(1), (cell, cell), length=length, reference=reference)[
+                :, 0
+            ]
+            for one in y
+        ]
+    )
+    row = cell**2 * 2 * (1 - poisson) / length
+    expected = row * np.log(reference / y)[:, None] * np.ones(4)
+    assert found == pytest.approx(expected, abs=2e-3 * cell**2 / length)
+
+
+def test_rows_without_a_net_load_need_no_level() -> None:
+    for displacement in (P, X, Y):
+        for load in (P, X, Y):
+            found = row_level(strips_of(Response(displacement, load), 0.3), load.sign_x, 0.8, 8.0)
+            assert (found != 0) == ((displacement, load) in ((P, P), (Y, Y)))

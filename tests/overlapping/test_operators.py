@@ -1,0 +1,91 @@
+"""Operators of the overlapping: transposes, dense matrices, and the iteration against the direct solution."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import LinearOperator, gmres
+
+from contactstudy import Grid
+from contactstudy.kernels.load import Load
+from contactstudy.overlapping.operators import OverlappingOperators, Positions
+from contactstudy.overlapping.problem import EndProblem
+from contactstudy.overlapping.quadrature import Resolution
+
+UNIFORM = Grid((0.0, 2.0), (-1.5, 1.5), 8, 6)
+COLUMNS = Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6)
+DEPTHS = np.array([0.1, 0.5])
+
+
+def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = False) -> OverlappingOperators:
+    resolution = Resolution().for_loads((load,))
+    problem = EndProblem(length, 0.3, np.zeros(grid.shape), (load,), grid, resolution, mirrored_once)
+    reference = 10 * length if np.isfinite(length) else None
+    return OverlappingOperators.of(problem, Positions(grid.x, grid.y, DEPTHS), reference=reference)
+
+
+def check_transpose(operator: LinearOperator) -> None:
+    generator = np.random.default_rng(0)
+    right, left = generator.standard_normal(operator.shape[1]), generator.standard_normal(operator.shape[0])
+    forward, backward = operator @ right, operator.T @ left
+    scale = max(np.linalg.norm(forward) * np.linalg.norm(left), np.linalg.norm(backward) * np.linalg.norm(right))
+    assert left @ forward == pytest.approx(right @ backward, abs=1e-12 * scale)
+
+
+@pytest.mark.parametrize("grid", [UNIFORM, COLUMNS])
+@pytest.mark.parametrize(
+    ("length", "mirrored_once"), [(2.0, False), (2.0, True), (np.inf, False)], ids=["slab", "single", "quarter"]
+)
+@pytest.mark.parametrize("load", list(Load))
+def test_transposes(grid: Grid, length: float, load: Load, *, mirrored_once: bool) -> None:
+    operators = overlapping(grid, length, load, mirrored_once=mirrored_once)
+    equivalent = operators.equivalent(load)
+    for operator in (
+        operators.modes(load),
+        operators.to_faces(load),
+        operators.to_top,
+        operators.solution,
+        operators.top_values,
+        operators.face_values(load, 0),
+        equivalent.added,
+        *equivalent.faces,
+    ):
+        check_transpose(operator)
+
+
+def test_dense_matrix() -> None:
+    added, faces = overlapping(COLUMNS, 2.0, Load.NORMAL).equivalent(Load.NORMAL)
+    load = np.random.default_rng(1).random(COLUMNS.cells_x * COLUMNS.cells_y)
+    for operator in (added, *faces):
+        dense = operator @ np.eye(load.size)
+        assert dense @ load == pytest.approx(operator @ load, abs=1e-12)
+
+
+@pytest.mark.parametrize("load", list(Load))
+def test_iteration_from_both_ends_equals_the_direct_solution(load: Load) -> None:
+    """Rounds between H and V converge to the solution of the equation set in a quarter space."""
+    operators = overlapping(UNIFORM, np.inf, load)
+    cells = np.random.default_rng(2).random(UNIFORM.cells_x * UNIFORM.cells_y)
+    source = operators.to_faces(load) @ (operators.modes(load) @ cells)
+    faces, to_faces = source, operators.to_faces(Load.NORMAL)
+    for _ in range(40):
+        faces = source + to_faces @ (operators.to_top @ faces)
+    direct = operators.equivalent(load).added @ cells
+    assert operators.top_values @ faces == pytest.approx(direct, abs=1e-10)
+    assert np.abs(direct).max() > 0.1
+
+
+def test_long_waves_stall_the_iteration_and_gmres_converges() -> None:
+    operators = overlapping(UNIFORM, 2.0, Load.NORMAL)
+    cells = (np.linspace(1.5, 0.5, UNIFORM.cells_x)[:, None] * np.ones(UNIFORM.cells_y)).ravel()
+    to_faces, to_top = operators.to_faces(Load.NORMAL), operators.to_top
+    source = to_faces @ (operators.modes(Load.NORMAL) @ cells)
+    direct = operators.equivalent(Load.NORMAL).added @ cells
+    faces = source
+    for _ in range(50):
+        faces = source + to_faces @ (to_top @ faces)
+    assert np.abs(operators.top_values @ faces - direct).max() > 1e-2
+    system = LinearOperator((source.size, source.size), lambda stress: stress - to_faces @ (to_top @ stress))
+    faces, failed = gmres(system, source, rtol=1e-13, restart=100)
+    assert not failed
+    assert operators.top_values @ faces == pytest.approx(direct, abs=1e-10)

@@ -1,0 +1,63 @@
+"""Residual stress of labelled eigenstrains."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material
+from contactstudy.plasticity import eigenstrain_stress
+from contactstudy.verification.closed_forms import rectangle_in_half_plane
+
+SOFT = Material(2.0, 0.3)
+
+
+@pytest.fixture(scope="module")
+def square() -> xr.Dataset:
+    """A square of eigenstrain, in cells of which the outer ones have none."""
+    x, z = -0.45 + 0.1 * np.arange(10), 0.35 + 0.1 * np.arange(10)
+    inside = ((np.abs(x) < 0.3)[:, None] & (np.abs(z - 0.8) < 0.3)).astype(float)
+    strains = {"xx": 1.0, "zz": -0.4, "xz": 0.3}
+    fields = {f"plastic_strain_{pair}": (("x", "z"), value * inside) for pair, value in strains.items()}
+    return xr.Dataset(fields, {"x": x, "z": z})
+
+
+def test_square_in_half_space(square) -> None:
+    x, z = np.array([-0.9, -0.1, 0.05]), np.array([0.2, 0.7, 0.85, 1.6])
+    found = eigenstrain_stress(HalfSpace(material=SOFT), square, x, z, z_edges=np.linspace(0.3, 1.3, 11))
+    ranges = (-0.3, 0.3), (0.5, 1.1)
+    expected = rectangle_in_half_plane(x[:, None], z, *ranges, (1.0, 0.0, -0.4, 0.3), SOFT.young, SOFT.poisson)
+    names = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz")
+    computed = np.stack([found[name].values for name in names])
+    assert np.abs(computed - expected).max() < 1e-4 * np.abs(expected).max()
+    assert found["sigma_xx"].attrs["units"] == "Pa"
+
+
+def test_cells_at_an_end() -> None:
+    body = FiniteLengthSpace(length=2.0, material=SOFT)
+    x, z = 0.1 + 0.2 * np.arange(10), 0.1 + 0.2 * np.arange(6)
+    strain = xr.Dataset({"plastic_strain_xx": (("x", "z"), np.outer(x, z))}, {"x": x, "z": z})
+    edges = {"x_edges": np.linspace(0, 2, 11), "z_edges": np.linspace(0, 1.2, 7)}
+    given, own = (eigenstrain_stress(body, strain, x=[0.0, 1.05], z=[0.0, 0.65], **more) for more in (edges, {}))
+    assert np.allclose(given["sigma_yy"], own["sigma_yy"])
+    assert np.abs(own["sigma_xx"].sel(x=0.0)).max() < 1e-9
+    assert np.abs(own["sigma_zz"].sel(z=0.0)).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda data: {"eigenstrain": data.drop_vars(list(data.data_vars))}, "with one of"),
+        (lambda data: {"eigenstrain": data * np.nan}, "not finite"),
+        (lambda data: {"eigenstrain": data.isel(x=[0])}, "x_edges"),
+        (lambda data: {"z_edges": np.linspace(0, 1, 4)}, "edges, increasing"),
+        (lambda data: {"z_edges": np.linspace(-1, 3, 11)}, "inside the body"),
+        (lambda data: {"z_edges": np.linspace(2, 3, 11)}, "holds its position"),
+        (lambda data: {"z": [-1.0]}, "outside"),
+    ],
+)
+def test_bad_input(square, change, message) -> None:
+    arguments = {"body": HalfSpace(material=SOFT), "eigenstrain": square} | change(square)
+    with pytest.raises(InvalidInputError, match=message):
+        eigenstrain_stress(**arguments)

@@ -1,0 +1,93 @@
+"""One pass: the rate equations of one layer by itself."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from contactstudy import fatigue
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.eigenstrain.layers import LayerInfluence
+from contactstudy.plasticity.passage import Passage, State
+
+YOUNG, POISSON = 1000.0, 0.3
+LAYERS = LayerInfluence(POISSON, YOUNG)
+
+
+class Alone:
+    """Layers of which each place along y answers as if all were like it."""
+
+    def stresses(self, eigenstrain: np.ndarray) -> np.ndarray:
+        return LAYERS.stresses(eigenstrain.reshape(6, -1)).reshape(eigenstrain.shape)
+
+
+def passes_of(history: np.ndarray, shear_yield_stress: float, hardening: tuple[float, float], count: int) -> State:
+    """Passes over one cell of a history (instant, 6)."""
+    one = np.zeros(1, np.int64)
+    passage = Passage(
+        history.T[:, :, None],
+        LAYERS,
+        LAYERS,
+        Alone(),
+        history.shape[0] + 2,
+        (one, one),
+        np.full(1, np.sqrt(3) * shear_yield_stress),
+        YOUNG / (2 * (1 + POISSON)),
+        *hardening,
+        1e-5,
+    )
+    state = State(np.zeros((6, 1)), np.zeros(1), True)
+    for _ in range(count):
+        state = passage.after(state)
+    return state
+
+
+def integrated(
+    history: np.ndarray, radius: float, hardening: tuple[float, float], passes: int, parts: int
+) -> np.ndarray:
+    """Residual stresses xx and yy of one layer, by the rate equations of Prandtl and Reuss in many small steps."""
+    modulus = YOUNG / (1 - POISSON**2)
+    isotropic, kinematic = hardening
+    strain, accumulated = np.zeros(6), 0.0
+
+    def left(plastic: np.ndarray) -> np.ndarray:
+        xx, yy = modulus * (plastic[0] + POISSON * plastic[1]), modulus * (plastic[1] + POISSON * plastic[0])
+        return -np.array([xx, yy, 0, YOUNG / (1 + POISSON) * plastic[3], 0, 0])
+
+    twice = np.array([1, 1, 1, 2, 2, 2.0])
+    for _ in range(passes):
+        for before, after in pairwise(history):
+            for part in range(parts):
+                stress = before + (part + 1) / parts * (after - before) + left(strain)
+                dev = stress - np.array([1, 1, 1, 0, 0, 0]) * stress[:3].mean() - 2 / 3 * kinematic * strain
+                size = np.sqrt((twice * dev**2).sum())
+                if size > radius + np.sqrt(2 / 3) * isotropic * accumulated:
+                    # The stress is brought back along the normal, in a body that answers to its flow by `left`.
+                    normal = dev / size
+                    answer = -(twice * normal * left(normal)).sum() + 2 / 3 * (kinematic + isotropic)
+                    step = (size - radius - np.sqrt(2 / 3) * isotropic * accumulated) / answer
+                    strain, accumulated = strain + step * normal, accumulated + np.sqrt(2 / 3) * step
+    return left(strain)[:2]
+
+
+@pytest.mark.parametrize(
+    ("friction", "part", "hardening"),
+    [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
+)
+def test_one_layer_against_rate_equations(
+    passing, friction: float, part: float, hardening: tuple[float, float]
+) -> None:
+    contact = passing(friction)
+    needed = fatigue.shakedown(contact)["shakedown_stress"].isel(x=0)
+    decisive = int(needed.values.argmax())
+    least = part * float(needed[decisive])
+    coarse = np.stack([contact[name].isel(x=0, z=decisive).values[::-1] for name in STRESSES], axis=1)
+    at = np.linspace(0, len(coarse) - 1, 12 * (len(coarse) - 1) + 1)
+    fine = np.stack([np.interp(at, np.arange(len(coarse)), one) for one in coarse.T], axis=1)
+    state = passes_of(fine, least, hardening, 3)
+    assert state.converged
+    expected = integrated(coarse, np.sqrt(2) * least, hardening, 3, 40)
+    assert np.abs(expected).max() > 0.01
+    assert LAYERS.stresses(state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())

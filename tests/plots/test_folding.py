@@ -1,0 +1,67 @@
+"""Names of any length stay within their figure."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import plots, profiles
+from contactstudy.plots.style import fold_text
+
+LONG = "outer ring raceway with an unusually long name, after grinding and superfinishing, batch 12"
+
+
+def legends(figure):
+    return [*figure.legends, *(ax.get_legend() for ax in figure.axes if ax.get_legend())]
+
+
+@pytest.fixture
+def assert_within(assert_nothing_clipped):
+    def check(figure):
+        assert_nothing_clipped(figure)
+        frame = figure.bbox
+        for legend in legends(figure):
+            box = legend.get_window_extent()
+            assert box.x0 >= frame.x0 - 1
+            assert box.y0 >= frame.y0 - 1
+            assert box.x1 <= frame.x1 + 1
+            assert box.y1 <= frame.y1 + 1
+
+    return check
+
+
+def approaches():
+    steps = {"approach": [1e-6, 2e-6], "profile": [LONG, f"{LONG}, 2"]}
+    values = xr.DataArray([[1e9, 2e9], [3e9, 4e9]], steps, ("approach", "profile"), attrs={"units": "Pa"})
+    study = xr.Dataset(dict.fromkeys(("peak_pressure", "peak_von_mises", "end_pressure_first"), values))
+    meaning = "how far the roller is pressed down at its mid-length, from first touch without tilt"
+    study["approach"].attrs = {"long_name": meaning, "units": "m"}
+    return study
+
+
+def test_parameters_of_long_meaning_fit(assert_within):
+    study = approaches()
+    assert_within(plots.plot_study_lines(study, x="approach", selection={"profile": LONG}))
+    assert_within(plots.plot_study_lines(study, x="profile", hue="approach"))
+    assert_within(plots.plot_study_lines(study, ["peak_pressure"], x="approach", hue="profile"))
+    assert_within(plots.plot_study_map(study, "peak_pressure", x="approach", y="profile").figure)
+    assert_within(plots.plot_study_map(study, "peak_pressure", x="profile", y="approach").figure)
+
+
+def test_results_and_profiles_of_long_names_fit(one, opened, assert_within):
+    assert_within(plots.plot_comparison({LONG: one, f"{LONG}, 2": one}).figure)
+    assert_within(plots.plot_profiles({LONG: profiles.FullCrown(1.0), "b": profiles.FullCrown(2.0)}, 10e-3).figure)
+    assert_within(plots.plot_edge_effect(opened.assign_coords(profile=LONG)))
+    creepages = {"longitudinal_creepage": [0.0, 1e-3], "profile": [LONG, f"{LONG}, 2"]}
+    force = xr.DataArray([[0.0, 0.0], [0.06, 0.05]], creepages, ("longitudinal_creepage", "profile"))
+    study = xr.Dataset({"force_y": force, "normal_load": xr.ones_like(force)}, {"friction": 0.1})
+    assert_within(plots.plot_traction_curve(study, "profile").figure)
+
+
+def test_formulas_are_not_broken():
+    assert fold_text(r"stress along the axis, $\sigma_x\ \mathrm{(MPa)}$ in $y = 0$", 22).split("\n") == [
+        "stress along the axis,",
+        r"$\sigma_x\ \mathrm{(MPa)}$ in $y = 0$",
+    ]
+    assert fold_text("x" * 30, 20) == "x" * 20 + "\n" + "x" * 10
+    assert fold_text(r"\$1 roller at \$2", 10) == "\\$1 roller\nat \\$2"
+    assert np.all([len(line) <= 40 for line in fold_text(LONG, 40).split("\n")])

@@ -1,0 +1,16 @@
+"""Values of parameters in titles."""
+
+import xarray as xr
+
+from contactstudy.plots.selection import describe_value, join_lines, select_values
+
+
+def test_selected_value_keeps_its_dimension():
+    study = xr.Dataset({"status": ("friction", ["ok", "ok"])}, {"friction": [0.0, 0.1]})
+    assert select_values(study, {"friction": 0.1}).friction.values.tolist() == [0.1]
+
+
+def test_title_breaks_between_values():
+    assert describe_value("max_pressure", 1e9, "Pa", 2) == "$p_0$ = 1 GPa, one of 2 values"
+    assert describe_value("profile", "crowned", "") == "profile = crowned"
+    assert join_lines(["friction = 0", "body = finite-length"], 20) == "friction = 0;\nbody = finite-length"

@@ -1,0 +1,130 @@
+"""Maps of the top: pressure, stick and slip, tractions, temperature."""
+
+from __future__ import annotations
+
+import functools
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+
+from contactstudy import Case, FiniteLengthSpace, InvalidInputError, Material, Roller, Rolling, plots, solve
+
+
+@functools.cache
+def rolled() -> xr.Dataset:
+    """Equal bodies that end together, creeping along and across."""
+    steel = Material(210e9, 0.3)
+    case = Case(
+        body=FiniteLengthSpace(length=0.5e-3, material=steel),
+        roller=Roller(radius=5e-3, length=0.5e-3, material=steel),
+        max_pressure=1.5e9,
+        friction=0.1,
+        motion=Rolling(longitudinal_creepage=8e-4, lateral_creepage=3e-4),
+    )
+    return solve(case, stresses=False, accuracy=0.05)
+
+
+def test_areas_are_those_of_the_case(assert_nothing_clipped) -> None:
+    one = rolled()
+    ax = plots.plot_stick_and_slip(one)
+    mesh = ax.collections[0]
+    slips = np.asarray(mesh.get_array()).reshape(one["pressure"].transpose("y", "x").shape)
+    pressed = one["pressure"].transpose("y", "x").values > 0
+    assert float(slips[pressed].sum()) == int(pressed.sum()) - int(one["stick"].sum())
+    assert mesh.get_clip_path() is not None  # the contact's border
+    assert_nothing_clipped(ax.figure)
+
+
+def test_arrows_point_along_the_tractions_where_they_stand() -> None:
+    one = rolled()
+    ax = plots.plot_stick_and_slip(one, arrows=12)
+    (arrows,) = (artist for artist in ax.collections if hasattr(artist, "U"))
+    a, p0 = float(one["hertz_half_width"]), float(one["hertz_max_pressure"])
+    for (x, y), u, v in list(zip(arrows.get_offsets(), arrows.U, arrows.V, strict=True))[::5]:
+        here = one.sel(x=x * a, y=y * a, method="nearest")
+        assert [u, v] == pytest.approx([float(here["traction_x"]) / p0, float(here["traction_y"]) / p0])
+        assert float(here["pressure"]) > 0
+    assert 40 < len(arrows.U) <= 144
+
+
+def test_si_is_mm_and_mpa() -> None:
+    ax = plots.plot_stick_and_slip(rolled(), si=True)
+    assert "mm" in ax.get_xlabel()
+    assert any("MPa" in artist.text.get_text() for artist in ax.artists)
+
+
+def test_traction_map_contains_magnitude_and_stick_border(assert_nothing_clipped) -> None:
+    one = rolled()
+    ax = plots.plot_traction_map(one, si=True)
+    mesh, stick, contact = ax.collections
+    largest = np.hypot(one["traction_x"], one["traction_y"]).where(one["pressure"] > 0, 0.0).max()
+    assert float(mesh.get_array().max()) == pytest.approx(float(largest) / 1e6)
+    # The border of the stick area encloses the cells that stick.
+    cells = np.argwhere(one["stick"].transpose("x", "y").values.astype(bool))
+    centres = np.column_stack([one["x"].values[cells[:, 0]], one["y"].values[cells[:, 1]]]) * 1e3
+    assert stick.get_paths()[0].contains_points(centres).mean() > 0.95
+    assert len(contact.get_paths()[0].vertices) > 0
+    assert_nothing_clipped(ax.figure)
+    slip = plots.plot_traction_map(one, variable="slip")
+    assert slip.figure.axes[-1].get_ylabel() == "slip per distance rolled"
+    shifted = one.assign({name: one[name].assign_attrs(units="m") for name in ("slip_x", "slip_y")})
+    assert "mm" in plots.plot_traction_map(shifted, variable="slip").figure.axes[-1].get_ylabel()
+    with pytest.raises(InvalidInputError, match="heat"):
+        plots.plot_traction_map(one, variable="heat")
+    with pytest.raises(InvalidInputError, match="stick"):
+        plots.plot_traction_map(one.drop_vars("stick"))
+
+
+def test_bad_traction_input() -> None:
+    with pytest.raises(InvalidInputError, match="stick is missing"):
+        plots.plot_stick_and_slip(rolled().drop_vars("stick"))
+    with pytest.raises(InvalidInputError, match="arrows = 0"):
+        plots.plot_stick_and_slip(rolled(), arrows=0)
+
+
+def test_map_shows_every_cell(solved, assert_nothing_clipped):
+    ax = plots.plot_pressure_map(solved)
+    drawn = ax.collections[0].get_array()
+    assert np.asarray(drawn).max() == pytest.approx(float(solved["pressure"].max()) / 1.5e9)
+    assert np.asarray(drawn).size == solved["pressure"].size
+    assert "x/a" in ax.get_xlabel()
+    assert "y/a" in ax.get_ylabel()
+    assert_nothing_clipped(ax.figure)
+
+
+@pytest.mark.parametrize("draw", [plots.plot_pressure_map])
+def test_given_axes_are_used(one, draw):
+    ax = pyplot.figure().add_subplot()
+    assert draw(one, ax) is ax
+
+
+@pytest.mark.parametrize("draw", [plots.plot_pressure_map])
+def test_bad_input(opened, one, draw):
+    with pytest.raises(InvalidInputError, match="single case"):
+        draw(opened)
+    with pytest.raises(InvalidInputError, match="level"):
+        draw(one.drop_vars("pressure"))
+
+
+@pytest.fixture(scope="module")
+def hot(solved):
+    rise = 1e-8 * solved["pressure"].copy()
+    return solved.assign(temperature_rise=rise, frictional_heat=solved["pressure"])
+
+
+def test_map_shows_every_cell_and_the_hottest_one(hot, assert_nothing_clipped):
+    ax = plots.plot_temperature_map(hot)
+    assert np.asarray(ax.collections[0].get_array()).max() == pytest.approx(float(hot.temperature_rise.max()))
+    hottest = hot.temperature_rise.where(hot.temperature_rise == hot.temperature_rise.max(), drop=True)
+    assert ax.lines[0].get_xdata()[0] == pytest.approx(float(hottest.x[0] / hot.hertz_half_width))
+    assert "x/a" in ax.get_xlabel()
+    assert_nothing_clipped(ax.figure)
+
+
+def test_a_surface_without_temperature_is_refused(hot):
+    with pytest.raises(InvalidInputError, match="roller_temperature_rise"):
+        plots.plot_temperature_map(hot, surface="roller")
+    with pytest.raises(InvalidInputError, match="surface"):
+        plots.plot_temperature_map(hot, surface="ball")

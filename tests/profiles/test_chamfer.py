@@ -1,0 +1,87 @@
+"""Chamfers of drawings, and the corners of generatrices."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError
+from contactstudy.profiles import Chamfer, Cylinder, EffectiveLength, FullCrown, Halves, Measured
+from contactstudy.profiles.base import as_shape
+
+LENGTH = 2e-3
+ANGLE = np.radians(2)
+X = np.linspace(-LENGTH / 2, LENGTH / 2, 401)
+
+
+@pytest.mark.parametrize(
+    "sizes",
+    [
+        {"width": 0.5e-3, "angle": ANGLE},
+        {"depth": 0.5e-3 * np.tan(ANGLE), "angle": ANGLE},
+        {"depth": 0.5e-3 * np.tan(ANGLE), "width": 0.5e-3},
+    ],
+)
+def test_two_sizes_determine_the_chamfer(sizes: dict[str, float]) -> None:
+    drop = Chamfer(**sizes).drop(X, LENGTH)
+    np.testing.assert_allclose(drop, np.maximum(np.abs(X) - 0.5e-3, 0.0) * np.tan(ANGLE), atol=1e-18)
+
+
+def test_blend_is_an_arc_tangential_to_both_sides() -> None:
+    radius = 5e-3
+    chamfer = Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius)
+    x = np.linspace(0.0, LENGTH / 2, 200001)
+    drop = chamfer.drop(x, LENGTH)
+    slope = np.diff(drop) / np.diff(x)
+    assert np.abs(np.diff(slope)).max() < 1.01 * (x[1] - x[0]) / radius
+    assert drop[-1] == pytest.approx(0.5e-3 * np.tan(ANGLE))
+    assert not chamfer.slope_jumps(LENGTH).positions.size
+
+
+@pytest.mark.parametrize(
+    ("sizes", "parameter"),
+    [
+        ({"width": 1e-4}, "depth, width, angle"),
+        ({"width": 1e-4, "depth": 1e-5, "angle": 0.1}, "depth, width, angle"),
+        ({"width": 1e-4, "angle": 45.0}, "angle"),
+        ({"width": 2 * LENGTH, "angle": 0.1}, "width"),
+        ({"width": 1e-4, "angle": 0.5, "blend_radius": 1e-2}, "blend_radius"),
+    ],
+)
+def test_sizes_out_of_range(sizes: dict[str, float], parameter: str) -> None:
+    with pytest.raises(InvalidInputError) as caught:
+        Chamfer(**sizes).drop(X, LENGTH)
+    assert caught.value.parameter == parameter
+
+
+RIDGE = Halves(FullCrown(0.2, centre=0.5e-3), FullCrown(0.2, centre=-0.5e-3))
+
+
+@pytest.mark.parametrize(
+    ("profile", "positions", "jumps"),
+    [
+        (Chamfer(width=0.5e-3, angle=ANGLE), [-0.5e-3, 0.5e-3], [np.tan(ANGLE)] * 2),
+        (RIDGE, [0.0], [0.005]),
+        (RIDGE + Chamfer(width=0.5e-3, angle=ANGLE), [-0.5e-3, 0.0, 0.5e-3], [np.tan(ANGLE), 0.005, np.tan(ANGLE)]),
+        (EffectiveLength(RIDGE, 1.8e-3), [0.0], [0.005]),
+        (Cylinder(0.1e-3), [], []),
+        (Halves(FullCrown(1.0), FullCrown(0.5)), [], []),
+    ],
+)
+def test_corners_of_formulas(profile, positions: list[float], jumps: list[float]) -> None:
+    corners = as_shape(profile).slope_jumps(LENGTH)
+    np.testing.assert_allclose(corners.positions, positions, atol=1e-12)
+    np.testing.assert_allclose(corners.jumps, jumps, rtol=1e-4)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])
+def test_measured_points_do_not_resolve_a_corner(shift: float) -> None:
+    chamfer = Chamfer(width=0.5e-3 + shift * (X[1] - X[0]), angle=ANGLE)
+    corners = Measured(X, chamfer.drop(X, LENGTH)).slope_jumps(LENGTH)
+    np.testing.assert_allclose(np.abs(corners.positions), 0.5e-3, atol=5.1e-6)
+    np.testing.assert_allclose(corners.jumps, np.tan(ANGLE), rtol=1e-9)
+
+
+def test_measured_points_resolve_an_edge_radius() -> None:
+    corners = Measured(X, Cylinder(0.1e-3).drop(X, LENGTH)).slope_jumps(LENGTH)
+    assert not (np.abs(corners.positions) < 0.98e-3).any()

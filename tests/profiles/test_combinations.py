@@ -1,0 +1,106 @@
+"""Profiles over the effective length."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, Roller
+from contactstudy.profiles import (
+    Cylinder,
+    EffectiveLength,
+    FujiwaraKawase,
+    FullCrown,
+    JohnsGohar,
+    Lundberg,
+    Profile,
+    Tapered,
+    local_radius,
+)
+from contactstudy.profiles.base import Shape
+from tests.profiles.conftest import LENGTH, RADIUS
+
+CROWN = FullCrown(0.8)
+
+
+def test_within_the_effective_length_it_is_the_profile_on_that_length(places: np.ndarray) -> None:
+    effective = 0.9 * LENGTH
+    inside = places[np.abs(places) <= 0.5 * effective]
+    assert EffectiveLength(CROWN, effective).drop(inside, LENGTH) == pytest.approx(CROWN.drop(inside, effective))
+    assert EffectiveLength(CROWN, LENGTH).drop(places, LENGTH) == pytest.approx(CROWN.drop(places, LENGTH))
+
+
+def test_corners_are_those_of_a_rounded_cylinder(places: np.ndarray) -> None:
+    found = EffectiveLength(Cylinder(), 0.8 * LENGTH).drop(places, LENGTH)
+    assert found == pytest.approx(Cylinder(fillet_radius=0.1 * LENGTH).drop(places, LENGTH), abs=1e-18)
+
+
+@pytest.mark.parametrize(
+    "profile", [CROWN, FujiwaraKawase(2e-7, 1e-6), FujiwaraKawase(5e-7, 8e-6), JohnsGohar(1e-6, 4e-5)]
+)
+def test_corners_go_on_from_the_profile(profile: Profile) -> None:
+    """A corner that began parallel to the axis would be a ledge, pressed beside the profile that falls towards it."""
+    effective = 0.9 * LENGTH
+    x = np.linspace(0.4 * LENGTH, 0.5 * LENGTH, 20001)
+    drop = EffectiveLength(profile, effective).drop(x, LENGTH)
+    assert np.array_equal(drop, EffectiveLength(profile, effective).drop(-x, LENGTH))
+    slope = np.diff(drop) / np.diff(x)
+    # No slope above 1 within the effective length is gone on with: that is steeper than any contact.
+    assert (np.diff(np.minimum(slope, 0.99)) > -1e-9).all()
+    assert slope[-1] > 50
+    radius = 0.05 * LENGTH
+    assert drop[-1] > EffectiveLength(profile, effective).end_drop + radius
+
+
+def test_a_corner_is_a_circle_from_the_slope_of_a_cone_to_a_right_angle() -> None:
+    """Of a straight flank of slope 3/4, the corner turns by what is left of a right angle: radius c / (1 - 0.6)."""
+
+    class Cone(Shape):
+        def drop(self, x, length):
+            return 0.75 * np.abs(x)
+
+    half, corner = 0.4 * LENGTH, 0.1 * LENGTH
+    angle = np.linspace(np.arcsin(0.6), 0.5 * np.pi, 7)
+    radius = corner / 0.4
+    x, drop = half + radius * (np.sin(angle) - 0.6), 0.75 * half + radius * (0.8 - np.cos(angle))
+    assert EffectiveLength(Cone(), 2 * half).drop(x, LENGTH) == pytest.approx(drop, rel=1e-6)
+
+
+def test_radius_across_is_that_of_the_profile(places: np.ndarray) -> None:
+    inside = places[np.abs(places) <= 0.4 * LENGTH]
+    found = local_radius(EffectiveLength(Tapered(0.05), 0.8 * LENGTH), inside, LENGTH, RADIUS)
+    assert found == pytest.approx(local_radius(Tapered(0.05), inside, 0.8 * LENGTH, RADIUS))
+
+
+def test_infinite_end_drop_ends_in_a_corner_of_slope_one() -> None:
+    effective = 0.9 * LENGTH
+    profile = EffectiveLength(Lundberg(2e-7), effective)
+    x = np.linspace(0.0, 0.5 * LENGTH, 100001)
+    drop = profile.drop(x, LENGTH)
+    inside = x < 0.4999 * effective
+    assert drop[inside] == pytest.approx(Lundberg(2e-7).drop(x[inside], effective))
+    assert np.isfinite(drop).all()
+    assert (np.diff(drop) >= 0).all()
+    assert drop[-1] > 0.05 * LENGTH
+
+
+def test_it_says_the_drop_at_its_end() -> None:
+    assert repr(EffectiveLength(FullCrown(1.0), 8e-3)).endswith("effective_length=8 mm, drop 8 µm at its end)")
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: EffectiveLength(CROWN, 0.0), "effective_length = 0.0"),
+        (lambda: EffectiveLength("crown", LENGTH), "profile = 'crown'"),
+        (
+            lambda: Roller(radius=RADIUS, length=LENGTH, profile=EffectiveLength(CROWN, 1.1 * LENGTH)),
+            "at most the roller's length, 0.01 m",
+        ),
+    ],
+)
+def test_bad_input(make, said: str) -> None:
+    with pytest.raises(InvalidInputError, match=re.escape(said)):
+        make()

@@ -1,0 +1,111 @@
+"""Files of instruments: x3p, written by the library of the format; turning; what is refused."""
+
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+import x3pio
+
+from contactstudy import ContactStudyError, InvalidInputError
+from contactstudy.profiles import instruments
+from contactstudy.profiles.instruments import Heights, read_heights, turned
+
+X, Y = 2e-6 * np.arange(5), 3e-6 * np.arange(4)
+MAP = 1e-6 * np.random.default_rng(0).normal(size=(5, 4))
+
+
+def check(found: Heights, x=X, y=Y, heights=MAP) -> None:
+    np.testing.assert_allclose(found.x, x, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(found.y, y, rtol=1e-12, atol=1e-20)
+    np.testing.assert_allclose(found.heights, heights, rtol=1e-12)
+
+
+def test_x3p_surface(tmp_path: Path) -> None:
+    values = MAP.copy()
+    values[2, 1] = np.nan
+    x3pio.write(tmp_path / "map.x3p", values.T, x_scale=2e-6, y_scale=3e-6)
+    check(read_heights(tmp_path / "map.x3p"), heights=values)
+    x3pio.write(tmp_path / "line.x3p", MAP[:, :1].T, x_scale=2e-6, y_scale=3e-6)
+    line = read_heights(tmp_path / "line.x3p")
+    assert line.y is None
+    np.testing.assert_allclose(line.heights, MAP[:, 0])
+
+
+def test_x3p_profile_even_or_not(tmp_path: Path) -> None:
+    x3pio.Profile.from_array(MAP[:, 0], x_scale=2e-6).save(tmp_path / "even.x3p")
+    uneven = np.array([0.0, 1.0, 3.0, 4.0, 6.0]) * 1e-6
+    points = np.stack([uneven, np.zeros(5), MAP[:, 0]], axis=1)
+    x3pio.Profile.from_points(points).save(tmp_path / "uneven.x3p")
+    for name, x in (("even", X), ("uneven", uneven)):
+        found = read_heights(tmp_path / f"{name}.x3p")
+        assert found.y is None
+        np.testing.assert_allclose(found.x, x, atol=1e-20)
+        np.testing.assert_allclose(found.heights, MAP[:, 0])
+
+
+def test_turns_are_those_of_a_part_on_a_table() -> None:
+    """A point at (x, y) comes to lie where a rotation takes it; its height goes with it."""
+    found = Heights(X, Y, MAP)
+    for turn in (0, 90, 180, 270):
+        there = turned(found, turn)
+        angle = np.deg2rad(turn)
+        for i, j in ((0, 0), (1, 3), (4, 2)):
+            x, y = X[i] - X.mean(), Y[j] - Y.mean()
+            at = np.cos(angle) * x - np.sin(angle) * y, np.sin(angle) * x + np.cos(angle) * y
+            nearest = [np.abs(axis - axis.mean() - place).argmin() for axis, place in zip(there[:2], at, strict=True)]
+            assert there.heights[tuple(nearest)] == MAP[i, j]
+        assert (np.diff(there.x) > 0).all()
+        assert (np.diff(there.y) > 0).all()
+    check(turned(turned(found, 90, mirror=True), 90, mirror=True))
+
+
+@pytest.mark.parametrize(("turn", "line"), [(45, False), (True, False), ("90", False), (90, True)])
+def test_other_turns_are_refused(turn: object, line: bool) -> None:
+    with pytest.raises(InvalidInputError, match="turn = "):
+        turned(Heights(X, None, MAP[:, 0]) if line else Heights(X, Y, MAP), turn)
+
+
+def test_bad_files_are_named(tmp_path: Path) -> None:
+    (tmp_path / "broken.x3p").write_bytes(b"PK\x03\x04 no such file")
+    with pytest.raises(InvalidInputError, match=r"path = .*broken.x3p"):
+        read_heights(tmp_path / "broken.x3p")
+    with pytest.raises(InvalidInputError, match=r"missing.x3p.*can be read"):
+        read_heights(tmp_path / "missing.x3p")
+    (tmp_path / "pipe.x3p").mkdir()
+    with pytest.raises(InvalidInputError, match="not a folder"):
+        read_heights(tmp_path / "pipe.x3p")
+
+
+def test_large_xml_is_refused_before_it_is_unpacked(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "bomb.x3p"
+    x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("other.xml", b" " * (instruments.MOST_XML + 1))
+    monkeypatch.setattr(x3pio, "read", lambda path: pytest.fail("the file is unpacked"))
+    with pytest.raises(InvalidInputError, match=rf"other.xml.*{instruments.MOST_XML + 1}"):
+        read_heights(path)
+
+
+def test_x3p_without_the_extra_is_not_told_to_change_its_name(tmp_path: Path, monkeypatch) -> None:
+    path = tmp_path / "flank.x3p"
+    x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
+    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    with pytest.raises(ContactStudyError, match=r'pip install "contactstudy\[measured\]"'):
+        read_heights(path)
+
+
+def test_clouds_and_layers_are_refused(tmp_path: Path) -> None:
+    x3pio.write_points(tmp_path / "cloud.x3p", np.random.default_rng(0).normal(size=(9, 3)))
+    with pytest.raises(InvalidInputError, match="cloud of points"):
+        read_heights(tmp_path / "cloud.x3p")
+    x3pio.write(tmp_path / "two.x3p", np.stack([MAP.T, MAP.T]), x_scale=2e-6, y_scale=3e-6)
+    with pytest.raises(InvalidInputError, match=r"one layer.*it has 2"):
+        read_heights(tmp_path / "two.x3p")
+
+
+@pytest.mark.parametrize(("name", "package"), [("a.x3p", "x3pio"), ("a.gwy", "SurfaceTopography")])
+def test_without_the_extra_it_says_how_to_install(tmp_path: Path, monkeypatch, name: str, package: str) -> None:
+    monkeypatch.setattr(instruments, "find_spec", lambda name: None)
+    with pytest.raises(ContactStudyError, match=rf'{package}.*pip install "contactstudy\[measured\]"'):
+        read_heights(tmp_path / name)

@@ -1,0 +1,373 @@
+"""Pages of a case and of a study: content, links, self-containment."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib import pyplot
+
+from contactstudy import InvalidInputError, open_study, report
+from contactstudy.cli import main
+from contactstudy.report import study_page
+from contactstudy.report.study_page import figures_of_folder
+from contactstudy.study import load_case, run_study
+from contactstudy.study.folder import Entry
+from tests.browser import browser, chromium
+from tests.small_study import BASE, small_study
+from tests.stand_in_solver import FAILS, solve_fake
+
+VOID = {"meta", "img", "br", "link", "input"}
+
+
+class Page(HTMLParser):
+    """Reads a page: its text, what it fetches, its anchors; and fails on tags that do not match."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.fetched: list[str] = []
+        self.anchors: set[str] = set()
+        self.links: set[str] = set()
+        self.words: list[str] = []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        values = dict(attrs)
+        assert tag not in ("script", "link", "iframe")
+        if "id" in values:
+            assert values["id"] not in self.anchors, values["id"]
+            self.anchors.add(values["id"])
+        if tag == "a":
+            self.links.add(values["href"])
+        if "src" in values:
+            self.fetched.append(values["src"])
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attrs):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.words.append(data)
+
+    @property
+    def text(self) -> str:
+        return " ".join(" ".join(self.words).split())
+
+
+def read(path: Path) -> Page:
+    text = path.read_text(encoding="utf-8")
+    page = Page(text)
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in page.fetched)
+    assert all(link[1:] in page.anchors for link in page.links), page.links - page.anchors
+    assert not re.findall(r"(?:src|href)=[\"'](?:https?:)?//|@import|url\(", text)
+    return page
+
+
+def test_page_of_a_case(solved: xr.Dataset, tmp_path: Path) -> None:
+    solved.to_netcdf(tmp_path / "roller.nc")
+    page = read(report.write(tmp_path / "roller.nc"))
+    for words in (
+        *("roller", "0.52 mm apart", "E = 210 GPa", "fillet radius 0.1 mm", "1.5 GPa", "friction coefficient 0.1"),
+        *("Is this number real?", "With care", "was not estimated", "to scale in both directions", "numpy"),
+        "Hetenyi",
+    ):
+        assert words in page.text, words
+    assert len(page.fetched) >= 5
+
+
+def test_singular_peak(solved: xr.Dataset) -> None:
+    singular = solved.assign(
+        peak_pressure=np.inf, peak_pressure_error=np.inf, end_pressure_first=np.inf, end_intensity_first=1e6
+    ).assign(end_exponent_first=0.5)
+    page = Page(report.html(singular, title="A <sharp> end"))
+    assert "A <sharp> end" in page.text
+    assert page.text.count("singular: unbounded towards a sharp end") == 4
+    assert "its intensity replaces the peak" in page.text
+
+
+def test_dataset_without_inputs(solved: xr.Dataset) -> None:
+    page = Page(report.html(solved.drop_attrs()))
+    assert "contains no inputs" in page.text
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("small")
+    profiles = ["cylinder", {"kind": "cylinder", "fillet_radius": 1e-4, "name": "<b>rounded</b>"}]
+    sweep = {"e_over_a": [0.0, 1.0, -9.0], "friction": [0.0, FAILS], "profile": profiles}
+    run_study(small_study(sweep=sweep, description="Made up."), folder, workers=0, solver=solve_fake, progress=False)
+    return folder
+
+
+def test_page_of_a_study(folder: Path) -> None:
+    page = read(report.write(folder))
+    for words in (
+        *("Study small", "Made up.", "4 ok", "4 failed", "4 skipped", "WindowError: this friction fails in tests"),
+        *(
+            "<b>rounded</b>",
+            "5 mm",
+            "error not estimated",
+            "4 cases",
+            "Are these numbers real?",
+            "(end distance over a: 3, coefficient of friction: 2, roller profile: 2)",
+        ),
+    ):
+        assert words in page.text, words
+    for words in ("Are these numbers real?", "end distance over a: 3, coefficient of friction: 2"):
+        assert words in page.text, words
+    assert {f"case-{number}" for number in range(1, 13)} <= page.anchors
+    assert len(page.fetched) == 2
+
+
+def settled_cases(*errors: float) -> list[study_page.Row]:
+    """Rows of solved cases with relative errors of the peak."""
+    scalars = [{"peak_pressure": 2e9, "peak_pressure_error": error * 2e9, "converged": 1.0} for error in errors]
+    return [study_page._row("case-1", Entry("ok", numbers=numbers), [], []) for numbers in scalars]
+
+
+def test_reason_of_several_cases() -> None:
+    ((answer, reason, cases), (best, _, _)) = study_page._answers(settled_cases(0.1, 0.06, 0.001))
+    assert (answer, len(cases), best) == ("with care", 2, "yes")
+    assert reason == "the error of the peak pressure is 10.0% in the worst case, 6.0% in the best"
+
+
+def test_open_ends_have_no_column(tmp_path: Path) -> None:
+    def rounded(*given, **more) -> xr.Dataset:
+        return solve_fake(*given, **more).assign(end_pressure_first=0.0, end_pressure_last=0.0)
+
+    run_study(small_study(), tmp_path, workers=0, solver=rounded, progress=False)
+    assert "at end" not in Page(report.html(tmp_path)).text
+    scalars = [{"end_pressure_first": value, "end_pressure_last": 0.0} for value in (0.0, 1e9)]
+    names = [name for name in study_page.NUMBERS if any(study_page._has_number(numbers, name) for numbers in scalars)]
+    assert names == ["end_pressure_first"]
+
+
+def test_verdict_is_the_worst_answer(folder: Path, tmp_path: Path) -> None:
+    assert study_page._verdict(settled_cases(0.1, 0.001)) == ("with care", "1 real with care, 1 real")
+    assert study_page._verdict(settled_cases(0.001, 0.001)) == ("yes", "2 real")
+
+    def coarse(*given, **more) -> xr.Dataset:
+        return solve_fake(*given, **more).assign(peak_pressure=2e9, peak_pressure_error=2e8)
+
+    run_study(small_study(), tmp_path, workers=0, solver=coarse, progress=False)
+    page = report.html(tmp_path)
+    assert 'class="verdict with-care"' in page
+    assert "4 ok; numbers of these: 4 real with care" in Page(page).text
+
+
+def test_inputs_in_engineers_units(tmp_path: Path) -> None:
+    profile = {"kind": "cylinder", "fillet_radius": 1e-4}
+    sweep = {"tilt": [0.0, 3e-4], "profile": ["cylinder", profile | {"fillet_radius": 5e-5}]}
+    study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=sweep)
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    page = Page(report.html(tmp_path))
+    assert "cylinder, fillet radius 50 µm" in page.text
+    assert "0.3 mrad" in page.text
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    assert any("mrad" in ax.get_xlabel() for ax in figure.axes)
+    assert figure.axes[0].lines[0].get_xdata().max() == pytest.approx(0.3)
+    pyplot.close(figure)
+    run_study(
+        small_study(base=BASE | {"profile": profile}), tmp_path / "b", workers=0, solver=solve_fake, progress=False
+    )
+    assert "cylinder, fillet radius 0.1 mm" in Page(report.html(tmp_path / "b")).text
+
+
+def test_numbers_and_figure_of_singular_ends(tmp_path: Path) -> None:
+    def sharp(*given, **more) -> xr.Dataset:
+        law = {"end_exponent_first": 0.5, "end_intensity_first": 3.245e6, "end_intensity_first_error": 1.8e4}
+        loads = {"end_load_first": 4.02, "end_load_first_error": 0.02, "end_load_last": 3.0}
+        peaks = dict.fromkeys(("peak_pressure", "peak_pressure_error", "end_pressure_first"), np.inf)
+        return solve_fake(*given, **more).assign(law | loads | peaks)
+
+    run_study(small_study(), tmp_path, workers=0, solver=sharp, progress=False)
+    page = Page(report.html(tmp_path))
+    for words in ("K at end I", "0.10262 ± 0.00057 GPa mm^0.5", "load on the last a, end I", "4.020 ± 0.020 N"):
+        assert words in page.text, words
+    assert "at end I largest" not in page.text
+    assert "K at end II" not in page.text  # that end is not singular
+    figure, _ = figures_of_folder(tmp_path)["study"]
+    labels = [ax.get_ylabel() for ax in figure.axes]
+    assert "load on the last" in labels[0]
+    assert not any("largest contact pressure" in label for label in labels)
+    assert [line for line in figure.axes[0].lines if np.isfinite(line.get_ydata()).all()]
+    pyplot.close(figure)
+
+
+@pytest.mark.browser
+@pytest.mark.skipif(chromium() is None, reason="Chromium is not installed")
+def test_width_of_a_study_on_screens(folder: Path, tmp_path: Path) -> None:
+    pytest.importorskip("playwright")
+    path = report.write(folder, tmp_path / "study.html")
+    own = {}
+    for width in (420, 1400):
+        with browser(width, 900) as page:
+            page.goto(path.as_uri())
+            assert page.evaluate("document.documentElement.scrollWidth") <= width
+            widths = "[...document.querySelectorAll('figure img')].map(each => [each.width, each.naturalWidth])"
+            own[width] = page.evaluate(widths)
+            hints = page.locator(".hint").evaluate_all("all => all.filter(each => each.offsetParent).length")
+            assert bool(hints) == (width == 420)
+    assert all(shown <= 1.4 * natural + 4 for shown, natural in own[1400])
+    assert all(shown < 400 or shown <= 0.5 * natural + 2 for shown, natural in own[420])
+
+
+def test_page_of_a_case_of_a_study(folder: Path, tmp_path: Path, capsys) -> None:
+    path = tmp_path / "case.nc"
+    load_case(folder, str(open_study(folder)["case_id"].values.ravel()[0])).to_netcdf(path)
+    assert main(["report", str(path), "--out", str(tmp_path / "case.html"), "--title", "Case"]) == 0
+    assert "case.html" in capsys.readouterr().out
+    page = read(tmp_path / "case.html")
+    for words in ("E = 210 GPa", "two free ends", "study small", "length L 0.5 mm"):
+        assert words in page.text, words
+
+
+def test_wrong_paths(tmp_path: Path, capsys) -> None:
+    with pytest.raises(InvalidInputError, match="no such file"):
+        report.write(tmp_path / "nothing.nc")
+    (tmp_path / "text.nc").write_text("no netCDF")
+    assert main(["report", str(tmp_path / "text.nc")]) == 2
+    assert main(["report", str(tmp_path)]) == 2
+    assert "not the folder of a study" in capsys.readouterr().err
+    with pytest.raises(InvalidInputError, match="given: a result in memory"):
+        report.write(xr.Dataset())
+
+
+WITHOUT = """
+import sys
+from contactstudy.report import html
+assert "data:image" in html(sys.argv[1])
+assert "distributed" not in sys.modules
+"""
+
+
+@pytest.mark.system
+def test_report_without_distributed(tmp_path: Path) -> None:
+    run_study(small_study(), tmp_path, workers=0, solver=solve_fake, progress=False)
+    subprocess.run([sys.executable, "-c", WITHOUT, str(tmp_path)], check=True)
+
+
+def test_suffix_of_the_page(tmp_path: Path) -> None:
+    with pytest.raises(InvalidInputError, match=r"x.pdf': must be a name that ends in .html.*prints the page to PDF"):
+        report.write(xr.Dataset(), tmp_path / "x.pdf")
+
+
+def test_selection_of_figures(folder: Path, tmp_path: Path, capsys) -> None:
+    page = read(report.write(folder, tmp_path / "all.html"))
+    assert "Of coefficient of friction and roller profile the figure has the value in its title" in page.text
+    assert "contactstudy report FOLDER --select friction=0.66" in page.text
+    chosen = ["--select", "profile=<b>rounded</b>", "--select", "friction=0"]
+    assert main(["report", str(folder), "--out", str(tmp_path / "one.html"), *chosen]) == 0
+    one = read(tmp_path / "one.html")
+    assert "the figure has the value" not in one.text
+    assert {f"case-{number}" for number in range(1, 13)} <= one.anchors
+    assert main(["report", str(folder), "--select", "speed=1"]) == 2
+    assert "swept parameter: e_over_a, friction, profile" in capsys.readouterr().err
+    assert main(["report", str(folder), "--select", "friction"]) == 2
+    assert "NAME=VALUE" in capsys.readouterr().err
+
+
+def test_selection_of_a_case(solved: xr.Dataset) -> None:
+    with pytest.raises(InvalidInputError, match="selection"):
+        report.html(solved, selection={"friction": 0.1})
+
+
+def test_only_drawn_cases_are_loaded(folder: Path, tmp_path: Path, monkeypatch) -> None:
+    from contactstudy.study import folder as module
+
+    loaded, load = [], module.read_case
+    monkeypatch.setattr(module, "read_case", lambda path, row, names: loaded.append(row) or load(path, row, names))
+    report.write(folder, tmp_path / "study.html")
+    assert len(set(loaded)) == 2  # of four that are solved: two over e/a
+
+
+def test_rolling_case(solved: xr.Dataset) -> None:
+    pressed = (solved["pressure"] > 0).drop_attrs()
+    moved = {
+        "traction_x": 0.0 * pressed,
+        "traction_y": 4e7 * pressed,
+        "slip_x": 0.0 * pressed,
+        "slip_y": 2e-3 * pressed,
+    }
+    part = pressed & (pressed["y"] > 0)
+    rolled = solved.assign(moved | {"stick": part, "sticking_part": 0.5})
+    before, page = Page(report.html(solved)), Page(report.html(rolled))
+    assert len(page.fetched) == len(before.fetched) + 2
+    for words in ("part of the contact that sticks", "stick within the red line", "leading edge is at the top"):
+        assert words in page.text
+        assert words not in before.text
+    assert "slip everywhere" in Page(report.html(rolled.assign(stick=0 * part))).text
+    assert "stick everywhere" in Page(report.html(rolled.assign(stick=pressed))).text
+
+
+def test_units_of_intensities(tmp_path) -> None:
+    """A study of different exponents has no common unit; each case has its own."""
+    base = {name: value for name, value in BASE.items() if not name.startswith(("cells", "field"))}
+    base |= {"stresses": False, "accuracy": 0.1, "e_over_a": 3.0}
+    study = small_study(base=base, sweep={"roller_body": ["rigid", "finite-length"]}, level="summary")
+    run_study(study, tmp_path, workers=0, progress=False)
+    opened = open_study(tmp_path)
+    exponents = opened["end_exponent"].values
+    assert exponents[0] == 0.5
+    assert exponents[1] < 0.4
+    assert "units" not in opened["end_intensity"].attrs
+    assert "units" not in opened["end_intensity_error"].attrs
+    page = report.html(tmp_path)
+    assert "GPa mm^0.5" in page
+    assert f"GPa mm^{exponents[1]:.3g}" in page
+
+
+MALFORMED = (
+    {"seconds": "many"},
+    {"seconds": None, "stages": {"contact": "long"}},
+    {"stages": [1], "time": "yesterday"},
+    {"time": 5, "warnings": 5},
+)
+
+
+def test_malformed_run(solved: xr.Dataset, tmp_path: Path) -> None:
+    runs = [json.dumps(json.loads(solved.attrs["contactstudy_run"]) | entries) for entries in MALFORMED]
+    for run in runs:
+        page = report.html(solved.assign_attrs(contactstudy_run=run))
+        assert "many" not in page
+        assert "numpy" in page
+
+    def malformed(*arguments, **options) -> xr.Dataset:
+        return solve_fake(*arguments, **options).assign_attrs(contactstudy_run=runs.pop())
+
+    run_study(small_study(), tmp_path, workers=0, solver=malformed, progress=False)
+    assert "4 ok" in Page(report.html(tmp_path)).text
+
+
+@pytest.mark.parametrize("settings", [{"cells": "given"}, {"cells": "given", "tolerance": "x", "accuracy": []}, 5])
+def test_malformed_settings(solved: xr.Dataset, settings: object) -> None:
+    inputs = json.loads(solved.attrs["contactstudy_inputs"]) | {"settings": settings}
+    assert "Numbers" in report.html(solved.assign_attrs(contactstudy_inputs=json.dumps(inputs)))
+
+
+def test_numbers_that_are_nan(solved: xr.Dataset) -> None:
+    scalars = {str(name): np.nan for name, variable in solved.data_vars.items() if variable.ndim == 0}
+    for result in (solved.assign(scalars), solved.assign(pressure=np.nan * solved["pressure"])):
+        assert "not known" in report.html(result)
+
+
+def test_position_of_the_largest_stress(solved: xr.Dataset) -> None:
+    page = Page(report.html(solved))
+    for axis in ("position x", "position y", "depth"):
+        assert f"{axis} of the largest von Mises stress" in page.text
+    assert re.search(r"(at mid-length|from end I+ of the contact), error not estimated", page.text)
+    assert "Dot: largest in the body" in page.text

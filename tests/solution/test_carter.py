@@ -1,0 +1,60 @@
+"""Largest von Mises stress of like cylinders that roll, against the closed stresses of Carter's traction."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import contactstudy as cs
+from contactstudy.checks import FloatArray
+
+POISSON, RADIUS, LENGTH, PRESSURE = 0.28, 5e-3, 3e-3, 5e8
+STEEL = cs.Material(young=210e9, poisson=POISSON)
+
+
+def elliptic_line(y: FloatArray, z: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Stresses (yy, zz, yz) under the pressure, and under the traction along +y, ``sqrt(1 - y**2)``.
+
+    K. L. Johnson, Contact Mechanics (1985), 4.49 and 7.8.
+    """
+    difference = 1 - y**2 + z**2
+    root = np.sqrt(difference**2 + 4 * y**2 * z**2)
+    m = np.sqrt(np.maximum(root + difference, 0) / 2)
+    n = np.sign(y) * np.sqrt(np.maximum(root - difference, 0) / 2)
+    squares = np.maximum(m**2 + n**2, 1e-300)
+    yy, zz = 2 * z - m * (1 + (z**2 + n**2) / squares), -m * (1 - (z**2 + n**2) / squares)
+    yz = -n * (m**2 - z**2) / squares
+    return np.array([yy, zz, yz]), np.array([n * (2 - (z**2 - m**2) / squares) - 2 * y, yz, yy])
+
+
+def largest_under_carter(friction: float, stick: float) -> float:
+    """Largest von Mises stress over the largest pressure, in plane strain."""
+    y = np.append(np.linspace(-1.1, 1.1, 441), 1 - 2 * stick)
+    y, z = (axis.ravel() for axis in np.meshgrid(y, np.linspace(0.0, 1.0, 51)))
+    pressure, sliding = elliptic_line(y, z)
+    sticking = elliptic_line((y - 1 + stick) / stick, z / stick)[1]
+    yy, zz, yz = pressure + friction * (sliding - stick * sticking)
+    xx = POISSON * (yy + zz)
+    squares = 0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3 * yz**2
+    return float(np.sqrt(squares.max()))
+
+
+@pytest.mark.parametrize(("friction", "part"), [(0.3, 0.25), (0.5, 0.25), (0.5, 0.5), (0.5, 0.8), (1.0, 0.5)])
+def test_largest_stress_at_the_border_of_stick_and_slip(friction: float, part: float) -> None:
+    profile = cs.profiles.Lundberg.for_pressure(
+        PRESSURE, radius=RADIUS, modulus=STEEL.plane_strain_modulus / 2, delta=2
+    )
+    roller = cs.Roller(radius=RADIUS, length=LENGTH, profile=profile, material=STEEL, ends="none")
+    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=PRESSURE, friction=friction)
+    creepage = friction * case.hertz_half_width / RADIUS * (1 - part)
+    result = cs.solve(replace(case, motion=cs.Rolling(longitudinal_creepage=creepage)), y=[0.0], z=[0.0])
+    middle = result.isel(x=int(abs(result.x.values - LENGTH / 2).argmin()))
+    largest, step = float(result.peak_pressure), float(result.y[1] - result.y[0])
+    half_width = 2 * step * float(middle.pressure.sum()) / (np.pi * largest)
+    stick = 1 - creepage * RADIUS / (friction * half_width)
+    expected = largest * largest_under_carter(friction, stick)
+    assert abs(float(result.peak_von_mises) - expected) < float(result.peak_von_mises_error)
+    assert float(result.peak_von_mises_error) < 0.03 * expected
+    assert abs(float(result.peak_von_mises_x) - LENGTH / 2) < 0.1 * LENGTH

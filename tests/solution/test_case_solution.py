@@ -1,0 +1,178 @@
+"""The whole case in one Dataset."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    Rolling,
+    WindowError,
+    choose_grid,
+    profiles,
+    roller_stress,
+    solve,
+)
+from contactstudy.arrays.variables import STRESSES, specification
+
+STEEL = Material(young=210e9, poisson=0.3)
+BODY = FiniteLengthSpace(length=0.4e-3, material=STEEL)
+CASE = Case(body=BODY, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9, friction=0.1)
+
+
+@pytest.fixture(scope="module")
+def result():
+    return solve(CASE, accuracy=0.05)
+
+
+def test_everything_the_interface_promises_is_there_with_its_unit(result) -> None:
+    promised = (
+        *("pressure", "traction_y", "gap", "initial_gap", "displacement_z", *STRESSES, "von_mises"),
+        *(
+            "hertz_half_width",
+            "hertz_max_pressure",
+            "normal_load",
+            "approach",
+            "tilt",
+            "load_position",
+            "iterations",
+            "converged",
+        ),
+        *("iterations", "converged", "load_error", "penetration_error", "open_pressure_error", "load_position_error"),
+        "end_traction_residual",
+        *(
+            name + error
+            for name in (
+                *("peak_pressure", "peak_pressure_first", "peak_pressure_last"),
+                *("end_pressure_first", "end_pressure_last"),
+                *("end_load_first", "end_load_last"),
+                "peak_von_mises",
+            )
+            for error in ("", "_error")
+        ),
+        *(f"peak_von_mises_{axis}" for axis in "xyz"),
+    )
+    assert set(promised) == set(result.data_vars)
+    for name in promised:
+        known = specification(name)
+        assert known is not None
+        assert tuple(dim.removesuffix("_field") for dim in result[name].dims) == known.dims, name
+        assert result[name].attrs["units"] == known.units, name
+    for axis in "xyz":
+        assert result[axis].attrs["units"] == "m"
+    assert result.attrs["Conventions"].startswith("CF")
+
+
+def test_certificate_is_good(result) -> None:
+    assert bool(result["converged"])
+    assert abs(float(result["load_error"])) < 1e-10
+    assert float(result["end_traction_residual"]) < 1e-4
+    assert float(result["penetration_error"]) < 1e-5
+
+
+def test_top_carries_the_load(result) -> None:
+    top = solve(CASE, x=result["x"].values, z=[0.0]).isel(z=0)
+    away = top["pressure"].values > 0.75e9  # nearer to the contact's border the pressure bends within a cell
+    for stress, load, bound in (("sigma_zz", "pressure", 1.5e-2), ("tau_yz", "traction_y", 1.5e-3)):
+        assert np.abs(top[stress].values + top[load].values)[away].max() < bound * 1.5e9, stress
+
+
+def test_result_survives_netcdf(result, tmp_path) -> None:
+    import xarray as xr
+
+    result.to_netcdf(tmp_path / "case.nc")
+    with xr.open_dataset(tmp_path / "case.nc") as again:
+        for name in STRESSES:
+            assert np.array_equal(again[name], result[name])
+
+
+def test_stresses_may_have_positions_of_their_own() -> None:
+    result = solve(CASE, x=[0.0, 0.3e-3], y=[0.0], z=[50e-6])
+    assert result["von_mises"].dims == ("x_field", "y_field", "z")
+    assert abs(result["sigma_xx"].values[0, 0, 0]) < 1e-5 * CASE.hertz_max_pressure  # what is left on the free end
+
+
+def test_half_space_has_nothing_left_on_its_ends() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
+    assert float(solve(case, x=[0.0], y=[0.0], z=[50e-6])["end_traction_residual"]) == 0.0
+
+
+def test_grid_beside_the_roller_is_refused() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
+    with pytest.raises(InvalidInputError, match="lies under the roller"):
+        solve(case, Grid((1.0, 2.0), (-1e-4, 1e-4), 8, 8))
+    with pytest.raises(InvalidInputError, match="case = 1"):
+        solve(1)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        pytest.param(FiniteLengthSpace(length=4e-3, material=STEEL), marks=pytest.mark.slow, id="finite"),
+        pytest.param(HalfSpace(material=STEEL), id="half-space"),
+    ],
+)
+def test_a_short_contact_gets_the_room_it_asks_for(body) -> None:
+    strongly_crowned = Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02))
+    case = Case(body=body, roller=strongly_crowned, load=400.0)
+    with pytest.raises(WindowError, match="choose_grid"):
+        solve(case, choose_grid(case), stresses=False)
+    found = solve(case, stresses=False)
+    assert bool(found.converged)
+    wide = solve(case, choose_grid(case, window=6.0, margin=12.0), stresses=False)
+    assert float(found.pressure.max()) == pytest.approx(float(wide.pressure.max()), rel=5e-3)
+
+
+def test_rough_surfaces_keep_the_window_they_cover() -> None:
+    case = Case(
+        body=FiniteLengthSpace(length=4e-3, material=STEEL),
+        roller=Roller(radius=5e-3, length=4e-3, profile=profiles.FullCrown(0.02)),
+        load=400.0,
+    )
+    grid = choose_grid(case)
+    smooth = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
+    with pytest.raises(WindowError, match="choose_grid"):
+        solve(case, stresses=False, roughness=smooth)
+
+
+@pytest.mark.slow
+def test_a_rolling_case_has_the_stresses_of_its_tractions() -> None:
+    """Of two equal bodies with free ends: opposite tractions make equal stresses but for a reflection along y."""
+    steel = Material(210e9, 0.3)
+    body = FiniteLengthSpace(length=0.5e-3, material=steel)
+    roller = Roller(radius=5e-3, length=0.5e-3, material=steel)
+    motion = Rolling(longitudinal_creepage=1e-3, spin=1.0)
+    case = Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1, motion=motion)
+    grid = choose_grid(case, cells_x=3, cells_y=10, window=1.5)
+    result = solve(case, grid, z=[0.0, 5e-5])
+    assert result.converged
+    assert 0 < int(result.stick.sum()) < int((result.pressure > 0).sum())
+    top = result.isel(z=0)
+    inner = {"x": slice(2, -2)}
+    peak = float(result.pressure.max())
+    for stress, load in (("tau_yz", "traction_y"), ("tau_xz", "traction_x"), ("sigma_zz", "pressure")):
+        assert float(np.abs(top[stress] + result[load]).isel(inner).max()) < 2e-2 * peak, stress
+    assert float(result.end_traction_residual) < 2e-4
+    tractions = {name: result[name] for name in ("traction_x", "traction_y")}
+    inside = roller_stress(case, result.pressure, z=[5e-5], **tractions)
+    reversed_case = replace(case, motion=Rolling(longitudinal_creepage=-1e-3, spin=-1.0))
+    other = solve(reversed_case, grid, z=[5e-5])
+    assert np.allclose(inside.von_mises.values, other.von_mises.values, rtol=1e-4, atol=1e-4 * peak)
+    with pytest.raises(InvalidInputError, match="traction_x, traction_y"):
+        roller_stress(case, result.pressure, z=[5e-5])
+
+
+def test_given_cells_take_no_accuracy() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=Roller(radius=5e-3, length=1e-3), max_pressure=1e9)
+    with pytest.raises(InvalidInputError, match=r"accuracy = 0\.01"):
+        solve(case, choose_grid(case), accuracy=0.01)

@@ -1,0 +1,62 @@
+"""Default positions of stresses: from the face on, and narrow at the largest stress."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from contactstudy import Case, FiniteLengthSpace, HalfSpace, Material, Roller, profiles, solve
+from contactstudy.analysis import in_plane
+from contactstudy.fields.positions import default_depths
+
+STEEL = Material(210e9, 0.3)
+HALF_WIDTH = 4 * 1.5e9 * 5e-3 / (2 * STEEL.plane_strain_modulus)
+
+
+def roller_case(end_distance: float = 0.0, body: float | None = None, **settings: float) -> Case:
+    """Steel roller of 2 mm with an edge radius, and its body."""
+    length = 2e-3 + 2 * end_distance if body is None else body
+    roller = Roller(radius=5e-3, length=2e-3, profile=profiles.Cylinder(fillet_radius=0.05e-3))
+    return Case(
+        body=FiniteLengthSpace(length=length, material=STEEL),
+        roller=roller,
+        max_pressure=1.5e9,
+        friction=0.1,
+        end_distance=end_distance,
+        **settings,
+    )
+
+
+@pytest.mark.parametrize(
+    "case",
+    [
+        pytest.param(roller_case(), id="flush"),
+        pytest.param(roller_case(HALF_WIDTH), id="1a", marks=pytest.mark.slow),
+        pytest.param(roller_case(5 * HALF_WIDTH), id="5a", marks=pytest.mark.slow),
+        pytest.param(roller_case(-0.2e-3, body=1.6e-3), id="overhanging"),
+        pytest.param(roller_case(HALF_WIDTH, tilt=2e-4), id="tilted", marks=pytest.mark.slow),
+    ],
+)
+def test_largest_stress_drawn_and_stated(case: Case) -> None:
+    result = solve(case, y=[0.0], accuracy=0.03)
+    x = result["x_field"].values
+    assert x[0] == 0.0
+    assert x[-1] == case.body.extent[1]
+    stated = float(result["peak_von_mises"])
+    drawn = in_plane(result, y=0.0, variables="von_mises")["von_mises"]
+    assert 0.97 * stated <= float(drawn.max()) <= stated * (1 + 1e-9)
+
+
+def test_positions_on_a_half_space_cover_the_grid() -> None:
+    case = Case(body=HalfSpace(material=STEEL), roller=roller_case().roller, max_pressure=1.5e9)
+    result = solve(case, y=[0.0], z=[0.1e-3], accuracy=0.05)
+    edges = result["x_bounds"].values
+    assert result["x_field"].values[[0, -1]] == pytest.approx([edges.min(), edges.max()])
+
+
+def test_depths_of_similar_cases_are_equal() -> None:
+    assert np.array_equal(default_depths(1e-4, 2.8e-6), default_depths(1e-4, 3.0e-6))
+    depths = default_depths(1.0, np.nan)
+    assert depths[0] == 0.0
+    assert depths[-1] == 5.0
+    assert (np.diff(depths) > 0).all()

@@ -1,0 +1,16 @@
+"""Columns and ragged arrays of a batch."""
+
+import numpy as np
+
+from contactstudy.study.batches import common_attributes, offsets
+
+
+def test_offsets_of_arrays_of_different_shapes():
+    sizes = {"x": np.array([2, 3]), "y": np.array([2, 1])}
+    assert offsets(sizes, ("x", "y"), 2).tolist() == [0, 4, 7]
+
+
+def test_attributes_of_intensities_with_different_exponents():
+    first, second = {"units": "Pa m0.5", "long_name": "K"}, {"units": "Pa m0.226"}
+    assert "end_exponent" in common_attributes("end_intensity", first, second)["comment"]
+    assert common_attributes("end_intensity", first, first) == first

@@ -1,0 +1,86 @@
+"""Tasks and their sizes, and workers that die."""
+
+import pytest
+
+from contactstudy.study import StudyFileError
+from contactstudy.study.engine import Engine
+from contactstudy.study.executor import Tasks, Workers, execute
+from contactstudy.study.worker import Task
+from tests.small_study import small_study
+from tests.stand_in_solver import solve_fake
+
+
+def tasks_of(study, groups, folder=""):
+    return Tasks(study.plan(), groups, Task(jobs=(), folder=str(folder)))
+
+
+def ids(task):
+    return [job.name for job in task.jobs]
+
+
+@pytest.fixture
+def many():
+    return small_study(sweep={"e_over_a": [0.0, 1.0, 2.0, 3.0], "friction": [0.0, 0.1]})
+
+
+def test_groups_contain_the_frictions_of_a_contact(many):
+    assert many.plan().groups.tolist() == [0, 0, 1, 1, 2, 2, 3, 3]
+    coupled = small_study(base=dict(many.base) | {"coupled": True}, sweep=dict(many.sweep))
+    assert coupled.plan().groups.tolist() == list(range(8))
+
+
+def test_the_first_task_is_one_group_and_later_ones_follow_from_the_time(many):
+    tasks = tasks_of(many, [[0, 1], [2, 3], [4, 5], [6, 7]])
+    first = tasks.next_task(1)
+    assert len(first.jobs) == 2
+    tasks.record(2, 0.1)
+    assert len(tasks.next_task(1).jobs) == 2  # of six cases: half, and groups are whole
+    assert tasks.remaining == 4
+
+
+def test_cases_of_a_dead_worker_are_solved_alone_and_fail_at_the_second_death(many):
+    tasks = tasks_of(many, [[0, 1]])
+    task = tasks.next_task(1)
+    assert tasks.return_task(task, died=True) == []
+    alone = [tasks.next_task(1) for _ in range(2)]
+    assert [len(task.jobs) for task in alone] == [1, 1]
+    assert [job.name for job in tasks.return_task(alone[0], died=True)] == ids(alone[0])
+    assert not tasks
+
+
+def test_outcomes_of_this_process(many, tmp_path):
+    tasks = tasks_of(many, [[0, 1], [2, 3]], tmp_path)
+    outcomes = [outcome for _, part in execute(tasks, Engine(workers=0, solver=solve_fake)) for outcome in part]
+    assert [outcome.status for outcome in outcomes] == ["ok"] * 4
+    assert len(list(tmp_path.glob("*.nc"))) == 2
+
+
+@pytest.mark.parametrize("wait", [-1.0, float("nan"), "long", True])
+def test_a_wrong_wait(wait):
+    with pytest.raises(ValueError, match="wait"):
+        Engine(wait=wait)
+
+
+class FakeClient:
+    """Client of a scheduler with given workers."""
+
+    def __init__(self, versions):
+        self.versions = versions
+
+    def nthreads(self):
+        return dict.fromkeys(self.versions, 1)
+
+    def get_versions(self, packages):
+        workers = {name: {"packages": {"contactstudy": version}} for name, version in self.versions.items()}
+        return {"workers": workers}
+
+
+def test_workers_of_another_version_are_left_out():
+    from contactstudy.arrays.variables import package_version
+
+    remarks = []
+    workers = Workers(FakeClient({"old": "0.0.1", "none": None, "new": package_version()}), 1.0, remarks.append)
+    assert workers.usable(busy=False) == {"new"}
+    assert len(remarks) == 2
+    with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
+        Workers(FakeClient({"old": "0.0.1"}), 1.0, remarks.append).usable(busy=False)

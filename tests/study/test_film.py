@@ -1,0 +1,96 @@
+"""Studies of films: parameters, refused values, warm starts, the same numbers on any workers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, Sliding, solve_film
+from contactstudy.film import Asperities
+from contactstudy.study import Study, open_study, run_study
+from contactstudy.study.parameters import case_id
+from contactstudy.study.setup import build_setup
+
+BASE: dict[str, Any] = {
+    "young": 210e9,
+    "poisson": 0.3,
+    "radius": 5e-3,
+    "roller_length": 0.8e-3,
+    "e_over_a": 0.0,
+    "max_pressure": 1e9,
+    "profile": {"kind": "lundberg", "design_pressure": 1e9},
+    "viscosity": 0.01,
+    "pressure_viscosity": 1.5e-8,
+    "accuracy": 0.1,
+}
+SPEEDS = [1.0, 2.0]
+
+
+def film_study(**changes: Any) -> Study:
+    """Two speeds on two bodies."""
+    sweep = {"body": ["finite-length", "half-space"], "entrainment_speed": SPEEDS}
+    return Study(**({"name": "film", "base": BASE, "sweep": sweep} | changes))
+
+
+def test_case_of_a_film() -> None:
+    setup = build_setup(BASE | {"entrainment_speed": 2.0, "slide_roll_ratio": 0.1, "roughness_rms": 1e-7})
+    assert setup.case.motion == Sliding(body_speed=1.9, roller_speed=2.1)
+    assert setup.case.lubricant is not None
+    assert setup.case.lubricant.viscosity == 0.01
+    assert setup.options == {"accuracy": 0.1, "asperities": Asperities(rms=1e-7)}
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({}, "entrainment_speed"),
+        ({"entrainment_speed": 0.0}, "entrainment_speed"),
+        ({"entrainment_speed": 1.0, "lubricant": "spindle oil"}, "lubricant, viscosity"),
+        ({"entrainment_speed": 1.0, "temperature": 60.0}, "temperature"),
+        ({"entrainment_speed": 1.0, "pressure_viscosity": None}, "pressure_viscosity"),
+        ({"entrainment_speed": 1.0, "viscosity": None}, "pressure_viscosity"),
+        ({"entrainment_speed": 1.0, "field_z_over_a": [0.5]}, "field_z_over_a"),
+        ({"entrainment_speed": 1.0, "motion": "rolling"}, "entrainment_speed"),
+    ],
+)
+def test_bad_values(changes: dict[str, Any], named: str) -> None:
+    with pytest.raises(InvalidInputError, match=named):
+        build_setup(BASE | changes)
+
+
+def test_a_dry_case_keeps_its_identity_and_refuses_film_parameters() -> None:
+    dry = {name: value for name, value in BASE.items() if "viscosity" not in name}
+    assert build_setup(dry).case.motion == Sliding()
+    assert build_setup(dry).case.lubricant is None
+    assert "stresses" in build_setup(dry).options
+    assert case_id(dry) != case_id(BASE)
+    with pytest.raises(InvalidInputError, match="entrainment_speed"):
+        build_setup(dry | {"entrainment_speed": 1.0})
+
+
+def test_films_of_a_study(tmp_path) -> None:
+    report = run_study(film_study(), tmp_path / "all", workers=0, progress=False)
+    assert report.counts == {"ok": 4}
+    films = open_study(tmp_path / "all")
+    setup = build_setup(BASE | {"entrainment_speed": 2.0})
+    faster = solve_film(setup.case, **setup.options)
+    case = films.sel(body="finite-length", entrainment_speed=2.0)
+    assert float(case.least_film) == float(faster.least_film)
+    slow = build_setup(BASE | {"entrainment_speed": 1.0})
+    cold = solve_film(slow.case, **slow.options)
+    warm = films.sel(body="finite-length", entrainment_speed=1.0)
+    assert float(warm.least_film) == pytest.approx(float(cold.least_film), rel=1e-6)
+    assert float(warm.newton_steps) < float(cold.newton_steps)
+    assert (films.end_film_ratio.sel(body="half-space") < films.end_film_ratio.sel(body="finite-length")).all()
+    assert {"central_film_error", "least_film_error", "end_film_ratio_error"} <= set(films)
+
+
+def test_films_start_from_the_same_speeds_after_an_interruption(tmp_path) -> None:
+    study = film_study(sweep={"entrainment_speed": SPEEDS})
+    run_study(study, tmp_path / "whole", workers=0, progress=False)
+    run_study(study, tmp_path / "parts", workers=0, progress=False, sample=1)
+    run_study(study, tmp_path / "parts", workers=0, progress=False)
+    whole, parts = (open_study(tmp_path / name) for name in ("whole", "parts"))
+    np.testing.assert_array_equal(whole.least_film, parts.least_film)

@@ -1,0 +1,161 @@
+"""Locks, states and joined batches of a study's folder."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from contactstudy.errors import InvalidInputError
+from contactstudy.study import LockedError, StoreError, load_case, open_study, run_study
+from contactstudy.study import folder as module
+from contactstudy.study.batches import batch_paths, case_batch, damage, join, read_batch, write_batch
+from contactstudy.study.files import PART, write_atomically, write_text
+from contactstudy.study.folder import Folder, Share, latest
+from contactstudy.study.settings import RunSettings
+from tests.small_study import identity, small_study
+from tests.stand_in_solver import solve_fake
+from tests.study.conftest import ROOT
+
+
+def run(study, folder, **options):
+    return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
+
+
+def rows(count, run=1, **changes):
+    """Batch of cases without results."""
+    options = {"parameters": {"friction": 0.1}, "status": "failed", "message": "WindowError: narrow", "run": run}
+    return join([case_batch(identity=f"{number:064x}", **(options | changes)) for number in range(count)])
+
+
+def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
+    folder = Folder(tmp_path)
+    with folder.locked(Share()):
+        with pytest.raises(LockedError, match=f"process {os.getpid()} on "), folder.locked(Share()):
+            pass
+        assert [f"process {os.getpid()}" in holder for holder in folder.holders] == [True]
+    assert folder.holders == []
+    with folder.locked(Share()):
+        pass
+
+
+def test_shares_exclude_a_run_and_themselves_only(tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "RUN", RunSettings(share_seconds=0.1))
+    folder = Folder(tmp_path)
+    with folder.locked(Share(1, 3)), folder.locked(Share(2, 3)):
+        for share in (Share(1, 3), Share()):
+            with pytest.raises(LockedError), folder.locked(share):
+                pass
+    with folder.locked(Share()), pytest.raises(LockedError), folder.locked(Share(3, 3)):
+        pass
+
+
+def test_the_lock_of_a_killed_process_is_free(tmp_path):
+    code = (
+        "import os, signal, sys\n"
+        "from contactstudy.study.folder import Folder, Share\n"
+        "with Folder(sys.argv[1]).locked(Share()):\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path)], cwd=ROOT, check=False)
+    assert (tmp_path / "run.lock").exists()
+    with Folder(tmp_path).locked(Share()):
+        pass
+
+
+def test_a_pipe_as_lock(tmp_path):
+    os.mkfifo(tmp_path / "run.lock")
+    with pytest.raises(LockedError, match="not a regular file"), Folder(tmp_path).locked(Share()):
+        pass
+
+
+def test_a_batch_is_read_as_it_was_written(tmp_path):
+    path = write_batch(tmp_path, "a", rows(3, message="Größe", warnings=["one"]))
+    assert damage(path) == ""
+    batch = read_batch(path, arrays=None)
+    assert batch.ids.tolist() == [f"{number:064x}".encode() for number in range(3)]
+    assert batch.texts["message"] == ["Größe"] * 3
+    assert batch.run(0)["warnings"] == ["one"]
+    assert batch.texts["parameters"] == ['{"friction": 0.1}'] * 3
+
+
+def test_tables_of_parameters_are_stored_once(tmp_path):
+    profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
+    parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
+    batch = join(
+        [case_batch(identity=f"{n:064x}", parameters=entry, status="failed") for n, entry in enumerate(parameters)]
+    )
+    path = write_batch(tmp_path, "a", batch)
+    assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
+    assert path.stat().st_size < 60_000
+
+
+@pytest.mark.parametrize("change", [lambda data: data[:-10], lambda data: b"", lambda data: b"x" + data[1:]])
+def test_damage_is_detected(tmp_path, change):
+    path = write_batch(tmp_path, "a", rows(2))
+    path.write_bytes(change(path.read_bytes()))
+    assert "checksum" in damage(path)
+
+
+def test_small_batches_are_joined(tmp_path):
+    folder = Folder(tmp_path)
+    folder.create()
+    for number in range(20):
+        write_batch(folder.batches, f"a{number}", case_batch(identity=f"{number:064x}", parameters={}, status="failed"))
+        folder.compact(Share())
+    assert len(batch_paths(folder.batches)) < 10
+    folder.compact(Share(), at_end=True)
+    (path,) = batch_paths(folder.batches)
+    assert len(folder.results().locations) == len(read_batch(path)) == 20
+
+
+def test_the_result_of_the_latest_run_counts(tmp_path):
+    batch = join([rows(2), rows(2, run=3, message="later"), rows(2, run=2)])
+    assert latest(batch).texts["message"] == ["later"] * 2
+    assert latest(batch).runs.tolist() == [3, 3]
+
+
+def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
+    study = small_study(sweep={"e_over_a": [0.0, 1.0, 2.0], "friction": [0.0, 0.1]})
+    for name, largest in (("one", 2**13), ("many", 1)):
+        monkeypatch.setattr(module, "RUN", RunSettings(batch_cases=largest))
+        for number in (1, 2, 3):
+            run(study, tmp_path / name, share=(number, 3))
+        run(study, tmp_path / name)
+    one, many = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
+    assert len(batch_paths(tmp_path / "one" / "batches")) == 1 < len(batch_paths(tmp_path / "many" / "batches"))
+    assert one.identical(many)
+
+
+def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
+    path = tmp_path / "a.txt"
+    write_text(path, "before")
+
+    def fails(part):
+        part.write_text("half")
+        raise OSError("no space")
+
+    with pytest.raises(StoreError, match="no space"):
+        write_atomically(path, fails)
+    assert path.read_text() == "before"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_unfinished_files_are_removed_and_others_stay(study, tmp_path):
+    run(study, tmp_path)
+    unfinished = tmp_path / "batches" / f"ab.0123456789ab{PART}"
+    unfinished.write_text("half")
+    foreign = tmp_path / f"download{PART}"
+    foreign.write_text("mine")
+    run(study, tmp_path)
+    assert not unfinished.exists()
+    assert foreign.exists()
+
+
+def test_one_case_as_the_solver_returned_it(study, tmp_path):
+    run(study, tmp_path)
+    case = load_case(tmp_path, identity(e_over_a=1.0, friction=0.1))
+    assert case["pressure"].dims == ("x", "y")
+    assert np.isscalar(case["peak_pressure"].item())
+    with pytest.raises(InvalidInputError, match="case_id = 'none'"):
+        load_case(tmp_path, "none")

@@ -1,0 +1,18 @@
+"""Texts of the command line on a study."""
+
+from contactstudy.study.plan import value_text
+from contactstudy.study.profile_tables import describe_profile
+from contactstudy.study.progress import duration
+from contactstudy.study.report import in_bytes
+
+
+def test_sizes_and_durations():
+    assert [in_bytes(size) for size in (20, 123456, 5e12)] == ["20 bytes", "123 kB", "5e+03 GB"]
+    assert [duration(seconds) for seconds in (7.4, 200, 9000)] == ["7 s", "3.3 min", "2.5 h"]
+
+
+def test_values_of_parameters_in_engineering_units():
+    assert (value_text("radius", 5e-3), value_text("field_y_over_a", [0.0])) == ("5 mm", "1 value, 0")
+    assert value_text("coupled", True) == "yes"
+    assert describe_profile({"kind": "cylinder", "fillet_radius": 2e-4}) == "cylinder, fillet radius 0.2 mm"
+    assert describe_profile({"kind": "lundberg", "design_pressure": 2e9}) == "lundberg, design pressure 2 GPa"

@@ -1,0 +1,144 @@
+"""Profiles of the user's own in a study: identity by content, on workers, in the files, and what is refused."""
+
+from __future__ import annotations
+
+import threading
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from contactstudy import InvalidInputError, profiles
+from contactstudy.report.page import stored_case
+from contactstudy.study import Study, load_case, open_study, run_study, user_profiles
+from contactstudy.study.folder import Folder
+from contactstudy.study.parameters import case_id
+from contactstudy.study.setup import build_setup
+from tests.small_study import BASE, small_study
+from tests.stand_in_solver import solve_fake
+
+
+@dataclass(frozen=True)
+class Cosine(profiles.Shape):
+    depth: float
+    waves: int = 1
+
+    def drop(self, x, length):
+        return self.depth * (1 - np.cos(self.waves * np.pi * x / length))
+
+
+class Wedge:
+    """Neither a dataclass nor derived from anything."""
+
+    def __init__(self, slope, **more):
+        self.slope = slope
+        self.__dict__ |= more
+
+    def drop(self, x, length):
+        return self.slope * np.abs(x)
+
+
+def identity(profile: object) -> str:
+    return case_id(BASE | {"e_over_a": 1, "profile": profile})
+
+
+def test_content_is_what_tells_profiles_from_one_another() -> None:
+    assert identity(Cosine(2e-6)) == identity(Cosine(2e-6, waves=1))
+    different = [Cosine(2e-6), Cosine(3e-6), Cosine(2e-6, 3), Wedge(1e-4), Wedge(2e-4), Wedge(1e-4, note="worn")]
+    different += [Cosine(2e-6) + profiles.Cylinder(1e-5), profiles.Halves(left=Wedge(1e-4), right=Cosine(2e-6))]
+    assert len({identity(profile) for profile in different}) == len(different)
+
+
+def test_a_changed_formula_is_another_profile() -> None:
+    class Now(Cosine):
+        def drop(self, x, length):
+            return super().drop(x, length) + 1e-7 * (x / length) ** 4
+
+    before = identity(Now(2e-6))
+    Now.drop = Cosine.drop
+    assert identity(Now(2e-6)) != before
+
+
+def test_the_case_has_the_profile_as_it_was() -> None:
+    wedge = Wedge(1e-4)
+    study = small_study(base=BASE | {"e_over_a": 1.0, "profile": wedge}, sweep={"friction": [0.0]})
+    wedge.slope = 5.0
+    (case,) = study.plan()
+    x = np.array([0.0, 1e-4])
+    assert build_setup(case.parameters).case.roller.profile.drop(x, 1e-3).tolist() == [0.0, 1e-8]
+
+
+@pytest.mark.system
+def test_workers_solve_with_it_and_files_state_it(tmp_path: Path) -> None:
+    """The class is local to this function, so that a worker cannot import it."""
+
+    class Local(Wedge):
+        pass
+
+    swept = {"profile": [Local(1e-4), Cosine(2e-6), "cylinder"], "friction": [0.0]}
+    study = small_study(base=BASE | {"e_over_a": 1.0}, sweep=swept)
+    assert run_study(study, tmp_path, workers=1, progress=False).counts == {"ok": 3}
+    opened = open_study(tmp_path)
+    assert opened.profile.values[1:].tolist() == ["Cosine(depth=2e-06, waves=1)", "cylinder"]
+    assert opened.profile.values[0].startswith("Local ")
+    first = load_case(tmp_path, study.plan()[0].id)
+    assert '"class": "Local", "values": {"slope": 0.0001}' in first.attrs["contactstudy_case"]
+    solved = stored_case(first)
+    assert solved is not None
+    kept = solved.roller.profile.drop(np.array([1e-4, 2e-4]), 0.5e-3)
+    np.testing.assert_allclose(kept, [1e-8, 2e-8])
+
+
+def test_a_process_without_it_opens_the_study_and_refuses_to_solve(tmp_path: Path, monkeypatch) -> None:
+    study = small_study(base=BASE | {"e_over_a": 1.0, "profile": Wedge(1e-4)}, sweep={"friction": [0.0]})
+    run_study(study, tmp_path, workers=0, solver=solve_fake, progress=False)
+    monkeypatch.setattr(user_profiles, "_registry", {})
+    assert open_study(tmp_path).status.values.tolist() == ["ok"]
+    again = Folder(tmp_path).read_study()
+    assert run_study(again, tmp_path, workers=0, progress=False).counts == {"ok": 1}
+    with pytest.raises(InvalidInputError, match=r"profile = 'Wedge .*run the study from the script that makes this"):
+        run_study(again, tmp_path / "anew", workers=0, progress=False)
+
+
+@pytest.mark.parametrize(
+    ("profile", "message"),
+    [
+        (
+            Wedge(1e-4, reader=open),
+            "profile.reader = .*which identify .* not builtin_function.*; give its values",
+        ),
+        (Wedge(1e-4, lock={"inner": threading.Lock()}), "profile.lock.inner = .* not lock"),
+        (Wedge(-1.0), "whose drop.* valid for a roller of 0.0001, .*it returned -"),
+    ],
+)
+def test_what_has_no_content_is_refused_by_name(profile: Wedge, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        Study(name="refused", base={"profile": profile})
+
+
+def test_what_cannot_be_pickled_is_refused_by_name() -> None:
+    class Bound(Wedge):
+        def __reduce__(self):
+            raise TypeError("bound to a file")
+
+    with pytest.raises(
+        InvalidInputError, match=r"'Bound': must be an object that can be pickled.*bound to a file.*list"
+    ):
+        Study(name="refused", base={"profile": Bound(1e-4)})
+
+
+def test_a_copy_that_is_another_profile_is_refused() -> None:
+    class Forgetful(Wedge):
+        def __reduce__(self):
+            return Wedge, (0.0,)
+
+    with pytest.raises(InvalidInputError, match="its copy is another profile"):
+        Study(name="refused", base={"profile": Forgetful(1e-4)})
+
+
+def test_arrays_and_profiles_within_count() -> None:
+    many = np.linspace(0, 1, 200)
+    assert identity(Wedge(1e-4, points=many)) != identity(Wedge(1e-4, points=many**2))
+    assert identity(Wedge(1e-4, base=Cosine(1e-6))) != identity(Wedge(1e-4, base=Cosine(2e-6)))
+    assert "200 values" in user_profiles.register(Wedge(1e-4, points=many))["values"]["points"]

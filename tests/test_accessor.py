@@ -1,0 +1,82 @@
+"""Dataset.contact: methods equal the functions, for every order of imports."""
+
+from __future__ import annotations
+
+import inspect
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import analysis, report
+
+ARGUMENTS = {
+    "along_line": ((0.1e-3, 0, 0), (0.4e-3, 0, 50e-6)),
+    "in_plane": {"y": 0.0},
+    "load_between": (0.1e-3, 0.2e-3),
+    "measure": ("tresca",),
+    "largest_sample": ("maximum_shear",),
+    "slices": (5,),
+    "edge_factors": ("von_mises",),
+}
+FUNCTIONS = sorted(
+    name
+    for name in analysis.__all__
+    if inspect.isfunction(function := getattr(analysis, name)) and "dataset" in inspect.signature(function).parameters
+)
+
+
+@pytest.mark.parametrize("name", [*FUNCTIONS, "summary", "assess", "citations"])
+def test_methods_are_the_functions(solved: xr.Dataset, name: str) -> None:
+    arguments = ARGUMENTS.get(name, ())
+    positional, options = ((), arguments) if isinstance(arguments, dict) else (arguments, {})
+    result = getattr(solved.contact, name)(*positional, **options)
+    expected = getattr(analysis if name in FUNCTIONS else report, name)(solved, *positional, **options)
+    assert result.identical(expected) if hasattr(result, "identical") else repr(result) == repr(expected)
+
+
+def test_signatures_are_those_of_the_functions() -> None:
+    method, function = inspect.signature(xr.Dataset().contact.edge_factors), inspect.signature(analysis.edge_factors)
+    assert list(method.parameters.values()) == list(function.parameters.values())[1:]
+
+
+def test_the_accessor_shows_the_main_numbers(solved: xr.Dataset, opened: xr.Dataset) -> None:
+    assert repr(solved.contact) == repr(solved.contact.summary())
+    assert "1.5 GPa" in solved.contact._repr_html_()
+    assert repr(opened.contact).startswith("study of 12 cases over e_over_a (3), friction (2), body (2): ")
+    assert "<pre>study of" in opened.contact._repr_html_()
+
+
+def test_a_file_opened_with_xarray(solved: xr.Dataset, tmp_path) -> None:
+    solved.to_netcdf(tmp_path / "case.nc")
+    with xr.open_dataset(tmp_path / "case.nc") as again:
+        assert float(again.contact.largest_sample()["peak_von_mises"]) == float(solved["von_mises"].max())
+        assert np.array_equal(again.contact.half_width()["half_width"], solved.contact.half_width()["half_width"])
+
+
+@pytest.mark.system
+@pytest.mark.parametrize(
+    "first",
+    [
+        "import xarray, contactstudy",
+        "import contactstudy.accessor",
+        "import contactstudy as cs; cs.analysis",
+        "import contactstudy as cs; cs.solve",
+        "import contactstudy as cs; cs.surface_displacement",
+        "import contactstudy as cs; cs.stress.tresca",
+        "import contactstudy as cs; cs.open_study",
+    ],
+)
+def test_it_is_there_whatever_is_imported_first(first: str) -> None:
+    code = f"{first}\nimport xarray\nxarray.Dataset().contact"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+@pytest.mark.system
+def test_it_is_there_for_a_file_that_xarray_opens_alone(solved: xr.Dataset, tmp_path) -> None:
+    solved.to_netcdf(tmp_path / "case.nc")
+    code = "import sys, xarray; print(xarray.open_dataset(sys.argv[1]).contact.summary())"
+    run = subprocess.run([sys.executable, "-c", code, tmp_path / "case.nc"], check=True, capture_output=True, text=True)
+    assert "Hertz pressure p0" in run.stdout

@@ -1,0 +1,98 @@
+"""Public linear operators: equal to the labelled functions, with transposes and dense matrices."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from contactstudy import (
+    FiniteLengthSpace,
+    Grid,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    QuarterSpace,
+    equivalent_loads,
+    stress_field,
+)
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.fields.surface import surface_displacement as displacement_of
+from contactstudy.operators import LOADS, Overlapping, stress, surface_displacement
+
+STEEL = Material(210e9, 0.3)
+BODIES = [HalfSpace(material=STEEL), QuarterSpace(material=STEEL), FiniteLengthSpace(length=2.0, material=STEEL)]
+GRIDS = [
+    Grid((0.0, 2.0), (-1.5, 1.5), 8, 6),
+    Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6),
+]
+
+
+def labelled(grid: Grid, cells: np.ndarray) -> xr.DataArray:
+    coords = {"x": grid.x, "y": grid.y, "x_width": ("x", grid.widths)}
+    return xr.DataArray(cells, coords, ("x", "y"))
+
+
+def arguments(grid: Grid, cells: np.ndarray, load: str) -> dict[str, xr.DataArray]:
+    """Keywords of the labelled functions for one load."""
+    if load == "pressure":
+        return {"pressure": labelled(grid, cells)}
+    return {"pressure": labelled(grid, 0 * cells), load: labelled(grid, cells)}
+
+
+def check_transpose(operator) -> None:
+    generator = np.random.default_rng(0)
+    right, left = generator.standard_normal(operator.shape[1]), generator.standard_normal(operator.shape[0])
+    forward, backward = operator @ right, operator.T @ left
+    scale = np.linalg.norm(forward) * np.linalg.norm(left)
+    assert left @ forward == pytest.approx(right @ backward, abs=1e-9 * scale)
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=["uniform", "columns"])
+@pytest.mark.parametrize("body", BODIES, ids=["half", "quarter", "finite"])
+@pytest.mark.parametrize("load", LOADS)
+def test_stress_on_planes(body, grid: Grid, load: str) -> None:
+    cells = np.random.default_rng(1).random(grid.shape)
+    for axes in ({"x": [0.0, 0.6], "y": [0.1], "z": [0.0, 0.4]}, {"x": [0.0], "y": [-0.6, 0.75], "z": [0.2]}):
+        operator = stress(body, grid, load=load, **axes)
+        field = stress_field(body, **arguments(grid, cells, load), **axes)
+        expected = np.array([field[name].values for name in STRESSES]).ravel()
+        assert operator @ cells.ravel() == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+        check_transpose(operator)
+
+
+@pytest.mark.parametrize("grid", GRIDS, ids=["uniform", "columns"])
+@pytest.mark.parametrize("body", BODIES, ids=["half", "quarter", "finite"])
+@pytest.mark.parametrize("component", ["x", "y", "z"])
+@pytest.mark.parametrize("load", LOADS)
+def test_surface_displacement(body, grid: Grid, load: str, component: str) -> None:
+    cells = np.random.default_rng(2).random(grid.shape)
+    operator = surface_displacement(body, grid, load, component)
+    displaced = displacement_of(body, **arguments(grid, cells, load), components=component)
+    expected = displaced[f"displacement_{component}"].values.ravel()
+    assert operator @ cells.ravel() == pytest.approx(expected, abs=1e-12 * np.abs(expected).max() + 1e-30)
+    check_transpose(operator)
+
+
+@pytest.mark.parametrize("load", LOADS)
+def test_equivalent_loads(load: str) -> None:
+    body, grid = BODIES[2], GRIDS[1]
+    cells = np.random.default_rng(3).random(grid.shape)
+    method = Overlapping(body, grid, [0.2, 0.5], load)
+    loads = equivalent_loads(body, **arguments(grid, cells, load), z=[0.2, 0.5])
+    for name in ("P_h1", "P_v1", "P_v2"):
+        operator = getattr(method, name)
+        dense = operator @ np.eye(cells.size)
+        assert dense @ cells.ravel() == pytest.approx(loads[name].values.ravel(), abs=1e-9)
+
+
+def test_refused() -> None:
+    single = FiniteLengthSpace(length=2.0, material=STEEL, model="single-mirror")
+    with pytest.raises(InvalidInputError, match="single-mirror"):
+        surface_displacement(single, GRIDS[0])
+    with pytest.raises(InvalidInputError, match="body"):
+        Overlapping(BODIES[0], GRIDS[0])
+    with pytest.raises(InvalidInputError, match="end II"):
+        Overlapping(BODIES[1], GRIDS[0]).P_v2  # noqa: B018
+    with pytest.raises(InvalidInputError, match="load"):
+        stress(BODIES[0], GRIDS[0], load="friction")

@@ -1,0 +1,198 @@
+"""Invariants against states done by hand, against each other, and on Hertz' line contact."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+
+from contactstudy import InvalidInputError
+from contactstudy.arrays.variables import STRESSES
+from contactstudy.stress import (
+    hydrostatic,
+    maximum_shear,
+    orthogonal_shear_range,
+    principal_stresses,
+    tresca,
+    von_mises,
+)
+from contactstudy.verification import closed_forms as ref
+
+Array = np.ndarray
+
+UPPER = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+
+
+def state(tensor: Array) -> xr.Dataset:
+    return xr.Dataset({name: float(tensor[at]) for name, at in zip(STRESSES, UPPER, strict=True)})
+
+
+def uniform(**components: float) -> xr.Dataset:
+    return xr.Dataset({name: components.get(name, 0.0) for name in STRESSES})
+
+
+@st.composite
+def tensors(draw: st.DrawFn) -> Array:
+    # Stresses whose square is still a number.
+    component = st.floats(-1e9, 1e9).map(lambda value: value if abs(value) > 1e-3 else 0.0)
+    values = draw(st.lists(component, min_size=6, max_size=6))
+    tensor = np.zeros((3, 3))
+    for value, (i, j) in zip(values, UPPER, strict=True):
+        tensor[i, j] = tensor[j, i] = value
+    return tensor
+
+
+@st.composite
+def rotations(draw: st.DrawFn) -> Array:
+    quaternion = np.array(draw(st.lists(st.floats(-1, 1), min_size=4, max_size=4))) + np.array([1.5, 0, 0, 0])
+    w, x, y, z = quaternion / np.linalg.norm(quaternion)
+    return np.array(
+        [
+            [1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
+            [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
+            [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)],
+        ]
+    )
+
+
+@pytest.mark.parametrize(
+    ("stress", "expected"),
+    [
+        (uniform(sigma_xx=3.0), (3.0, 3.0, 1.5, 1.0, [3, 0, 0])),
+        (uniform(sigma_zz=-3.0), (3.0, 3.0, 1.5, -1.0, [0, 0, -3])),
+        (uniform(tau_yz=2.0), (2 * np.sqrt(3), 4.0, 2.0, 0.0, [2, 0, -2])),
+        (uniform(sigma_xx=-1.0, sigma_yy=-1.0, sigma_zz=-1.0), (0.0, 0.0, 0.0, -1.0, [-1, -1, -1])),
+        # Mohr's circle of (5, -1, 4): centre 2, radius 5.
+        (uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0), (np.sqrt(79), 10.0, 5.0, 4 / 3, [7, 0, -3])),
+    ],
+    ids=["tension", "compression", "shear", "pressure", "mohr"],
+)
+def test_states_done_by_hand(stress: xr.Dataset, expected: tuple[float, float, float, float, list[float]]) -> None:
+    mises, equivalent, shear, mean, principal = expected
+    assert float(von_mises(stress)) == pytest.approx(mises, abs=1e-12)
+    assert float(tresca(stress)) == pytest.approx(equivalent, abs=1e-12)
+    assert float(maximum_shear(stress)) == pytest.approx(shear, abs=1e-12)
+    assert float(hydrostatic(stress)) == pytest.approx(mean, abs=1e-12)
+    assert principal_stresses(stress)["principal_stress"].values == pytest.approx(principal, abs=1e-12)
+
+
+def test_directions_of_a_plane_state_are_those_of_mohrs_circle() -> None:
+    result = principal_stresses(uniform(sigma_xx=5.0, sigma_yy=-1.0, tau_xy=4.0))
+    first = result["principal_direction"].sel(principal=1)
+    angle = 0.5 * np.arctan2(2 * 4.0, 6.0)
+    along = abs(float(first.sel(axis="x") * np.cos(angle) + first.sel(axis="y") * np.sin(angle)))
+    assert along == pytest.approx(1, abs=1e-12)
+    assert abs(float(result["principal_direction"].sel(principal=2, axis="z"))) == pytest.approx(1, abs=1e-12)
+
+
+@given(tensor=tensors(), rotation=rotations())
+def test_invariants_do_not_depend_on_the_axes(tensor: Array, rotation: Array) -> None:
+    scale = np.abs(tensor).max() + 1e-300
+    before, after = state(tensor), state(rotation @ tensor @ rotation.T)
+    # Von Mises' stress of an almost hydrostatic state is the root of a cancelled difference.
+    assert abs(float(von_mises(before)) ** 2 - float(von_mises(after)) ** 2) <= 1e-12 * scale**2
+    for invariant in (tresca, maximum_shear, hydrostatic):
+        assert abs(float(invariant(before)) - float(invariant(after))) <= 1e-12 * scale
+    values = [principal_stresses(stress)["principal_stress"].values for stress in (before, after)]
+    assert np.abs(values[0] - values[1]).max() <= 1e-12 * scale
+
+
+@given(tensor=tensors())
+def test_tresca_and_von_mises_bound_each_other_and_the_trace_is_kept(tensor: Array) -> None:
+    stress, scale = state(tensor), np.abs(tensor).max() + 1e-300
+    mises, equivalent = float(von_mises(stress)), float(tresca(stress))
+    assert mises <= equivalent + 1e-6 * scale
+    assert equivalent <= 2 / np.sqrt(3) * mises + 1e-6 * scale
+    result = principal_stresses(stress)
+    principal, directions = result["principal_stress"].values, result["principal_direction"].values
+    assert abs(principal.sum() - np.trace(tensor)) <= 1e-12 * scale
+    assert np.all(np.diff(principal) <= 0)
+    assert np.abs(directions @ directions.T - np.eye(3)).max() < 1e-12
+    assert np.abs(directions.T @ np.diag(principal) @ directions - tensor).max() <= 1e-12 * scale
+
+
+@pytest.fixture
+def strip() -> Callable[..., xr.Dataset]:
+    def build(friction: float = 0.0, dims: tuple[str, str, str] = ("x", "y", "z")) -> xr.Dataset:
+        y = np.linspace(-3, 3, 1201)
+        z = np.linspace(0.3, 1.0, 71)
+        fields = ref.hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
+        return xr.Dataset(
+            {name: (dims, np.stack([values, values])) for name, values in fields.items()},
+            coords={dims[0]: [0.0, 1.0], dims[1]: y, dims[2]: z},
+        )
+
+    return build
+
+
+@pytest.mark.parametrize("dims", [("x", "y", "z"), ("x_field", "y_field", "z")])
+def test_orthogonal_shear_of_a_line_contact_is_a_quarter_of_the_peak_pressure(
+    strip: Callable[..., xr.Dataset], dims: tuple[str, str, str]
+) -> None:
+    cycle = orthogonal_shear_range(strip(dims=dims))
+    assert cycle["orthogonal_shear_range"].dims == (dims[0], "z")
+    amplitude = cycle["orthogonal_shear_amplitude"].isel({dims[0]: 0})
+    assert float(amplitude.max()) == pytest.approx(0.25, abs=1e-5)
+    deepest = amplitude.idxmax("z")
+    assert float(deepest) == pytest.approx(0.5, abs=0.011)
+    at = cycle.isel({dims[0]: 0}).sel(z=deepest)
+    assert abs(float(at["y_of_largest_shear"])) == pytest.approx(np.sqrt(0.75), abs=0.006)
+    assert float(at["y_of_largest_shear"]) == pytest.approx(-float(at["y_of_smallest_shear"]), abs=1e-9)
+    assert {variable.attrs["units"] for variable in cycle.data_vars.values()} == {"Pa", "m"}
+
+
+def test_orthogonal_shear_range_of_a_line_contact_hardly_depends_on_friction(
+    strip: Callable[..., xr.Dataset],
+) -> None:
+    """The traction shifts both extremes alike at the depth of the largest range."""
+    at = [
+        float(orthogonal_shear_range(strip(friction))["orthogonal_shear_range"].isel(x=0).max())
+        for friction in (0, 0.1)
+    ]
+    assert at[1] == pytest.approx(at[0], rel=5e-3)
+
+
+def test_largest_shear_and_von_mises_of_a_line_contact(strip: Callable[..., xr.Dataset]) -> None:
+    stress = strip()
+    assert float(maximum_shear(stress).max()) == pytest.approx(0.300, abs=5e-4)
+    assert float(von_mises(stress).max()) == pytest.approx(0.5575, abs=1e-4)
+    assert maximum_shear(stress).dims == ("x", "y", "z")
+
+
+@pytest.mark.parametrize("invariant", [von_mises, tresca, maximum_shear, principal_stresses, hydrostatic])
+def test_missing_component_is_named(invariant: Callable[[xr.Dataset], object]) -> None:
+    with pytest.raises(InvalidInputError, match="sigma_yy"):
+        invariant(uniform().drop_vars("sigma_yy"))
+    with pytest.raises(InvalidInputError, match="Dataset"):
+        invariant(np.zeros((3, 3)))
+
+
+def test_units_and_names_stand_on_every_result() -> None:
+    for invariant in (von_mises, tresca, maximum_shear, hydrostatic):
+        result = invariant(uniform(sigma_xx=1.0))
+        assert result.name == invariant.__name__
+        assert result.attrs["units"] == "Pa"
+        assert result.attrs["long_name"]
+
+
+@pytest.mark.parametrize(
+    ("stress", "message"),
+    [
+        (xr.Dataset({"tau_xz": 1.0}), "tau_yz"),
+        (xr.Dataset({"tau_yz": ("x", [1.0])}), "rolling direction"),
+        (xr.Dataset({"tau_yz": ("y", [1.0, 2.0])}), "positions"),
+        (xr.Dataset({"tau_yz": ("y", [1.0, np.nan])}, coords={"y": [0.0, 1.0]}), "finite"),
+    ],
+)
+def test_bad_shear_history_is_named(stress: xr.Dataset, message: str) -> None:
+    with pytest.raises(InvalidInputError, match=message):
+        orthogonal_shear_range(stress)
+
+
+def test_stress_that_is_not_finite_is_an_error() -> None:
+    with pytest.raises(InvalidInputError, match="finite"):
+        principal_stresses(uniform(sigma_xx=np.nan))

@@ -1,0 +1,82 @@
+"""Concurrent calls: two threads that share cached factorisations, kernels and transforms get the serial results."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+
+import pytest
+import xarray as xr
+from threadpoolctl import threadpool_limits
+
+import contactstudy as cs
+from contactstudy import cache
+
+ROUNDS = 2
+
+STEEL = cs.Material(young=210e9, poisson=0.3)
+BODY = cs.FiniteLengthSpace(length=0.5e-3, material=STEEL)
+CASE = cs.Case(
+    body=BODY,
+    roller=cs.Roller(radius=5e-3, length=0.5e-3, profile=cs.profiles.Lundberg(1e-6), material=STEEL),
+    max_pressure=1e9,
+    friction=0.2,
+    motion=cs.Sliding(body_speed=-1.0, roller_speed=1.0),
+)
+ROLLING = cs.Case(
+    body=cs.QuarterSpace(material=STEEL),
+    roller=cs.Roller(radius=5e-3, length=0.2e-3),
+    max_pressure=1e9,
+    friction=0.2,
+    motion=cs.Rolling(lateral_creepage=1e-3),
+)
+GRID = cs.choose_grid(CASE, cells_x=8, cells_y=8)
+ROLLING_GRID = cs.choose_grid(ROLLING, cells_x=6, cells_y=8)
+POINTS = {"x": [0.0, 1e-4], "y": [0.0, 2e-5], "z": [0.0, 1e-5, 5e-5]}
+
+
+@pytest.fixture
+def switching() -> Iterator[None]:
+    """Switch between threads every ten microseconds; BLAS, whose threads the process shares, on one."""
+    interval = sys.getswitchinterval()
+    sys.setswitchinterval(1e-5)
+    with threadpool_limits(1, user_api="blas"):
+        yield
+    sys.setswitchinterval(interval)
+
+
+def calls() -> dict[str, Callable[[], xr.Dataset | xr.DataArray]]:
+    """Public calculations on small grids, by name."""
+    solution = cs.solve(CASE, GRID, **POINTS)
+    pressure = solution["pressure"]
+    gap = solution["initial_gap"]
+    thermal = cs.heat.ThermalProperties(conductivity=50.0, density=7850.0, specific_heat=460.0)
+    return {
+        "solve": lambda: cs.solve(CASE, GRID, **POINTS),
+        "solve_rolling": lambda: cs.solve(ROLLING, ROLLING_GRID, stresses=False),
+        "solve_contact": lambda: cs.solve_contact(BODY, gap, load=10.0),
+        "stress_field": lambda: cs.stress_field(BODY, pressure, 0.2, **POINTS),
+        "displacement_field": lambda: cs.displacement_field(BODY, pressure, 0.2, **POINTS),
+        "surface_displacement": lambda: cs.surface_displacement(BODY, pressure, 0.2),
+        "equivalent_loads": lambda: cs.equivalent_loads(BODY, pressure, 0.2),
+        "roller_stress": lambda: cs.roller_stress(CASE, pressure, **POINTS),
+        "flash_temperature": lambda: cs.heat.flash_temperature(CASE, solution, body=thermal, roller=thermal),
+    }
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("switching")
+def test_threads_get_serial_results() -> None:
+    serial = calls()
+    names = list(serial)
+    expected = {name: serial[name]() for name in names}
+    cache.clear()  # the first round fills it, the others share its values
+
+    def run(start: int) -> list[str]:
+        order = names[start:] + names[:start]
+        return [name for name in order if not serial[name]().equals(expected[name])]
+
+    with ThreadPoolExecutor(2) as threads:
+        for start in range(ROUNDS):
+            assert list(threads.map(run, (start, start))) == [[], []]
