@@ -206,6 +206,8 @@ def _clusters() -> list[Any]:
 @contextlib.contextmanager
 def _silent_libraries() -> Iterator[None]:
     """Silence the logs of dask and tornado, whose failures become errors of the package."""
+    import distributed  # noqa: F401  # creates the loggers that are silenced
+
     libraries = ("distributed", "tornado", "asyncio")
     names = [name for name in logging.root.manager.loggerDict if name.partition(".")[0] in libraries]
     levels = {name: logging.getLogger(name).level for name in names}

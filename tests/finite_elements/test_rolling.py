@@ -27,7 +27,7 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     expected = roll(flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, PART, 2 * STRIPS)
     assert expected.change < 1e-3
     monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: 0.5 - leading_edge.EDGE_OFFSET)
-    monkeypatch.setattr(leading_edge, "SLIDING_PLACE", 0.5)
+    monkeypatch.setattr(leading_edge, "SLIDING_OFFSET", 0.5)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
     motion = Rolling(force_y=PART * FRICTION * LOAD)

@@ -30,10 +30,11 @@ class Cluster(str):
 def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluster]:
     """Start a scheduler and workers with `folder` as their working folder; yield the scheduler's address.
 
-    Lame workers have not got the package.
+    Lame workers have version 0.0.0 of the package.
     """
-    (folder / "lame").mkdir(exist_ok=True)
-    (folder / "lame" / "contactstudy.py").write_text("raise ModuleNotFoundError('No module named contactstudy')")
+    metadata = folder / "lame" / "contactstudy-0.0.0.dist-info" / "METADATA"
+    metadata.parent.mkdir(parents=True, exist_ok=True)
+    metadata.write_text("Metadata-Version: 2.1\nName: contactstudy\nVersion: 0.0.0\n")
 
     def start(command: str, path: Path) -> subprocess.Popen[bytes]:
         return subprocess.Popen(
