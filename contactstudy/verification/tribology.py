@@ -296,13 +296,13 @@ def friction_checks(*, full: bool) -> Iterator[Check]:
 
 
 STEEL_HEAT = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
-UNIT = ThermalProperties(conductivity=1.0, density=1.0, specific_heat=1.0)
+UNIT = {"conductivity": 1.0, "density": 1.0, "specific_heat": 1.0}
 EVERYWHERE = Ends(-np.inf, np.inf)
 
 
 def rise(grid: Grid, heat: FloatArray, speed: float, ends: Ends, depth: float = 0.0) -> FloatArray:
     """Rise of a body of unit properties."""
-    body = MovingBody(UNIT, speed, ends)
+    body = MovingBody(ThermalProperties(**UNIT), speed, ends)
     return SourceOperator(body, grid, slice(0, grid.cells_x), depth)(np.broadcast_to(heat, grid.shape))
 
 

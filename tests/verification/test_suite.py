@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import InvalidInputError
+from contactstudy import InvalidInputError, MagnitudeWarning
 from contactstudy.cli import main
 from contactstudy.verification import Verification, suite, verify
 from contactstudy.verification.check import Check, Curve, compare
@@ -51,6 +52,14 @@ def test_command_with_a_failed_check(tmp_path: Path, capsys: pytest.CaptureFixtu
 def test_command_succeeds_when_all_checks_pass(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(suite, "GROUPS", {"half-space": lambda full: iter(list(fake(full))[:1])})
     assert main(["verify", "--out", str(tmp_path)]) == 0
+
+
+def test_unit_problems_raise_no_doubts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Properties of 1 are doubtful in SI units, but not in the suite's units."""
+    monkeypatch.setattr(suite, "GROUPS", {"heat": suite.GROUPS["heat"]})
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MagnitudeWarning)
+        assert suite.run().passed
 
 
 def test_nothing_checked_is_not_a_pass() -> None:
