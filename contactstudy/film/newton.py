@@ -479,7 +479,8 @@ class _Columns:
         """Eliminate column after column."""
         columns, cells = problem.cells.shape
         before, after = np.zeros((2, columns, cells))
-        before[1:].flat, after[:-1].flat = (linearised.by_pressure.diagonal(side * cells) for side in (-1, 1))
+        before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
+        after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
         inverses = np.empty((columns, cells, cells))
         for column, stiffness in enumerate(problem.column_stiffness):
             part = slice(column * cells, (column + 1) * cells)
