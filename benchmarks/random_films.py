@@ -1,7 +1,7 @@
 """Solve random films and count those that converge: ``python -m benchmarks.random_films --cases 100``.
 
-Crowned rollers with numbers M from 5 to 2000 and L from 2 to 16. Where the film of smooth surfaces closes, asperities carry
-the load. ``--first N --cases 1`` runs one seed.
+Crowned rollers with numbers M from 5 to 2000 and L from 2 to 16. Where the film of smooth surfaces closes, asperities
+carry the load. ``--first N --cases 1`` runs one seed.
 """
 
 from __future__ import annotations
