@@ -314,11 +314,11 @@ class _Iteration:
         elastic = _diagonals(problem.column_stiffness, by_distance)
         scale = np.abs(by_pressure.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / scale <= 0
-        full = sparse.diags_array(np.where(cavitated, 0.0, 1 / scale))
+        full = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
         by_pressure = full @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
         by_distance = full @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
         sums = problem.resultants @ state.pressure.ravel() - problem.prescribed
-        residual = np.where(cavitated, fluid_pressure.ravel(), outflow / scale)
+        residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
         return _Linearised(
             flow._replace(outflow=outflow),
             np.concatenate([residual, sums / problem.load]),
@@ -460,29 +460,43 @@ def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArr
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Factorised equations of each column, as if all columns carried alike."""
+    """Equations of columns that exchange lubricant with their neighbours, as if all columns carried alike, eliminated.
 
-    factors: tuple[tuple[FloatArray, FloatArray], ...]
+    Attributes
+    ----------
+    inverses : array (x, y, y)
+        Inverses of the columns' equations without the columns before.
+    before, after : array (x, y)
+        Coefficients of the pressures in the column before and in the one after.
+    """
+
+    inverses: FloatArray
+    before: FloatArray
+    after: FloatArray
 
     @classmethod
     def of(cls, linearised: _Linearised, problem: FilmProblem) -> _Columns:
-        """Factorise."""
-        cells = problem.cells.shape[1]
-        factors = []
+        """Eliminate column after column."""
+        columns, cells = problem.cells.shape
+        before, after = np.zeros((2, columns, cells))
+        before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
+        after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
+        inverses = np.empty((columns, cells, cells))
         for column, stiffness in enumerate(problem.column_stiffness):
             part = slice(column * cells, (column + 1) * cells)
-            local = linearised.by_pressure[part, part].toarray()
-            matrix = local + linearised.by_distance[part, part] @ stiffness
-            factors.append(linalg.lu_factor(matrix, overwrite_a=True, check_finite=False))
-        return cls(tuple(factors))
+            matrix = linearised.by_pressure[part, part].toarray()
+            matrix += linearised.by_distance[part, part] @ stiffness
+            if column:
+                matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]
+            inverses[column] = linalg.inv(matrix, overwrite_a=True, check_finite=False)
+        return cls(inverses, before, after)
 
     def solve(self, residual: FloatArray) -> FloatArray:
         """Pressures that remove a residual: array (cell)."""
-        parts = np.split(residual, len(self.factors))
-        # SciPy up to 1.17.1 writes to the pivots while it solves.
-        return np.concatenate(
-            [
-                linalg.lu_solve((lu, pivots.copy()), part, check_finite=False)
-                for (lu, pivots), part in zip(self.factors, parts, strict=True)
-            ]
-        )
+        pressures = residual.reshape(self.before.shape).copy()
+        for column in range(1, len(pressures)):
+            pressures[column] -= self.before[column] * (self.inverses[column - 1] @ pressures[column - 1])
+        pressures[-1] = self.inverses[-1] @ pressures[-1]
+        for column in range(len(pressures) - 2, -1, -1):
+            pressures[column] = self.inverses[column] @ (pressures[column] - self.after[column] * pressures[column + 1])
+        return pressures.ravel()

@@ -1,0 +1,129 @@
+"""Solve random films and count those that converge: ``python -m benchmarks.random_films --cases 100``.
+
+Crowned rollers with numbers M from 5 to 2000 and L from 2 to 16. Where the film of smooth surfaces closes, asperities
+carry the load. ``--first N --cases 1`` runs one seed.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+import warnings
+from collections import Counter
+from dataclasses import replace
+from random import Random
+
+import numpy as np
+
+import contactstudy as cs
+from benchmarks.fuzz.shapes import magnitude
+from contactstudy.film import Asperities, solve_film
+from contactstudy.film.formulas import moes_line
+
+STEEL = cs.Material(210e9, 0.3)
+RADIUS = 5e-3
+VISCOSITY = 0.05
+
+
+def random_profile(chance: Random, amplitude: float, length: float) -> cs.profiles.Profile:
+    """A profile with drops about those that a design for the pressure has."""
+    drop = amplitude * magnitude(chance, 0.5, 3.0)
+    kind = chance.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
+    if kind == "Lundberg":
+        return cs.profiles.Lundberg(amplitude=drop, delta=chance.choice((0.0, 1.0)))
+    if kind == "logarithmic":
+        return cs.profiles.JohnsGohar(amplitude=drop, edge_distance=chance.uniform(0.02, 0.3) * length)
+    depth = 4 * drop
+    if kind == "crown":
+        return cs.profiles.FullCrown(length**2 / (8 * depth))
+    straight = chance.uniform(0.3, 0.8) * length
+    return cs.profiles.PartialCrown(straight, (length - straight) ** 2 / (8 * depth))
+
+
+def random_case(chance: Random) -> cs.Case:
+    """A case with speed and lubricant."""
+    half_width = magnitude(chance, 30e-6, 90e-6)
+    rigid = chance.random() < 0.5
+    modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
+    pressure = half_width * modulus / (2 * RADIUS)
+    length = half_width * magnitude(chance, 8.0, 250.0)
+    profile = random_profile(chance, half_width**2 / (4 * RADIUS), length)
+    distance = chance.choice((0.0, 0.0, chance.uniform(0.0, 5.0))) * half_width
+    tilt = chance.choice((0.0, 0.0, chance.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
+    roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
+    case = cs.Case(
+        body=cs.FiniteLengthSpace(length=length + 2 * distance, material=STEEL),
+        roller=roller,
+        end_distance=distance,
+        tilt=tilt,
+        max_pressure=pressure,
+    )
+    load, lubricant = magnitude(chance, 5.0, 2000.0), chance.uniform(2.0, 16.0)
+    stiffness = 2 * case.modulus
+    root = case.normal_load / (case.contact_length * stiffness * RADIUS * load)
+    speed = 0.5 * root**2 * stiffness * RADIUS / VISCOSITY
+    oil = cs.Lubricant(
+        viscosity=VISCOSITY,
+        pressure_viscosity=lubricant / (stiffness * root**0.5),
+        viscosity_law=chance.choice(("barus", "roelands")),
+        density_law=chance.choice(("constant", "dowson-higginson")),
+    )
+    return replace(case, lubricant=oil, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
+
+
+def outcome(seed: int) -> tuple[str, str]:
+    """Run one seed: its kind, and what to print."""
+    case = random_case(Random(seed))
+    began = time.perf_counter()
+    kind, text = "smooth", ""
+    try:
+        try:
+            film = solve_film(case)
+        except cs.FilmError as error:
+            if "closes" not in str(error):
+                raise
+            kind = "rough"
+            assert case.lubricant is not None
+            assert isinstance(case.motion, cs.Sliding)
+            number = VISCOSITY * case.motion.body_speed / (2 * case.modulus * RADIUS)
+            root = float(np.sqrt(2 * number))
+            load = case.normal_load / case.contact_length / (2 * case.modulus * RADIUS * root)
+            lubricant = case.lubricant.pressure_viscosity * 2 * case.modulus * root**0.5
+            central = float(moes_line(load, lubricant)) * RADIUS * root
+            film = solve_film(case, asperities=Asperities(rms=0.1 * central))
+        central = float(film.central_film)
+        text = (
+            f"M {float(film.moes_load):.0f} L {float(film.moes_lubricant):.1f} central {1e6 * central:.4g} um "
+            f"+- {100 * float(film.central_film_error) / central:.2g} %, least {float(film.least_film) / central:.3f} "
+            f"+- {float(film.least_film_error) / central:.2g}, {int(film.film_levels)} levels, "
+            f"{int(film.newton_steps)} and {int(film.linear_steps)} steps"
+        )
+    except cs.FilmError as error:
+        kind, text = "failed", f"{kind}: {error}"
+    except cs.InvalidInputError as error:
+        kind, text = "refused", str(error)
+    return kind, f"{text}, {time.perf_counter() - began:.1f} s"
+
+
+def main() -> int:
+    """Run the selected cases."""
+    parser = argparse.ArgumentParser(prog="python -m benchmarks.random_films", description=__doc__)
+    parser.add_argument("--cases", type=int, default=100, help="number of seeds")
+    parser.add_argument("--first", type=int, default=0, help="first seed")
+    options = parser.parse_args()
+    warnings.simplefilter("ignore")
+    kinds: Counter[str] = Counter()
+    failed = []
+    for seed in range(options.first, options.first + options.cases):
+        kind, text = outcome(seed)
+        kinds[kind] += 1
+        failed += [seed] if kind == "failed" else []
+        print(f"seed {seed}: {kind}: {text}", flush=True)
+    solved = options.cases - kinds["refused"]
+    print(", ".join(f"{count} {kind}" for kind, count in kinds.most_common()))
+    print(f"converged: {100 * (solved - kinds['failed']) / max(solved, 1):.1f} %; failed seeds: {failed}")
+    return int(bool(failed))
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
