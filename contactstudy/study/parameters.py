@@ -25,8 +25,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.numbers import number, rounded
-from contactstudy.study.profile_tables import profile_table
+from contactstudy.study.profile_tables import number, profile_table, rounded
 
 MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning

@@ -18,9 +18,8 @@ from contactstudy import checks
 from contactstudy.errors import InvalidInputError, Terminated
 from contactstudy.study.batches import case_batch, write_batch
 from contactstudy.study.definition import Study
-from contactstudy.study.engine import WAIT_SECONDS, Engine, refuse_in_a_worker
+from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
 from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.executor import Results, Tasks, execute
 from contactstudy.study.folder import Entry, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
