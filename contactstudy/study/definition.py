@@ -24,7 +24,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
 from contactstudy.study.plan import LEVELS, Axis, Plan, label, make_plan, value_text
-from contactstudy.study.profile_tables import check_without_files, resolve_files
+from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
@@ -228,12 +228,6 @@ class Study:
         return cls(**content)
 
     @classmethod
-    def from_stored(cls, content: Mapping[str, Any]) -> Study:
-        """Study from the ``study.json`` of a folder, which contains the points of measured profiles and no file."""
-        check_without_files(content)
-        return cls.from_mapping(content)
-
-    @classmethod
     def from_dataset(
         cls,
         table: xr.Dataset,
@@ -271,9 +265,11 @@ class Study:
         >>> [case.name for case in study.plan()][:2]
         ['max_pressure=1e+09 friction=0', 'max_pressure=1e+09 friction=0.1']
         """
+        allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
+        checks.instance("table", table, xr.Dataset, allowed)
         arguments = {"name": name, "level": level, "description": description}
         arguments = {key: value for key, value in arguments.items() if value is not None}
-        if is_opened(table):
+        if STUDY_ATTRIBUTE in table.attrs and "case_id" in table:
             study = cls.from_mapping(attribute(table, STUDY_ATTRIBUTE))
             content = part_of_study(study, table, base or {})
         else:
@@ -326,13 +322,6 @@ class Study:
         return tuple(axes)
 
 
-def is_opened(table: xr.Dataset) -> bool:
-    """Whether a Dataset is an opened study, or a selection of one."""
-    allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
-    checks.instance("table", table, xr.Dataset, allowed)
-    return STUDY_ATTRIBUTE in table.attrs and "case_id" in table
-
-
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     """Return the keys of a study whose cases are the entries of a table."""
     columns = {
@@ -342,7 +331,7 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
     for name in {*base} & {*columns}:
         raise InvalidInputError("base", name, "a parameter that the table does not have")
     content: dict[str, Any] = {"base": {**base, **{name: value for name, value in shared.items() if value is not None}}}
-    if any(array.ndim > 1 or _incomplete(array) for array in columns.values()):
+    if any(array.ndim and (array.ndim > 1 or None in map(_plain, array.values)) for array in columns.values()):
         return content | {"cases": list(_rows(table, columns))}
     groups: dict[str, dict[str, list[Any]]] = {}
     for name, array in columns.items():
@@ -377,11 +366,6 @@ def _plain(value: Any) -> Any:
     plain = value.item() if isinstance(value, np.generic) else value
     missing = plain is None or plain == "" or (isinstance(plain, float) and np.isnan(plain))
     return None if missing else plain
-
-
-def _incomplete(array: xr.Variable) -> bool:
-    """Whether some cases do not have a parameter."""
-    return bool(array.dims) and any(_plain(value) is None for value in array.values.flat)
 
 
 def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:

@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import repeat
 from typing import Any, NamedTuple
@@ -36,7 +36,6 @@ LOCAL = frozenset(
 """Parameters that do not change the operator of the surface. Speed."""
 
 IntArray = npt.NDArray[np.int64]
-Labeller = Callable[[str, Any], Any]
 
 
 @dataclass(frozen=True)
@@ -55,7 +54,7 @@ class Cube:
     labels: dict[str, tuple[str, list[Any]]]
 
 
-def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
+def cube_of_axes(axes: Sequence[Axis]) -> Cube:
     """Cube of a product: one dimension per axis; a zipped one is named after its first parameter of distinct values."""
     if not axes:
         return Cube(("case",), (1,), {"case": ("case", [0])})
@@ -73,7 +72,7 @@ def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
     return Cube(tuple(dims), tuple(shape), labels)
 
 
-def cube_of_cases(cases: Sequence[Mapping[str, Any]], label: Labeller) -> tuple[Cube, list[tuple[int, ...]]]:
+def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[int, ...]]]:
     """Cube of explicit cases over the parameters that differ, or along `case` if sparse; and each case's position."""
     names = list(dict.fromkeys(name for case in cases for name in case))
     rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
@@ -179,8 +178,8 @@ class Plan(Sequence[PlannedCase]):
     def _layout(self) -> tuple[Cube, IntArray]:
         """Dimensions of the study, and each case's number in the flattened cube."""
         if not self.explicit:
-            return cube_of_axes(self.axes, label), self.chosen
-        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))], label)
+            return cube_of_axes(self.axes), self.chosen
+        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))])
         return cube, np.ravel_multi_index(tuple(np.array(positions).T), cube.shape).astype(np.int64)
 
     @property
@@ -260,7 +259,7 @@ class Plan(Sequence[PlannedCase]):
 
     def setup(self, index: int) -> Setup:
         """Set up a case, or raise the reason why it cannot be solved."""
-        return build_setup(self.parameters(index), given=self.values(index))
+        return build_setup(completed(self.values(index)))
 
     def reason(self, index: int) -> str:
         """Reason why the plan skips a case, or empty."""
@@ -327,59 +326,36 @@ def make_plan(
     product = Plan(name=name, level=level, base=base, axes=axes, explicit=cases)
     names = {entry for rule in exclude for entry in rule}
     defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
-    shape, products = product.shape, product.products
-    out = np.zeros(shape if products else (0,), dtype=bool)
-    listed = [{**defaults, **base, **case} for case in cases]
-    out_listed = [any(_matches(values, rule) for rule in exclude) for values in listed]
-    values_of: dict[str, set[Any]] = {entry: set() for entry in names}
-    for entry in names:
-        values_of[entry].update(label(entry, values.get(entry)) for values in listed)
-        if products:
-            values_of[entry].update(label(entry, value) for value in _steps(entry, axes, defaults | dict(base)))
-    for rule in exclude if products else ():
-        matching = np.ones(shape, dtype=bool)
+    shared = {**defaults, **base}
+    # Labels of the parameters in the rules: along the axis with the parameter, and in every explicit case.
+    number_of = {entry: number for number, axis in enumerate(axes) for entry in axis.entries[0]}
+    steps = {
+        entry: [label(entry, step[entry]) for step in axes[number_of[entry]].entries]
+        if entry in number_of
+        else [label(entry, shared.get(entry))]
+        for entry in names
+    }
+    listed = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
+    out = np.zeros(product.shape if product.products else (0,), dtype=bool)
+    for rule in exclude if product.products else ():
+        matching = np.ones(product.shape, dtype=bool)
         for entry, allowed in rule.items():
-            steps = _steps(entry, axes, defaults | dict(base))
-            matches = np.array([label(entry, value) in allowed for value in steps])
-            number = next((index for index, axis in enumerate(axes) if entry in axis.entries[0]), None)
-            matching &= (
-                matches[0]
-                if number is None
-                else matches.reshape([-1 if index == number else 1 for index in range(len(shape))])
-            )
+            matches = np.array([value in allowed for value in steps[entry]])
+            matching &= matches.reshape([-1 if number == number_of.get(entry) else 1 for number in range(len(axes))])
         out |= matching
+    out_listed = [
+        any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude) for values in listed
+    ]
     unknown = [
         f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
         for rule in exclude
         for entry, values in rule.items()
         for value in values
-        if value not in values_of[entry]
+        if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in listed)]
     ]
-    chosen = np.concatenate(
-        [np.flatnonzero(~out.ravel()), products + np.flatnonzero(~np.array(out_listed, dtype=bool))]
-    ).astype(np.int64)
-    return Plan(
-        name=name,
-        level=level,
-        base=base,
-        axes=axes,
-        explicit=cases,
-        chosen=chosen,
-        unknown=tuple(dict.fromkeys(unknown)),
-    )
-
-
-def _steps(name: str, axes: tuple[Axis, ...], values: Mapping[str, Any]) -> list[Any]:
-    """Values of a parameter along the axis that contains it; one value if none does."""
-    for axis in axes:
-        if name in axis.entries[0]:
-            return [entry[name] for entry in axis.entries]
-    return [values.get(name)]
-
-
-def _matches(values: Mapping[str, Any], rule: Mapping[str, list[Any]]) -> bool:
-    """Return whether a case matches a rule."""
-    return all(label(name, values.get(name)) in allowed for name, allowed in rule.items())
+    listed_chosen = product.products + np.flatnonzero(~np.array(out_listed, dtype=bool))
+    chosen = np.concatenate([np.flatnonzero(~out.ravel()), listed_chosen]).astype(np.int64)
+    return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
 
 
 def label(name: str, value: Any) -> Any:

@@ -15,6 +15,7 @@ from typing import Any
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import quantity
+from contactstudy.case.serialization import tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import UNITS
@@ -235,11 +236,9 @@ def resolve_files(content: Any, folder: Path) -> Any:
 
 def check_without_files(content: Any) -> None:
     """Raise if a measured profile within tables names a file: a stranger's study could name any file."""
-    entries = content.values() if isinstance(content, Mapping) else content if isinstance(content, list) else ()
-    if isinstance(content, Mapping) and content.get("kind") == "measured" and "file" in content:
-        raise InvalidInputError("profile.file", content["file"], "left out of study.json, which contains the points")
-    for entry in entries:
-        check_without_files(entry)
+    for table in tables_within(content):
+        if table["kind"] == "measured" and "file" in table:
+            raise InvalidInputError("profile.file", table["file"], "left out of study.json, which contains the points")
 
 
 def profile_label(table: Mapping[str, Any]) -> str:

@@ -21,7 +21,7 @@ import xarray as xr
 
 from contactstudy.analysis.summary import Number, case_numbers
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import DERIVED, labels
+from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
 from contactstudy.errors import ContactStudyError, MagnitudeWarning
 from contactstudy.profiles import Profile
@@ -186,7 +186,7 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
         try:
             setup = build_setup(job.parameters)
         except ContactStudyError as error:
-            yield _without_result(task, job, "skipped", str(error))
+            yield without_result(task, job, "skipped", str(error))
             continue
         if solved is None:
             batch, result = _solve_case(task, job, setup, solver, film)
@@ -195,16 +195,14 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
             elif shares and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
                 solved = batch
         else:
-            batch = replace(
-                _without_result(task, job, "ok"), numbers=dict(solved.numbers), attributes=dict(solved.attributes)
-            )
+            batch = without_result(task, job, "ok")
+            batch = replace(batch, numbers=dict(solved.numbers), attributes=dict(solved.attributes))
             batch.texts["warnings"] = solved.texts["warnings"]
         batch.numbers["seconds"] = np.array([time.perf_counter() - began])
-        batch.attributes["seconds"] = labels("seconds")
         yield batch
 
 
-def _without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
+def without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
     """Batch of one case without numbers."""
     return case_batch(
         identity=job.id,
@@ -245,11 +243,11 @@ def _solve_case(
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
-        return _without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
+        return without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
     except Exception as error:
         error.add_note(f"while solving the case {job.name} ({job.id[:16]})")
         raise
-    batch = _without_result(
+    batch = without_result(
         task, job, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
     )
     e_over_a = setup.e_over_a
