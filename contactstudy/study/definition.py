@@ -8,7 +8,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -23,7 +23,7 @@ from contactstudy.checks import factor_to
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
-from contactstudy.study.plan import LEVELS, Axis, Plan, label, make_plan, value_text
+from contactstudy.study.plan import LEVELS, Axis, Plan, label, value_text
 from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
@@ -304,22 +304,46 @@ class Study:
                 f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
-        return make_plan(
-            name=self.name,
-            level=self.level,
-            base=self.base,
-            axes=self.axes(),
-            cases=tuple(self.cases),
-            exclude=tuple(dict(rule) for rule in self.exclude),
-        )
-
-    def axes(self) -> tuple[Axis, ...]:
-        """Swept parameters, then zipped ones."""
-        axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
+        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
         for group in self.zip:
-            rows = zip(*group.values(), strict=True)
-            axes.append(Axis(tuple(dict(zip(group, row, strict=True)) for row in rows)))
-        return tuple(axes)
+            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
+        cases, exclude = tuple(self.cases), self.exclude
+        product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
+        names = {entry for rule in exclude for entry in rule}
+        defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
+        shared = {**defaults, **self.base}
+        # Labels of the parameters in the rules: along the axis with the parameter, and in every explicit case.
+        number_of = {entry: number for number, axis in enumerate(axes) for entry in axis[0]}
+        steps = {
+            entry: [label(entry, step[entry]) for step in axes[number_of[entry]]]
+            if entry in number_of
+            else [label(entry, shared.get(entry))]
+            for entry in names
+        }
+        listed = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
+        out = np.zeros(product.shape if product.products else (0,), dtype=bool)
+        for rule in exclude if product.products else ():
+            matching = np.ones(product.shape, dtype=bool)
+            for entry, allowed in rule.items():
+                matches = np.array([value in allowed for value in steps[entry]])
+                matching &= matches.reshape(
+                    [-1 if number == number_of.get(entry) else 1 for number in range(len(axes))]
+                )
+            out |= matching
+        out_listed = [
+            any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude)
+            for values in listed
+        ]
+        unknown = [
+            f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
+            for rule in exclude
+            for entry, values in rule.items()
+            for value in values
+            if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in listed)]
+        ]
+        listed_chosen = product.products + np.flatnonzero(~np.array(out_listed, dtype=bool))
+        chosen = np.concatenate([np.flatnonzero(~out.ravel()), listed_chosen]).astype(np.int64)
+        return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

@@ -177,9 +177,9 @@ def _local_client(workers: int) -> Iterator[Client]:
 
 def _local_cluster(workers: int, loop: IOLoop) -> LocalCluster:
     """Cluster of local processes."""
-    from distributed import LocalCluster
+    from distributed import LocalCluster, SpecCluster
 
-    older = set(_clusters())
+    older = set(getattr(SpecCluster, "_instances", ()))
     try:
         return LocalCluster(
             n_workers=workers,
@@ -194,18 +194,11 @@ def _local_cluster(workers: int, loop: IOLoop) -> LocalCluster:
         )
     except BaseException as error:
         # At the end of the process dask would close the half-started cluster, and fail.
-        for cluster in set(_clusters()) - older:
+        for cluster in set(getattr(SpecCluster, "_instances", ())) - older:
             cluster.shutdown_on_close = False
         if isinstance(error, RuntimeError | OSError):
             raise StudyFileError(f"the worker processes did not start: {error} {START}") from None
         raise
-
-
-def _clusters() -> list[Any]:
-    """Dask clusters of this process."""
-    from distributed import SpecCluster
-
-    return list(getattr(SpecCluster, "_instances", ()))
 
 
 @contextlib.contextmanager

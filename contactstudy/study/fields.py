@@ -231,7 +231,7 @@ class Fields:
         if "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
-            parameters = [plan.base, *(axis.entries[0] for axis in plan.axes), *plan.explicit]
+            parameters = [plan.base, *(axis[0] for axis in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
             given = any("field_x_over_a" in entry for entry in parameters)
             borders = centred_cells(borders, points) if given else split_cells(borders, points)

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import repeat
 from typing import Any, NamedTuple
@@ -36,13 +36,8 @@ LOCAL = frozenset(
 """Parameters that do not change the operator of the surface. Speed."""
 
 IntArray = npt.NDArray[np.int64]
-
-
-@dataclass(frozen=True)
-class Axis:
-    """One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
-
-    entries: tuple[dict[str, Any], ...]
+Axis = tuple[dict[str, Any], ...]
+"""One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
 
 
 @dataclass(frozen=True)
@@ -60,15 +55,15 @@ def cube_of_axes(axes: Sequence[Axis]) -> Cube:
         return Cube(("case",), (1,), {"case": ("case", [0])})
     dims, shape, labels = [], [], {}
     for axis in axes:
-        columns = {name: [label(name, entry[name]) for entry in axis.entries] for name in axis.entries[0]}
+        columns = {name: [label(name, entry[name]) for entry in axis] for name in axis[0]}
         distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
         dim = distinct[0] if distinct else "_and_".join(columns)
         if not distinct:
-            labels[dim] = (dim, list(range(len(axis.entries))))
+            labels[dim] = (dim, list(range(len(axis))))
         for name, column in columns.items():
             labels[name] = (dim, column)
         dims.append(dim)
-        shape.append(len(axis.entries))
+        shape.append(len(axis))
     return Cube(tuple(dims), tuple(shape), labels)
 
 
@@ -143,7 +138,7 @@ class Plan(Sequence[PlannedCase]):
     @property
     def shape(self) -> tuple[int, ...]:
         """Number of steps of each axis."""
-        return tuple(len(axis.entries) for axis in self.axes)
+        return tuple(len(axis) for axis in self.axes)
 
     @property
     def products(self) -> int:
@@ -156,11 +151,7 @@ class Plan(Sequence[PlannedCase]):
         if number >= self.products:
             return dict(self.explicit[number - self.products])
         steps = np.unravel_index(number, self.shape) if self.shape else ()
-        return {
-            name: value
-            for axis, step in zip(self.axes, steps, strict=True)
-            for name, value in axis.entries[step].items()
-        }
+        return {name: value for axis, step in zip(self.axes, steps, strict=True) for name, value in axis[step].items()}
 
     def values(self, index: int) -> dict[str, Any]:
         """Parameters of a case as the study gives them."""
@@ -195,15 +186,15 @@ class Plan(Sequence[PlannedCase]):
     def _fragments(self) -> Iterator[tuple[str, ...]]:
         """Parts of each case's canonical JSON, sorted by name; empty for defaults."""
         product = self.chosen[self.chosen < self.products]
-        names = {name for axis in self.axes for name in axis.entries[0]}
+        names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
         for name, value in completed({**self.base, **dict.fromkeys(names)}).items():
             if name not in names:
                 columns[name] = repeat(fragment(name, value))
         steps = np.unravel_index(product, self.shape) if self.shape else ()
         for axis, column in zip(self.axes, steps, strict=True):
-            for name in axis.entries[0]:
-                table = [fragment(name, entry[name]) for entry in axis.entries]
+            for name in axis[0]:
+                table = [fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
         if product.size and self.axes:
             ordered = [columns[name] for name in sorted(columns)]
@@ -250,7 +241,7 @@ class Plan(Sequence[PlannedCase]):
             questions.update(doubts(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
         # A group's cases differ in friction: its other values are checked here.
-        entries = [*(entry for axis in self.axes for entry in axis.entries), *self.explicit]
+        entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := friction_doubt(friction):
                 questions.setdefault(message, checked)
@@ -311,51 +302,6 @@ def _numbered(keys: Iterable[int], count: int) -> IntArray:
     """Return the number of each key, in the order of their first appearance."""
     numbers: dict[int, int] = {}
     return np.fromiter((numbers.setdefault(key, len(numbers)) for key in keys), dtype=np.int64, count=count)
-
-
-def make_plan(
-    *,
-    name: str,
-    level: str,
-    base: Mapping[str, Any],
-    axes: tuple[Axis, ...],
-    cases: tuple[Mapping[str, Any], ...],
-    exclude: tuple[Mapping[str, list[Any]], ...],
-) -> Plan:
-    """Plan of a study: the product of its axes, then the explicit cases, without those that match a rule of labels."""
-    product = Plan(name=name, level=level, base=base, axes=axes, explicit=cases)
-    names = {entry for rule in exclude for entry in rule}
-    defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
-    shared = {**defaults, **base}
-    # Labels of the parameters in the rules: along the axis with the parameter, and in every explicit case.
-    number_of = {entry: number for number, axis in enumerate(axes) for entry in axis.entries[0]}
-    steps = {
-        entry: [label(entry, step[entry]) for step in axes[number_of[entry]].entries]
-        if entry in number_of
-        else [label(entry, shared.get(entry))]
-        for entry in names
-    }
-    listed = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
-    out = np.zeros(product.shape if product.products else (0,), dtype=bool)
-    for rule in exclude if product.products else ():
-        matching = np.ones(product.shape, dtype=bool)
-        for entry, allowed in rule.items():
-            matches = np.array([value in allowed for value in steps[entry]])
-            matching &= matches.reshape([-1 if number == number_of.get(entry) else 1 for number in range(len(axes))])
-        out |= matching
-    out_listed = [
-        any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude) for values in listed
-    ]
-    unknown = [
-        f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
-        for rule in exclude
-        for entry, values in rule.items()
-        for value in values
-        if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in listed)]
-    ]
-    listed_chosen = product.products + np.flatnonzero(~np.array(out_listed, dtype=bool))
-    chosen = np.concatenate([np.flatnonzero(~out.ravel()), listed_chosen]).astype(np.int64)
-    return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
 
 
 def label(name: str, value: Any) -> Any:

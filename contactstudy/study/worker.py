@@ -98,15 +98,15 @@ def single_threaded() -> Iterator[None]:
         pyfftw.config.NUM_THREADS = previous
 
 
-def perform(task: Task, solver: Solver | None = None, report: Callable[[Outcome], None] | None = None) -> list[Outcome]:
-    """Solve the cases of a task and write them in batches; `report` takes each outcome when its case is written.
+def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
+    """Solve the cases of a task, write them in batches, and return their outcomes.
 
     A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
     defect of the program, and raised after the cases finished before are written.
     """
     _check_folder(*task.lock)
     receive(task.profiles)
-    writer = _Writer(task, report or (lambda outcome: None))
+    writer = _Writer(task)
     try:
         with single_threaded():
             for _, jobs in groupby(task.jobs, key=lambda job: job.group):
@@ -135,8 +135,8 @@ def _check_folder(path: str, text: str) -> None:
 class _Writer:
     """Accumulates finished cases and writes them in batches."""
 
-    def __init__(self, task: Task, report: Callable[[Outcome], None]) -> None:
-        self._task, self._report = task, report
+    def __init__(self, task: Task) -> None:
+        self._task = task
         self._pending: list[Batch] = []
         self._since = time.monotonic()
         self.outcomes: list[Outcome] = []
@@ -157,9 +157,7 @@ class _Writer:
             for row, identity in enumerate(joined.ids):
                 status = STATUSES[joined.status[row]]
                 seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                outcome = Outcome(identity.decode(), status, seconds, joined.texts["message"][row])
-                self.outcomes.append(outcome)
-                self._report(outcome)
+                self.outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
         self._since = time.monotonic()
 
 
