@@ -179,8 +179,7 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
-    _print(state_lines(states, everything=options.all))
-    _print(forecast_lines(states))
+    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
     return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
 
 
@@ -194,8 +193,7 @@ def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     print(f"study {study.name}: {len(states.plan)} cases, results in {shown(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    _print(state_lines(states, everything=options.all))
-    _print(forecast_lines(states))
+    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 

@@ -23,7 +23,7 @@ from contactstudy.report.summary_table import intensity_text
 from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, label, value_text
+from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -97,7 +97,10 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "shape": _shape(plan),
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
-        "swept": [(_meaning(name), _list_values(rows, column)) for column, name in enumerate(swept)],
+        "swept": [
+            (_meaning(name), listed(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
+            for column, name in enumerate(swept)
+        ],
         "headings": [_heading(name) for name in swept],
         "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
         "intensities": any(name.startswith("end_intensity") for name in names),
@@ -234,12 +237,6 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
         worst = CARE
     words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
     return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
-
-
-def _list_values(rows: list[Row], column: int) -> str:
-    """Distinct values of a swept parameter, in order."""
-    values = list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))
-    return ", ".join(values) if len(values) <= 12 else f"{len(values)} values, {values[0]} to {values[-1]}"
 
 
 def _shape(plan: Plan) -> str:

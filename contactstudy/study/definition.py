@@ -23,14 +23,13 @@ from contactstudy.checks import factor_to
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
-from contactstudy.study.plan import LEVELS, Axis, Plan, label, value_text
+from contactstudy.study.plan import LEVELS, Axis, Plan, label, listed, value_text
 from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
 
 MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
-LISTED = 12  # Values of a swept parameter that are all shown
 
 
 def _listed(name: str, values: object) -> list[Any]:
@@ -52,11 +51,6 @@ def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
         raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
     return entries
-
-
-def _shortened(texts: list[str]) -> str:
-    """Values of a swept parameter; of more than twelve the first and the last."""
-    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 @dataclass(frozen=True)
@@ -124,11 +118,10 @@ class Study:
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""
-        for name, values in self.sweep.items():
-            yield f"{name} (swept)", _shortened([value_text(name, value) for value in values])
-        for group in self.zip:
-            for name, values in group.items():
-                yield f"{name} (together)", _shortened([value_text(name, value) for value in values])
+        columns = [(name, "swept", values) for name, values in self.sweep.items()]
+        columns += [(name, "together", values) for group in self.zip for name, values in group.items()]
+        for name, word, values in columns:
+            yield f"{name} ({word})", listed([value_text(name, value) for value in values])
         if self.cases:
             yield "cases", f"{len(self.cases)} explicit ones"
         for name, value in self.base.items():
@@ -320,7 +313,7 @@ class Study:
             else [label(entry, shared.get(entry))]
             for entry in names
         }
-        listed = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
+        explicit = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
         out = np.zeros(product.shape if product.products else (0,), dtype=bool)
         for rule in exclude if product.products else ():
             matching = np.ones(product.shape, dtype=bool)
@@ -330,19 +323,19 @@ class Study:
                     [-1 if number == number_of.get(entry) else 1 for number in range(len(axes))]
                 )
             out |= matching
-        out_listed = [
+        out_explicit = [
             any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude)
-            for values in listed
+            for values in explicit
         ]
         unknown = [
             f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
             for rule in exclude
             for entry, values in rule.items()
             for value in values
-            if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in listed)]
+            if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in explicit)]
         ]
-        listed_chosen = product.products + np.flatnonzero(~np.array(out_listed, dtype=bool))
-        chosen = np.concatenate([np.flatnonzero(~out.ravel()), listed_chosen]).astype(np.int64)
+        chosen_explicit = product.products + np.flatnonzero(~np.array(out_explicit, dtype=bool))
+        chosen = np.concatenate([np.flatnonzero(~out.ravel()), chosen_explicit]).astype(np.int64)
         return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
 
 

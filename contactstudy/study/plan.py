@@ -26,6 +26,7 @@ from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
 
 LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; those on (x, y); also the stresses
+LISTED = 12  # Values of a swept parameter that are all shown
 LARGEST_FILL = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
 """Size of the numbers of a case, and of its arrays before compression."""
@@ -163,7 +164,9 @@ class Plan(Sequence[PlannedCase]):
 
     def words(self, index: int) -> str:
         """Swept parameters of a case, for messages."""
-        return " ".join(in_words(name, value) for name, value in self.varying(index).items()) or "the only case"
+        labels = {name: label(name, value) for name, value in self.varying(index).items()}
+        texts = (f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}" for name, text in labels.items())
+        return " ".join(texts) or "the only case"
 
     @cached_property
     def _layout(self) -> tuple[Cube, IntArray]:
@@ -313,10 +316,9 @@ def label(name: str, value: Any) -> Any:
     return value
 
 
-def in_words(name: str, value: Any) -> str:
-    """Return a parameter as ``name=value``."""
-    text = label(name, value)
-    return f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}"
+def listed(texts: Sequence[str]) -> str:
+    """Values of a swept parameter; of more than twelve the first and the last."""
+    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 def value_text(name: str, value: Any) -> str:

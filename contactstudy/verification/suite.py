@@ -107,12 +107,11 @@ class Verification:
     def to_dataset(self) -> xr.Dataset:
         """All checks as data along ``check``."""
         groups = [name for name, group in self.groups.items() for _ in group]
-        columns: dict[str, object] = {"group": np.array(groups, dtype=object)}
-        for name in ("case", "quantity", "source"):
-            columns[name] = np.array([getattr(check, name) for check in self.checks], dtype=object)
-        for name in ("computed", "expected", "difference", "tolerance"):
-            columns[name] = np.array([getattr(check, name) for check in self.checks])
-        columns["passed"] = np.array([check.passed for check in self.checks], dtype=bool)
+        columns = {"group": np.array(groups, dtype=object)}
+        kinds = dict.fromkeys(("case", "quantity", "source"), object)
+        kinds |= dict.fromkeys(("computed", "expected", "difference", "tolerance"), float) | {"passed": bool}
+        for name, kind in kinds.items():
+            columns[name] = np.array([getattr(check, name) for check in self.checks], dtype=kind)
         data = xr.Dataset({name: ("check", values) for name, values in columns.items()})
         data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
         return describe(data, "verification of contactstudy")

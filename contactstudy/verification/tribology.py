@@ -96,41 +96,37 @@ def carter_checks() -> Iterator[Check]:
         )
 
 
-def slope_check(length: float, cells: int, case: str, modulus: float, tolerance: float) -> Check:
-    """Compare the initial slope of the traction curve per length at mid-length of two like cylinders.
-
-    It is ``pi E' a / 2`` with E' of the pair in the plane, ``E / 2`` in plane stress (Johnson 8.46).
-    """
-    steel, friction, creepage = material(1.0, 0.3), 0.3, 0.015
-    gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, length), (-1.3, 1.3), (cells, LINE_CELLS))
-    body = FiniteLengthSpace(length=length, material=steel)
-    load = 0.25 * np.pi * 0.5 * steel.plane_strain_modulus * length
-    first, second = (
-        solve_contact(
-            body,
-            gap,
-            load,
-            friction,
-            counterbody=Counterbody(body),
-            motion=Rolling(longitudinal_creepage=number * creepage),
-        ).isel(x=cells // 2)
-        for number in (1, 2)
-    )
-    step = float(gap["y"][1] - gap["y"][0])
-    forces = [step * float(rolled["traction_y"].sum()) for rolled in (first, second)]
-    half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
-    slope = (4 * forces[0] - forces[1]) / (2 * creepage)
-    expected = 0.5 * np.pi * modulus * half_width
-    source = "Carter (1926); Johnson (1985) 8.46"
-    return compare(case, "initial slope of the force per length", source, slope, expected, tolerance, relative=True)
-
-
 def slope_checks(*, full: bool) -> Iterator[Check]:
-    """Plane stress of a thin disc, plane strain in the middle of a long body."""
-    young, poisson = 2.6, 0.3
-    yield slope_check(0.1, 2, "like discs rolling, L = 0.1 a", 0.5 * young, 5e-3)
-    if full:
-        yield slope_check(48.0, 96, "like cylinders rolling, L = 48 a", 0.5 * young / (1 - poisson**2), 5e-3)
+    """Compare the initial slope of the traction curve: plane stress of a thin disc, plane strain in a long body.
+
+    Per length it is ``pi E' a / 2`` with E' of the pair in the plane, ``E / 2`` in plane stress (Johnson 8.46).
+    """
+    young, poisson, friction, creepage = 2.6, 0.3, 0.3, 0.015
+    steel = material(1.0, poisson)
+    for length, cells, case, modulus in (
+        (0.1, 2, "like discs rolling, L = 0.1 a", 0.5 * young),
+        (48.0, 96, "like cylinders rolling, L = 48 a", 0.5 * young / (1 - poisson**2)),
+    )[: None if full else 1]:
+        gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, length), (-1.3, 1.3), (cells, LINE_CELLS))
+        body = FiniteLengthSpace(length=length, material=steel)
+        load = 0.25 * np.pi * 0.5 * steel.plane_strain_modulus * length
+        first, second = (
+            solve_contact(
+                body,
+                gap,
+                load,
+                friction,
+                counterbody=Counterbody(body),
+                motion=Rolling(longitudinal_creepage=number * creepage),
+            ).isel(x=cells // 2)
+            for number in (1, 2)
+        )
+        step = float(gap["y"][1] - gap["y"][0])
+        forces = [step * float(rolled["traction_y"].sum()) for rolled in (first, second)]
+        half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
+        slope = (4 * forces[0] - forces[1]) / (2 * creepage)
+        expected, source = 0.5 * np.pi * modulus * half_width, "Carter (1926); Johnson (1985) 8.46"
+        yield compare(case, "initial slope of the force per length", source, slope, expected, 5e-3, relative=True)
 
 
 def spence_checks() -> Iterator[Check]:
