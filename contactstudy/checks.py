@@ -99,26 +99,22 @@ def scalar(name: str, value: Any, unit: str = "") -> Any:
 
 def finite(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite real number."""
-    return _within(name, value, unit, -LARGEST, f"a finite number{_suffix(unit)}")
+    return _within(name, value, unit, -LARGEST, "a finite number")
 
 
 def positive(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a positive finite number."""
-    return _within(name, value, unit, 1 / LARGEST, f"a positive finite number{_suffix(unit)}")
+    return _within(name, value, unit, 1 / LARGEST, "a positive finite number")
 
 
 def not_negative(name: str, value: object, unit: str = "") -> float:
     """Return `value` as a float, or raise if it is not a finite number >= 0."""
-    return _within(name, value, unit, 0.0, f"a finite number not below zero{_suffix(unit)}")
-
-
-def _suffix(unit: str) -> str:
-    """Return a unit in brackets, if there is one."""
-    return f" ({unit})" if unit else ""
+    return _within(name, value, unit, 0.0, "a finite number not below zero")
 
 
 def _within(name: str, value: object, unit: str, least: float, allowed: str) -> float:
     """Return a real number from `least` to `LARGEST`, or raise."""
+    allowed += f" ({unit})" if unit else ""
     number = scalar(name, value, unit)
     if not isinstance(number, bool) and isinstance(number, Real):
         real = _float(number)

@@ -9,19 +9,19 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from contactstudy.commands import MANY_CASES, command_parser
-from contactstudy.errors import ContactStudyError, Terminated
+from contactstudy.errors import ContactStudyError, InvalidInputError, Terminated
 
 if TYPE_CHECKING:
     from contactstudy.study import RunReport, Study
     from contactstudy.study.worker import Solver
 
 ALL_OK, SOME_FAILED, USAGE = 0, 1, 2
+MANY_CASES = 100_000  # Combinations of a study that needs a confirmation, or --yes
 
 
 def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None) -> int:
@@ -29,17 +29,6 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
     parser = command_parser()
     options = parser.parse_args(arguments)
     options.whole_process = arguments is None
-    actions = {
-        "run": _run,
-        "rerun": _rerun,
-        "plan": _plan,
-        "status": _status,
-        "collect": _collect,
-        "export": _export,
-        "report": _report_page,
-        "explore": _explore,
-        "verify": _verify,
-    }
     try:
         if options.version:
             from contactstudy.arrays.variables import package_version
@@ -57,7 +46,9 @@ def main(arguments: Sequence[str] | None = None, *, solver: Solver | None = None
         if options.command is None:
             parser.print_help()
             return USAGE
-        code = actions[options.command](options, solver)
+        if options.whole_process and options.action in (_report, _explore):
+            gc.set_threshold(50_000)  # with Python's default, collection takes a tenth of the time of a page or report
+        code: int = options.action(options, solver)
         sys.stdout.flush()
     except ContactStudyError as error:
         print(f"contactstudy: {error}", file=sys.stderr)
@@ -82,10 +73,9 @@ def _print(lines: Iterable[str]) -> None:
 
 def _study(options: argparse.Namespace) -> Study:
     """Read a study; a very large one needs a confirmation."""
-    from contactstudy.errors import InvalidInputError
     from contactstudy.study import Study
 
-    study = Study.from_toml(options.study)
+    study = Study.from_toml(options.path)
     if study.size < MANY_CASES or options.yes:
         return study
     print(f"study {study.name}: {study.size} combinations", flush=True)
@@ -105,36 +95,30 @@ def _parallel(options: argparse.Namespace) -> dict[str, Any]:
 def _run(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import run_study
 
-    share = _share(options.share)
+    share = None
+    if options.share is not None:
+        number, _, count = options.share.partition("/")
+        if not (number.isdecimal() and count.isdecimal()):
+            allowed = "two numbers with a slash, such as 3/40 for the third of forty shares"
+            raise InvalidInputError("share", options.share, allowed)
+        share = (int(number), int(count))
     report = run_study(_study(options), options.out, solver=solver, share=share, **_parallel(options))
     if share is None:
-        return _report(report, figure=not options.no_figure)
+        return _finish(report, figure=not options.no_figure)
     from contactstudy.study.report import run_lines
 
     _print(run_lines(report))
     return ALL_OK if not report.failures else SOME_FAILED
 
 
-def _share(text: str | None) -> tuple[int, int] | None:
-    """Read a share, written as ``3/40``."""
-    if text is None:
-        return None
-    from contactstudy.errors import InvalidInputError
-
-    number, slash, count = text.partition("/")
-    if not (slash and number.isdecimal() and count.isdecimal()):
-        raise InvalidInputError("share", text, "two numbers with a slash, such as 3/40 for the third of forty shares")
-    return int(number), int(count)
-
-
 def _rerun(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study import rerun_study
 
-    report = rerun_study(options.folder, solver=solver, **_parallel(options))
-    return _report(report, figure=not options.no_figure)
+    report = rerun_study(options.path, solver=solver, **_parallel(options))
+    return _finish(report, figure=not options.no_figure)
 
 
-def _report(report: RunReport, *, figure: bool) -> int:
+def _finish(report: RunReport, *, figure: bool) -> int:
     """Write summary and figures, then print the result of a run: files are complete even if the output is closed."""
     from contactstudy.study.report import run_lines, shown, stale_lines
 
@@ -195,8 +179,7 @@ def _plan(options: argparse.Namespace, solver: Solver | None) -> int:
     plan = states.plan
     shape = " x ".join(f"{dim} {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     print(f"{len(plan)} cases ({shape})")
-    _print(state_lines(states, everything=options.all))
-    _print(forecast_lines(states))
+    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
     return ALL_OK if plan.unique else USAGE  # as `run`, which refuses it
 
 
@@ -204,21 +187,20 @@ def _status(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.folder import Folder
     from contactstudy.study.report import forecast_lines, shown, state_lines
 
-    folder = Folder(options.folder)
+    folder = Folder(options.path)
     study = folder.read_study()
     states = folder.states(study.plan())
     print(f"study {study.name}: {len(states.plan)} cases, results in {shown(folder.path)}")
     for holder in folder.holders:
         print(f"locked: {holder}")
-    _print(state_lines(states, everything=options.all))
-    _print(forecast_lines(states))
+    _print([*state_lines(states, everything=options.all), *forecast_lines(states)])
     return ALL_OK if set(states.counts) <= {"ok", "skipped"} else SOME_FAILED
 
 
 def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.study.report import shown
 
-    print(f"wrote {shown(_write_summary(options.folder.resolve(), options.out))}")
+    print(f"wrote {shown(_write_summary(options.path.resolve(), options.out))}")
     return ALL_OK
 
 
@@ -243,14 +225,7 @@ def _export(options: argparse.Namespace, solver: Solver | None) -> int:
     return ALL_OK
 
 
-def _collect_rarely(options: argparse.Namespace) -> None:
-    """Collect garbage rarely: with Python's default it takes a tenth of the time of a page or report."""
-    if options.whole_process:
-        gc.set_threshold(50_000)
-
-
-def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
-    _collect_rarely(options)
+def _report(options: argparse.Namespace, solver: Solver | None) -> int:
     from contactstudy.arrays.selections import selection_of
     from contactstudy.report import write
     from contactstudy.study.report import shown
@@ -262,13 +237,12 @@ def _report_page(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _explore(options: argparse.Namespace, solver: Solver | None) -> int:
-    _collect_rarely(options)
     from contactstudy.explorer import serve
 
     if options.whole_process and "dask" not in sys.modules:
         # xarray would import dask, which takes longer than xarray itself and is not used; None prevents the import.
         sys.modules["dask"] = None  # type: ignore[assignment]
-    serve(options.folder, port=options.port, hosts=options.host, show=not options.no_browser)
+    serve(options.path, port=options.port, hosts=options.host, show=not options.no_browser)
     return ALL_OK
 
 
@@ -292,6 +266,85 @@ def _verify(options: argparse.Namespace, solver: Solver | None) -> int:
     for path in suite.write(verification, folder):
         print(f"wrote {words.shown(path.resolve())}")
     return ALL_OK if verification.passed else SOME_FAILED
+
+
+Action = Callable[[argparse.Namespace, "Solver | None"], int]  # Takes the arguments of a command; the exit code
+
+
+def command_parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parsed = argparse.ArgumentParser(
+        prog="contactstudy",
+        description="Rolling-sliding contact of a roller on an elastic body with free end faces: parametric studies.",
+        epilog="Exit codes: 0 all cases or checks ok, 1 some failed or are not done, 2 wrong usage or input, "
+        "129 after SIGHUP, 130 after Ctrl-C, 141 if nobody reads the output any more, 143 after SIGTERM.",
+    )
+    parsed.add_argument("--version", action="store_true", help="show the version and end")
+    parsed.add_argument("--versions", action="store_true", help="show it with those of all that a result depends on")
+    parsed.add_argument("--verbose", action="store_true", help="log to the error output")
+    commands = parsed.add_subparsers(dest="command", metavar="COMMAND")
+
+    def command(action: Action, source: str, text: str) -> argparse.ArgumentParser:
+        added = commands.add_parser(action.__name__.strip("_"), help=text, description=text)
+        added.set_defaults(action=action)
+        meanings = {
+            "study": "study file (TOML)",
+            "folder": "results of a study",
+            "file_or_folder": "netCDF file of a case, or a study's folder",
+        }
+        if source:
+            added.add_argument("path", metavar=source.upper(), type=Path, help=meanings[source])
+        if source == "study":
+            added.add_argument("--out", metavar="FOLDER", type=Path, help="results; default results/<study name>")
+        return added
+
+    def parallel(added: argparse.ArgumentParser) -> None:
+        added.add_argument("--workers", metavar="N", type=int, help="local processes; default one per core")
+        added.add_argument("--scheduler", metavar="ADDRESS", help="dask scheduler to use instead, tcp://...")
+        added.add_argument(
+            "--wait", metavar="SECONDS", type=float, help="longest wait for a worker of the scheduler; default 300"
+        )
+        added.add_argument("--no-figure", action="store_true", help="draw no figure")
+
+    run = command(_run, "study", "Solve the cases of a study that are not solved yet.")
+    parallel(run)
+    run.add_argument("--share", metavar="K/N", help="solve share K of N, such as 3/40: for job arrays")
+    text = "State of every case, errors in the study, and bytes and time of a run; solves nothing without --sample."
+    plan = command(_plan, "study", text)
+    plan.add_argument("--sample", metavar="N", type=int, help="solve N cases, evenly spaced, to estimate the time")
+    plan.add_argument("--workers", metavar="N", type=int, help="local processes for the sample; default one per core")
+    for added in (run, plan):
+        added.add_argument("--yes", action="store_true", help=f"do not ask about {MANY_CASES} cases and more")
+    status = command(_status, "folder", "State of every case: done, failed, stale or missing.")
+    for added in (plan, status):
+        added.add_argument("--all", action="store_true", help="list every case")
+    added = command(_collect, "folder", "Merge the summaries of all cases into one netCDF file.")
+    added.add_argument("--out", metavar="FILE", type=Path, help="default FOLDER/summary.nc")
+    parallel(command(_rerun, "folder", "Solve failed, stale and missing cases again."))
+    text = "Check the solver against closed forms, finite elements and published numbers."
+    added = command(_verify, "", text)
+    added.add_argument("--level", choices=("quick", "full"), default="quick", help="a minute, or a few (default quick)")
+    added.add_argument("--out", metavar="FOLDER", type=Path, help="default results/verification")
+    text = "Write a study's summaries as a table (CSV), or fields of one case as CSV, VTK or MATLAB."
+    added = command(_export, "file_or_folder", text)
+    added.add_argument("--format", choices=("csv", "vtk", "mat"), help="default csv")
+    added.add_argument("--variable", metavar="NAME", action="append", help="variable or stress measure; repeatable")
+    added.add_argument("--line", metavar="X,Y,Z:X,Y,Z", help="ends of a line in metres, for csv (--line=-1e-4,0,0:...)")
+    added.add_argument("--points", metavar="N", type=int, default=101, help="points of the line; default 101")
+    added.add_argument("--select", metavar="NAME=VALUE", action="append", help="swept parameter of a study; repeatable")
+    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the results; - for the screen")
+    explore = command(_explore, "folder", "Serve a page to look through a study, on this machine.")
+    explore.add_argument("--port", metavar="N", type=int, help="default: the first free one from 5006 on")
+    text = "host name that a browser may use beside localhost, such as that of a proxy; repeatable"
+    explore.add_argument("--host", metavar="NAME", action="append", default=[], help=text)
+    explore.add_argument("--no-browser", action="store_true", help="do not open the page in the browser")
+    text = "Write one HTML page of a case or of a study, for a reader without Python."
+    added = command(_report, "file_or_folder", text)
+    added.add_argument("--title", metavar="TEXT", help="heading; default: the name of the file or of the study")
+    text = "value of a swept parameter that a study's figures keep to; repeatable"
+    added.add_argument("--select", metavar="NAME=VALUE", action="append", help=text)
+    added.add_argument("--out", metavar="FILE", type=Path, help="default beside the file, or report.html in the folder")
+    return parsed
 
 
 if __name__ == "__main__":

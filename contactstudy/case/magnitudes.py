@@ -11,7 +11,6 @@ import xarray as xr
 
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.motion import Friction
@@ -125,8 +124,8 @@ def doubts(case: Case) -> tuple[str, ...]:
     if isinstance(body, FiniteLengthSpace):
         messages.append(_doubt("length", "body.length", body.length))
     messages += [
-        _material_doubt("body.material", body.material),
-        _material_doubt("roller.material", roller.material),
+        _doubt("young", "body.material.young", body.material.young),
+        "" if roller.material is None else _doubt("young", "roller.material.young", roller.material.young),
         friction_doubt(case.friction),
         _doubt("tilt", "tilt", abs(case.tilt)),
         _crown_doubt(case),
@@ -195,11 +194,6 @@ def _crown_doubt(case: Case) -> str:
         if message := _depth_doubt(quantity_name, name, deepest, roller.radius):
             return message
     return ""
-
-
-def _material_doubt(name: str, material: Material | None) -> str:
-    """Message on a material; empty for a rigid body."""
-    return "" if material is None else _doubt("young", f"{name}.young", material.young)
 
 
 def friction_doubt(friction: Friction | xr.DataArray) -> str:

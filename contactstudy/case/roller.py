@@ -86,8 +86,8 @@ class Roller:
 
     def __post_init__(self) -> None:
         """Check the geometry; a profile is tried once, so that it fails here and not in mid-study."""
-        checks.store(self, radius=checks.positive("radius", self.radius, "metres"))
-        checks.store(self, length=checks.positive("length", self.length, "metres"))
+        sizes = {name: checks.positive(name, getattr(self, name), "metres") for name in ("radius", "length")}
+        checks.store(self, **sizes)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
         if self.material is not None:
             checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")

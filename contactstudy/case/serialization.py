@@ -6,7 +6,7 @@ A profile of a user's class becomes a `Sampled` profile.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from typing import Any, TypeVar
 
@@ -78,6 +78,16 @@ def _values(part: Any, length: float) -> Any:
     if isinstance(part, (bool, np.bool_)):
         return bool(part)
     return part if part is None or isinstance(part, str) else float(part)
+
+
+def tables_within(values: Any) -> Iterator[Mapping[str, Any]]:
+    """Yield every table with a ``kind`` in JSON values, at any depth."""
+    if isinstance(values, Mapping):
+        if "kind" in values:
+            yield values
+        values = tuple(values.values())
+    for entry in values if isinstance(values, (list, tuple)) else ():
+        yield from tables_within(entry)
 
 
 def from_dict(values: Mapping[str, Any], kind: type[Part]) -> Part:

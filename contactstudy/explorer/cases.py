@@ -162,13 +162,11 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
         if str(entry["status"].item()) not in ("ok", "stale"):
             raise InvalidInputError("case", index, "a solved case")
 
-        def part(names: list[Any]) -> xr.Dataset:
-            numbers = [name for name in names if entry[name].dtype.kind not in "UO"]
-            return single_case(entry[numbers]).compute()
+        def part(arrays: tuple[str, ...]) -> xr.Dataset:
+            names = [name for name in study.data_vars if name in arrays or name in scalars]
+            return single_case(entry[[name for name in names if entry[name].dtype.kind not in "UO"]]).compute()
 
-        fields = [name for name in study.data_vars if name in FIELDS or name in scalars]
-        stresses = [name for name in study.data_vars if name in STRESSES or name in scalars]
-        return CaseFields(part(fields), lambda: part(stresses))
+        return CaseFields(part(FIELDS), lambda: part(STRESSES))
 
     return Cases(scalars.load(), load, _title(study, "study"))
 

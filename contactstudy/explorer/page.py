@@ -21,6 +21,8 @@ from contactstudy.explorer.images import (
     REGIONS,
     CaseFields,
     Image,
+    Line,
+    Span,
     axial_line,
     choose_scale,
     plane_image,
@@ -169,43 +171,31 @@ class Page:
 
     def _show_axial(self, cases: list[CaseFields | None]) -> None:
         """Pressure along the axis."""
-        scales = [
-            choose_scale(case, relative=self.units.value) if case is not None and case.has_pressure else None
-            for case in cases
-        ]
-        present = [
-            (case, scale) for case, scale in zip(cases, scales, strict=True) if case is not None and scale is not None
-        ]
-        if not present:
-            self.axial.show([None, None], (0.0, 1.0), ("", ""))
-            return
-        limits = [
-            tuple(limit / scale.length for limit in region_limits(case, self.region.value)) for case, scale in present
-        ]
-        lines = [
-            axial_line(case, scale) if case is not None and scale is not None else None
-            for case, scale in zip(cases, scales, strict=True)
-        ]
-        scale = present[0][1]
-        labels = (f"distance from the free end, x{scale.length_name}", f"pressure along the axis{scale.stress_name}")
-        self.axial.show(lines, (min(low for low, _ in limits), max(high for _, high in limits)), labels)
+        lines: list[Line | None] = [None, None]
+        limits: list[Span] = []
+        names = ("", "")
+        for side, case in enumerate(cases):
+            if case is not None and case.has_pressure:
+                scale = choose_scale(case, relative=self.units.value)
+                low, high = region_limits(case, self.region.value)
+                lines[side] = axial_line(case, scale)
+                limits.append((low / scale.length, high / scale.length))
+                names = (scale.length_name, scale.stress_name) if len(limits) == 1 else names
+        labels = (f"distance from the free end, x{names[0]}", f"pressure along the axis{names[1]}") if limits else names
+        span = (min((low for low, _ in limits), default=0.0), max((high for _, high in limits), default=1.0))
+        self.axial.show(lines, span, labels)
 
     def _show_fields(self, cases: list[CaseFields | None]) -> None:
         """Pressure on the top and stress in the plane, with common colours."""
-        tops: list[Image | None] = []
-        planes: list[Image | None] = []
+        tops: list[Image | None] = [None, None]
+        planes: list[Image | None] = [None, None]
         unit = ""
-        for case in cases:
-            if case is None or not case.has_pressure:
-                tops.append(None)
-                planes.append(None)
-                continue
-            scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
-            unit = scale.stress_name
-            tops.append(top_image(case, scale, limits))
-            planes.append(
-                plane_image(case, scale, limits, self.plane.value, self.fraction.value, name=self.measure.value)
-            )
+        for side, case in enumerate(cases):
+            if case is not None and case.has_pressure:
+                scale, limits = choose_scale(case, relative=self.units.value), region_limits(case, self.region.value)
+                unit, kind, fraction = scale.stress_name, self.plane.value, self.fraction.value
+                tops[side] = top_image(case, scale, limits)
+                planes[side] = plane_image(case, scale, limits, kind, fraction, name=self.measure.value)
         measure = next(text for text, name in MEASURES.items() if name == self.measure.value)
         for images, figures, quantity in ((tops, self.tops, "pressure"), (planes, self.planes, measure)):
             present = [image for image in images if image is not None]

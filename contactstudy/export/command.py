@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import xarray as xr
-
 from contactstudy.arrays.selections import place_of, selection_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.export.matlab import to_mat
@@ -25,28 +23,6 @@ def parse_line(text: str) -> Line:
     return start, end
 
 
-def _select(dataset: xr.Dataset, selections: Sequence[str]) -> xr.Dataset:
-    """Select the case of a study with these values of its swept parameters, each given as ``name=value``."""
-    for name, value in selection_of(selections).items():
-        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
-    return dataset
-
-
-def _open(path: Path) -> xr.Dataset:
-    """Open the result in a netCDF file, or the study in a folder."""
-    if path.is_dir():
-        from contactstudy.study import open_study
-
-        return open_study(path)
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
-    except (OSError, ValueError) as error:
-        missing = isinstance(error, FileNotFoundError)
-        reason = "there is no such file" if missing else "this file is not netCDF"
-        raise InvalidInputError("path", str(path), "a netCDF file or a study's folder", reason) from None
-
-
 def export(
     path: Path,
     *,
@@ -58,7 +34,12 @@ def export(
     out: Path | None = None,
 ) -> Path | None:
     """Write a field or a line of a case as CSV or VTK, or a case or a study for MATLAB; None if ``-`` prints it."""
-    dataset = _select(_open(path), select)
+    from contactstudy.study import open_study
+    from contactstudy.study.files import load_result
+
+    dataset = open_study(path) if path.is_dir() else load_result(path, "path")
+    for name, value in selection_of(select).items():
+        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
     swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
     if line is not None and kind != "csv":
         raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")

@@ -21,7 +21,7 @@ from contactstudy.analysis import (
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
-from contactstudy.plots.style import LEGEND_WIDTH, fold_labels, fold_text, line_styles, new_axes, units
+from contactstudy.plots.style import LEGEND_WIDTH, fold_text, label_axes, line_styles, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -76,9 +76,7 @@ def plot_axial_pressure(
     x = axial[dimension_along(axial, "x")].values
     (line,) = ax.plot(x / unit.length + shift, pressure / unit.stress, **style)
     mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
-    ax.set_xlabel(unit.axis("x"))
-    ax.set_ylabel(unit.stress_label("pressure"))
-    fold_labels(ax)
+    label_axes(ax, unit.axis("x"), unit.stress_label("pressure"))
     return ax
 
 
@@ -146,11 +144,10 @@ def plot_comparison(
         origin = middles[name] if centred else 0.0
         ax.plot((x - origin) / unit.length, values / unit.stress, label=fold_text(name, LEGEND_WIDTH), **style)
         mark_at_top(ax, [(end - origin) / unit.length for end in ends], style["color"])
-    ax.set_xlabel(unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$")
-    ax.set_ylabel(unit.stress_label(variable))
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
-    fold_labels(ax)
+    along = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
+    label_axes(ax, along, unit.stress_label(variable))
     return ax
 
 
@@ -222,10 +219,8 @@ def plot_depth(
         ax.plot(line[name].values / unit.stress, line["z"].values / unit.length, label=label, **style)
     ax.set_ylim(depth.max() / unit.length, depth.min() / unit.length)
     ax.set_title(f"below {unit.position('x', x)}, {unit.position('y', y)}", fontsize="medium")
-    ax.set_xlabel("stress over $p_0$" if not si else "stress (MPa)")
-    ax.set_ylabel(unit.axis("z"))
     ax.legend(frameon=False, fontsize="small")
-    fold_labels(ax)
+    label_axes(ax, "stress over $p_0$" if not si else "stress (MPa)", unit.axis("z"))
     return ax
 
 

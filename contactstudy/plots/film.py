@@ -11,7 +11,7 @@ from contactstudy import checks
 from contactstudy.analysis import single_case
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import COLORS, fold_labels, line_styles, new_axes, units
+from contactstudy.plots.style import COLORS, label_axes, line_styles, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,10 +66,8 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     ax.plot(float(case["least_film_x"]) / unit.length, float(case["least_film_y"]) / unit.length, "x", color="#e8513a")
     reach = REACH * float(case["hertz_half_width"]) / unit.length
     ax.set_ylim(max(-reach, y.min()), min(reach, y.max()))
-    ax.set_xlabel(unit.axis("x"))
-    ax.set_ylabel(unit.axis("y"))
     bar = ax.figure.colorbar(filled, ax=ax, label="film thickness, $h$ (µm)")
-    fold_labels(ax, bar.ax)
+    label_axes(ax, unit.axis("x"), unit.axis("y"), bar.ax)
     return ax
 
 
@@ -125,9 +123,7 @@ def plot_film_line(
     if axis == "y":
         reach = REACH * float(case["hertz_half_width"]) / unit.length
         ax.set_xlim(-reach, reach)
-    ax.set_xlabel(unit.axis(axis))
-    ax.set_ylabel("film thickness, $h$ (µm)")
     other.set_ylabel(unit.stress_label("pressure"))
     ax.legend(handles=[*ax.lines, *other.lines], frameon=False, fontsize="small")
-    fold_labels(ax, other)
+    label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", other)
     return ax

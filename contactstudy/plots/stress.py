@@ -12,7 +12,7 @@ from contactstudy.analysis import dimension_along, in_plane, measure, positions,
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.singular import cap_field
-from contactstudy.plots.style import COLORS, Units, fold_labels, new_axes, units
+from contactstudy.plots.style import COLORS, Units, fold_labels, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -113,15 +113,13 @@ def plot_stress_plane(
     contours = _draw_contours(ax, first, second, values, LEVELS if levels is None else levels)
     if down == "z":
         ax.set_ylim(second.max(), second.min())
-    ax.set_xlabel(unit.axis(across))
-    ax.set_ylabel(unit.axis(down))
     ax.set_title(f"plane {unit.position(normal, position)}", fontsize="medium")
     mark_largest(ax, case, variable, {normal: position}, unit)
     if colorbar:
         capped = bound < np.inf and np.asarray(contours.levels).max() >= bound / unit.stress
         label = unit.stress_label(variable) + (" (unbounded at the singular end)" if capped else "")
         fold_labels(ax.figure.colorbar(contours, ax=ax, label=label).ax)
-    fold_labels(ax)
+    label_axes(ax, unit.axis(across), unit.axis(down))
     return ax
 
 
@@ -240,7 +238,7 @@ def plot_end_face(
     ax.set_ylim(z.max(), z.min())
     ax.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")  # distances from the fold to both sides
     sign, over = "" if side > 0 else "-", unit.over_length
-    ax.set_xlabel(f"on the end face, ${sign}y{over}$   |   in the plane $y = 0$, $x{over}$ from the face")
-    ax.set_ylabel(unit.axis("z"))
-    fold_labels(ax, ax.figure.colorbar(contours, ax=ax, label=unit.stress_label(variable)).ax)
+    bar = ax.figure.colorbar(contours, ax=ax, label=unit.stress_label(variable))
+    along = f"on the end face, ${sign}y{over}$   |   in the plane $y = 0$, $x{over}$ from the face"
+    label_axes(ax, along, unit.axis("z"), bar.ax)
     return ax

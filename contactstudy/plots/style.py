@@ -145,6 +145,13 @@ def fold_labels(*axes: Axes) -> None:
                 text.set_text(fold_text(text.get_text(), width))
 
 
+def label_axes(ax: Axes, x: str, y: str, *others: Axes) -> None:
+    """Label axes, and fold these labels and those of further axes, such as a colour bar."""
+    ax.set_xlabel(x)
+    ax.set_ylabel(y)
+    fold_labels(ax, *others)
+
+
 def save(figure: Figure, path: str | Path, formats: Sequence[str] = ("png", "pdf")) -> list[Path]:
     """Write a figure for the screen and for a journal.
 

@@ -13,7 +13,7 @@ from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.plots.singular import near_singular, singular_ends
-from contactstudy.plots.style import COLORS, Units, fold_labels, new_axes, units
+from contactstudy.plots.style import COLORS, Units, label_axes, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,15 +102,19 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
 
 
 def _crop(ax: Axes, surface: Surface, margin: float = MARGIN) -> None:
-    """Limit the axes to the contact with a margin, and label them."""
+    """Limit the axes to the contact with a margin."""
     for positions, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
         loaded = np.flatnonzero(surface.pressed.any(axis=axis))
         if loaded.size > 1:
             low, high = positions[loaded[0]], positions[loaded[-1]]
             around = margin * (high - low)
             limit(low - around, high + around)
-    ax.set_xlabel(surface.unit.axis("x"))
-    ax.set_ylabel(surface.unit.axis("y"))
+
+
+def _label(ax: Axes, surface: Surface, mesh: QuadMesh, label: str, extend: str = "neither") -> None:
+    """Label the axes and the colour bar of a mesh."""
+    bar = ax.figure.colorbar(mesh, ax=ax, label=label, extend=extend)
+    label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"), bar.ax)
 
 
 def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool = False) -> Axes:
@@ -150,10 +154,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     largest = float(surface.pressure[:, ~near].max()) / stress if near.any() and not near.all() else None
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=largest)
     _draw_contact_border(ax, surface, mesh)
-    extend = "neither" if largest is None else "max"
-    bar = ax.figure.colorbar(mesh, ax=ax, label=surface.unit.stress_label("pressure"), extend=extend)
     _crop(ax, surface)
-    fold_labels(ax, bar.ax)
+    _label(ax, surface, mesh, surface.unit.stress_label("pressure"), "neither" if largest is None else "max")
     return ax
 
 
@@ -216,7 +218,7 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
         ax.quiverkey(vectors, 0.86, 1.06, largest, label, labelpos="W", coordinates="axes")
     handles = [Patch(facecolor=STICK_COLOR, label="stick"), Patch(facecolor=SLIP_COLOR, label="slip")]
     ax.legend(handles=handles, loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=2, frameon=False, fontsize="small")
-    fold_labels(ax)
+    label_axes(ax, surface.unit.axis("x"), surface.unit.axis("y"))
     return ax
 
 
@@ -281,9 +283,8 @@ def plot_traction_map(
     mesh = _draw_mesh(ax, surface, _extend(magnitude / factor, surface.pressed), cmap=COLORS, vmin=0.0)
     stick = _draw_border(ax, surface, _extend(surface.values("stick"), surface.pressed), 0.5, **STICK_BORDER)
     _draw_contact_border(ax, surface, mesh, stick)
-    bar = ax.figure.colorbar(mesh, ax=ax, label=label)
     _crop(ax, surface)
-    fold_labels(ax, bar.ax)
+    _label(ax, surface, mesh, label)
     return ax
 
 
@@ -330,9 +331,5 @@ def plot_temperature_map(
     _draw_border(ax, heated, heated.pressure, 1e-3 * float(heated.pressure.max()), colors="white", linewidths=0.8)
     row, column = divmod(int(rise.argmax()), rise.shape[1])
     ax.plot(heated.x[column], heated.y[row], "+", color="black", markersize=9)
-    entry = variable_of(name, heated.case[name].attrs)
-    bar = ax.figure.colorbar(mesh, ax=ax, label=f"{entry.long_name} (K)")
-    ax.set_xlabel(heated.unit.axis("x"))
-    ax.set_ylabel(heated.unit.axis("y"))
-    fold_labels(ax, bar.ax)
+    _label(ax, heated, mesh, f"{variable_of(name, heated.case[name].attrs).long_name} (K)")
     return ax

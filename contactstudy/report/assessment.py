@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -14,6 +14,7 @@ from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.variables import require
+from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
 YES, CARE, NO, UNKNOWN = "yes", "with care", "no", "not known"  # Answers; "not known" if the result lacks the number
@@ -107,7 +108,7 @@ def _criteria(case: xr.Dataset, table: Summary) -> Iterator[Criterion]:
     yield _free_ends(case)
     yield _cells(case)
     profile = attribute(case, INPUTS_ATTRIBUTE).get("case", {}).get("roller", {}).get("profile", {})
-    yield from map(_measured_profile, _parts_of_kind(profile, "Measured"))
+    yield from (_measured_profile(part) for part in tables_within(profile) if part["kind"] == "Measured")
     if "peak_von_mises" in table:
         yield _peak_stress(case, table["peak_von_mises"])
     for text in attribute(case, RUN_ATTRIBUTE).get("warnings", []):
@@ -208,7 +209,7 @@ def _singular_edge(case: xr.Dataset) -> str:
     return "the roller's sharp end inside the face; Roller(profile=...) takes a radius or a chamfer"
 
 
-def _measured_profile(profile: dict[str, Any]) -> Criterion:
+def _measured_profile(profile: Mapping[str, Any]) -> Criterion:
     """Whether a measured profile is filtered: cells resolve noise like a shape."""
     question, cutoff = "Is the measured profile filtered?", profile.get("cutoff")
     if cutoff is None:
@@ -219,17 +220,6 @@ def _measured_profile(profile: dict[str, Any]) -> Criterion:
         return Criterion(question, CARE, reason)
     reason = f"the cut-off is {quantity(cutoff, 'm')}; a second one shows whether the peak depends on it"
     return Criterion(question, YES, reason)
-
-
-def _parts_of_kind(table: Any, kind: str) -> Iterator[dict[str, Any]]:
-    """Yield every part of a serialized profile with this kind."""
-    if isinstance(table, dict):
-        if table.get("kind") == kind:
-            yield table
-        table = list(table.values())
-    if isinstance(table, list):
-        for entry in table:
-            yield from _parts_of_kind(entry, kind)
 
 
 def _peak_stress(case: xr.Dataset, row: Quantity) -> Criterion:

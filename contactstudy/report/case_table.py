@@ -61,13 +61,14 @@ class Input(NamedTuple):
 
 def inputs(case: Case) -> dict[str, list[Input]]:
     """Rows on a case, by subject."""
+    place = [Input("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
+    if isinstance(case.body, FiniteLengthSpace):
+        distance = case.body.length - case.roller_start - case.roller.length
+        place.append(Input("from the roller to end II", quantity(distance, "m")))
     return {
         "Roller": roller_rows(case.roller),
         "Body": [Input("kind", body_words(case.body)), Input("material", material_words(case.body.material))],
-        "Place": [
-            Input("from end I of the body to the roller, e", quantity(case.roller_start, "m")),
-            *_second_distance(case),
-        ],
+        "Place": place,
         "Load": _load(case),
     }
 
@@ -87,14 +88,6 @@ def roller_rows(roller: Roller) -> list[Input]:
     rows.append(Input(f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
     rows.append(Input("drop at the very end", quantity(drops[1], "m")))
     return rows
-
-
-def _second_distance(case: Case) -> list[Input]:
-    """Distance at end II, where there is one."""
-    if not isinstance(case.body, FiniteLengthSpace):
-        return []
-    distance = case.body.length - case.roller_start - case.roller.length
-    return [Input("from the roller to end II", quantity(distance, "m"))]
 
 
 def _load(case: Case) -> list[Input]:

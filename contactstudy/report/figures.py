@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import base64
+import contextlib
 import io
 import math
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -14,6 +16,7 @@ import xarray as xr
 from contactstudy.analysis import largest_sample, measure, positions
 from contactstudy.arrays.engineering import quantity
 from contactstudy.case.case import Case
+from contactstudy.case.roller import Roller
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.plots import (
@@ -83,43 +86,43 @@ def as_address(figure: Figure) -> str:
     return "data:image/svg+xml;base64," + base64.b64encode(target.getvalue()).decode()
 
 
-def _new_figure(columns: int = 1, height: float = HEIGHT) -> tuple[Figure, list[Axes]]:
-    """Return a figure without a window, with axes side by side."""
+def _new_figure(height: float = HEIGHT) -> Figure:
+    """Return a figure without a window."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(WIDTH, height), layout="constrained")
-    return figure, list(figure.subplots(1, columns, squeeze=False)[0])
+    return Figure(figsize=(WIDTH, height), layout="constrained")
 
 
 def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     """Return every figure that a result of one case and its inputs allow."""
-    draw: list[Callable[[], Picture]] = []
+    # Functions that draw into a figure and return its caption.
+    draw: list[Callable[[Figure, xr.Dataset], str]] = []
     if "pressure" in result and bool((result["pressure"] > 0).any()):
-        draw += [lambda: _axial_pressure(result), lambda: _pressure_map(result)]
+        draw += [_axial_pressure, _pressure_map]
         if {"stick", "traction_x", "slip_x"} <= set(result.data_vars):
-            draw += [lambda: _traction_map(result), lambda: _slip_map(result)]
+            draw += [_traction_map, _slip_map]
     if "film_thickness" in result:
-        draw += [lambda: _film_lines(result), lambda: _film_map(result)]
-    if case is not None and checked_drop(case.roller.profile, _along(case, 0.5), case.roller.length).any():
-        draw.append(lambda: _profile(case))
+        draw += [_film_lines, _film_map]
+    if case is not None and checked_drop(case.roller.profile, _along(case.roller, 0.5), case.roller.length).any():
+        draw.append(partial(_profile, case.roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
-        draw += [lambda: _axial_plane(result), lambda: _cross_section(result), lambda: _section_maxima(result)]
+        draw += [_axial_plane, _cross_section, _section_maxima]
     pictures = []
     for function in draw:
-        try:
-            pictures.append(function())
-        except ContactStudyError:  # fewer positions than the plane needs
-            continue
+        figure = _new_figure()
+        with contextlib.suppress(ContactStudyError):  # fewer positions than the plane needs
+            caption = function(figure, result)
+            pictures.append(Picture(as_address(figure), caption))
     return pictures
 
 
-def _axial_pressure(result: xr.Dataset) -> Picture:
+def _axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     """Pressure along the axis, and near the end of larger pressure."""
     x = positions(result["pressure"], "x").values
     half_width = float(result.get("hertz_half_width", np.inf))
     panel = END_PANEL * half_width
     zoomed = np.ptp(x) > LONG * half_width
-    figure, axes = _new_figure(2 if zoomed else 1)
+    axes = figure.subplots(1, 2 if zoomed else 1, squeeze=False)[0]
     for ax in axes:
         plot_axial_pressure(result, ax, si=True, color=BLUE, linewidth=1.6)
         if "hertz_max_pressure" in result:
@@ -139,35 +142,32 @@ def _axial_pressure(result: xr.Dataset) -> Picture:
         axes[1].set_title(f"near end {'I' if at_end_1 else 'II'}", fontsize="medium")
     if np.isinf(float(result.get("peak_pressure", 0.0))):
         caption += " Open triangle: the pressure is singular at this end."
-    return Picture(as_address(figure), caption)
+    return caption
 
 
-def _pressure_map(result: xr.Dataset) -> Picture:
+def _pressure_map(figure: Figure, result: xr.Dataset) -> str:
     """Pressure on the top."""
-    figure, (ax,) = _new_figure()
-    plot_pressure_map(result, ax, si=True)
-    return Picture(as_address(figure), "Pressure on the top of the body. The two axes have different scales.")
+    plot_pressure_map(result, figure.subplots(), si=True)
+    return "Pressure on the top of the body. The two axes have different scales."
 
 
-def _film_lines(result: xr.Dataset) -> Picture:
+def _film_lines(figure: Figure, result: xr.Dataset) -> str:
     """Film and pressure along the axis, and along y at the least film."""
-    figure, axes = _new_figure(2)
+    axes = figure.subplots(1, 2)
     plot_film_line(result, axes[0], si=True)
     plot_film_line(result, axes[1], x=float(result["least_film_x"]), si=True)
-    return Picture(as_address(figure), "Film and pressure along the axis at y = 0, and across the least film.")
+    return "Film and pressure along the axis at y = 0, and across the least film."
 
 
-def _film_map(result: xr.Dataset) -> Picture:
+def _film_map(figure: Figure, result: xr.Dataset) -> str:
     """Film with contours."""
-    figure, (ax,) = _new_figure()
-    plot_film_map(result, ax, si=True)
-    return Picture(as_address(figure), "Film thickness. Cross: least film. The two axes have different scales.")
+    plot_film_map(result, figure.subplots(), si=True)
+    return "Film thickness. Cross: least film. The two axes have different scales."
 
 
-def _traction_map(result: xr.Dataset) -> Picture:
+def _traction_map(figure: Figure, result: xr.Dataset) -> str:
     """Traction on the top, with the border of the sticking area."""
-    figure, (ax,) = _new_figure()
-    plot_traction_map(result, ax, si=True)
+    plot_traction_map(result, figure.subplots(), si=True)
     pressed = result["pressure"] > 0
     if not bool(result["stick"].where(pressed, False).any()):
         border = "The surfaces slip everywhere."
@@ -175,37 +175,33 @@ def _traction_map(result: xr.Dataset) -> Picture:
         border = "The surfaces stick everywhere."
     else:
         border = "The surfaces stick within the red line, and slip between it and the grey one."
-    return Picture(
-        as_address(figure), f"Size of the traction on the body. {border} The two axes have different scales."
-    )
+    return f"Size of the traction on the body. {border} The two axes have different scales."
 
 
-def _slip_map(result: xr.Dataset) -> Picture:
+def _slip_map(figure: Figure, result: xr.Dataset) -> str:
     """Slip on the top, with the border of the sticking area."""
-    figure, (ax,) = _new_figure()
-    plot_traction_map(result, ax, variable="slip", si=True)
+    plot_traction_map(result, figure.subplots(), variable="slip", si=True)
     shifted = str(result["slip_y"].attrs.get("units", "1")) == "m"
     reference = (
         "in the last step"
         if shifted
         else "per distance rolled; the contact moves along +y, so its leading edge is at the top"
     )
-    return Picture(as_address(figure), f"Size of the slip of the roller against the body, {reference}.")
+    return f"Size of the slip of the roller against the body, {reference}."
 
 
-def _profile(case: Case) -> Picture:
+def _profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     """Profile of the roller."""
-    roller = case.roller
-    figure, (ax,) = _new_figure()
-    drop = checked_drop(roller.profile, _along(case, 0.47), roller.length)
+    drop = checked_drop(roller.profile, _along(roller, 0.47), roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
-    plot_profile(roller.profile, roller.length, ax, deepest=3 * crown if crown > 0 else None, color=BLUE)
-    return Picture(as_address(figure), "Profile of the roller: drop from the cylinder, downwards.")
+    deepest = 3 * crown if crown > 0 else None
+    plot_profile(roller.profile, roller.length, figure.subplots(), deepest=deepest, color=BLUE)
+    return "Profile of the roller: drop from the cylinder, downwards."
 
 
-def _along(case: Case, reach: float) -> FloatArray:
+def _along(roller: Roller, reach: float) -> FloatArray:
     """Positions along the roller, up to a part of its length from mid-length."""
-    return np.linspace(-reach, reach, 201) * case.roller.length
+    return np.linspace(-reach, reach, 201) * roller.length
 
 
 def _cap_remark(result: xr.Dataset, stress: xr.DataArray) -> str:
@@ -214,29 +210,27 @@ def _cap_remark(result: xr.Dataset, stress: xr.DataArray) -> str:
     return f" Beside a singular end the stress exceeds the largest colour, {quantity(limit, 'Pa')}." * (limit < np.inf)
 
 
-def _axial_plane(result: xr.Dataset) -> Picture:
+def _axial_plane(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress in the plane of the axis."""
-    figure, (ax,) = _new_figure()
-    plot_stress_plane(result, "von_mises", 0.0, ax, si=True)
+    plot_stress_plane(result, "von_mises", 0.0, figure.subplots(), si=True)
     remark = _cap_remark(result, result["von_mises"])
-    return Picture(as_address(figure), f"Von Mises stress in the plane y = 0, along the roller.{remark}")
+    return f"Von Mises stress in the plane y = 0, along the roller.{remark}"
 
 
-def _cross_section(result: xr.Dataset) -> Picture:
+def _cross_section(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress across the roller, in the section of its largest value."""
-    figure, (ax,) = _new_figure()
     stress = measure(result, "von_mises")
     column = int(np.nanargmax(stress.max([dim for dim in stress.dims if dim != stress.dims[0]]).values))
     x = float(positions(stress, "x").values[column])
-    plot_stress_plane(result, "von_mises", ax=ax, x=x, si=True)
+    plot_stress_plane(result, "von_mises", ax=figure.subplots(), x=x, si=True)
     caption = f"Von Mises stress across the roller, in the section of its largest value, x = {quantity(x, 'm')}."
-    return Picture(as_address(figure), caption + _cap_remark(result, stress))
+    return caption + _cap_remark(result, stress)
 
 
-def _section_maxima(result: xr.Dataset) -> Picture:
+def _section_maxima(figure: Figure, result: xr.Dataset) -> str:
     """Largest von Mises stress of each cross-section."""
     stress = largest_sample(result, "von_mises", along="x")["peak_von_mises"]
-    figure, (ax,) = _new_figure()
+    ax = figure.subplots()
     x: Any = positions(stress, "x").values
     ends = singular_ends(result)
     ax.plot(1e3 * x, np.where(near_singular(result, ends, x), np.nan, 1e-6 * stress.values), color=BLUE, linewidth=1.6)
@@ -250,7 +244,7 @@ def _section_maxima(result: xr.Dataset) -> Picture:
     ax.set_xlabel("distance from the free end, x (mm)")
     ax.set_ylabel("largest von Mises stress (MPa)")
     ax.set_ylim(bottom=0.0)
-    return Picture(as_address(figure), caption)
+    return caption
 
 
 class SideView(NamedTuple):
@@ -300,7 +294,8 @@ def side_view(case: Case) -> Picture:
     view = side_geometry(case)
     width = view.limits[1] - view.limits[0]
     depth = 0.13 * width
-    figure, (ax,) = _new_figure(height=WIDTH * (view.height + 2.2 * depth) / width + 0.6)
+    figure = _new_figure(WIDTH * (view.height + 2.2 * depth) / width + 0.6)
+    ax = figure.subplots()
     _draw_body(ax, view, depth)
     _draw_roller(ax, view, case.roller.radius)
     _dimension(ax, view.roller, view.height + 0.25 * depth, f"L = {quantity(case.roller.length, 'm')}")

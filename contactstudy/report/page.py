@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from datetime import UTC, datetime
-from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ from contactstudy.report.figures import case_pictures, side_view
 from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
 from contactstudy.report.summary_table import summary
+from contactstudy.study.files import load_result
 
 CELLS = {
     "refined": "columns refined along the axis until the accuracy was reached",
@@ -73,7 +73,7 @@ def html(
         path = Path(source)
         if path.is_dir():
             return _render("study.html", study_context(path, selection) | ({"title": title} if title else {}))
-        source = _open(path)
+        source = load_result(path, "source")
         study = attribute(source, RUN_ATTRIBUTE).get("study", "")
         title = title or (f"Study {study}, case {path.stem}" if study else path.stem)
     if selection:
@@ -179,29 +179,17 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
     return rows
 
 
-@cache
-def _templates() -> jinja2.Environment:
-    """Templates of the pages, which escape all values."""
-    loader = jinja2.PackageLoader("contactstudy.report", "templates")
-    return jinja2.Environment(
-        loader=loader, autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
-    )
-
-
 def _render(template: str, context: dict[str, Any]) -> str:
     """Fill a template with a context, the date and the version."""
     date = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    return _templates().get_template(template).render({"made": date, "version": package_version()} | context)
-
-
-def _open(path: Path) -> xr.Dataset:
-    """Load the result in a netCDF file."""
-    try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
-            return dataset.load()
-    except (OSError, ValueError) as error:
-        reason = "there is no such file" if isinstance(error, FileNotFoundError) else "this file is not netCDF"
-        raise InvalidInputError("source", str(path), "a netCDF file or a study's folder", reason) from None
+    templates = jinja2.Environment(
+        loader=jinja2.PackageLoader("contactstudy.report", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return templates.get_template(template).render({"made": date, "version": package_version()} | context)
 
 
 def _case_context(dataset: xr.Dataset) -> dict[str, Any]:

@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.variables import STRESSES, require
+from contactstudy.case.serialization import tables_within
 
 Source = tuple[str, str]
 
@@ -84,7 +85,7 @@ def citations(dataset: xr.Dataset) -> Citations:
         sources.append(ROLLING)
     if any(name in dataset for name in STRESSES):
         sources.append(SUBSURFACE)
-    parts = _profile_parts(profile)
+    parts = list(tables_within(profile))
     kinds = {_normalized(part["kind"]) for part in parts}
     sources += [(f"profile {kind}", source) for kind, source in sorted(PROFILES.items()) if _normalized(kind) in kinds]
     if any(_normalized(part["kind"]) == "measured" and "cutoff" in part for part in parts):
@@ -120,11 +121,3 @@ def _models_of_study(study: dict[str, Any]) -> tuple[set[str], Any]:
 def _normalized(kind: str) -> str:
     """Kind of a profile in the spelling that classes and study files share."""
     return str(kind).replace("-", "").lower()
-
-
-def _profile_parts(entry: Any) -> list[dict[str, Any]]:
-    """Return a serialized profile and all profiles within it, as far as they have a kind."""
-    if isinstance(entry, dict):
-        inner = [part for value in entry.values() for part in _profile_parts(value)]
-        return [entry, *inner] if "kind" in entry else inner
-    return [part for value in entry for part in _profile_parts(value)] if isinstance(entry, list) else []

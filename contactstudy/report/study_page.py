@@ -17,14 +17,13 @@ from contactstudy.analysis.provenance import RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity, with_error
 from contactstudy.plots.selection import select_values
 from contactstudy.plots.study_lines import figures_with_selections
-from contactstudy.report.assessment import CARE, NO, UNKNOWN, YES, Assessment, assess
+from contactstudy.report.assessment import CARE, NO, UNKNOWN, YES, assess
 from contactstudy.report.figures import PIXELS, Picture, as_address
 from contactstudy.report.summary_table import intensity_text
 from contactstudy.study import collect
-from contactstudy.study.definition import Study
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
-from contactstudy.study.plan import Plan, PlannedCase, label, value_text
+from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -78,13 +77,6 @@ class Row(NamedTuple):
     reason: str
 
 
-class StudyFigure(NamedTuple):
-    """Figure, and its parameters with a single value: each with another value as an example."""
-
-    figure: Figure
-    fixed: dict[str, str]
-
-
 def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, Any]:
     """Return the context of a study's page; a selection of swept values holds for its figures alone."""
     folder = Folder(path)
@@ -94,7 +86,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
     entries = [states.entry(index) for index in range(len(plan))]
     names = [name for name in NUMBERS if any(_has_number(entry.numbers, name) for entry in entries)]
     names += [name for name in SINGULAR_NUMBERS if any(_is_singular(entry.numbers, name) for entry in entries)]
-    swept = list(dict.fromkeys([*study.sweep, *(name for group in study.zip for name in group), *_explicit(study)]))
+    swept = list(dict.fromkeys([*study.sweep, *(name for table in (*study.zip, *study.cases) for name in table)]))
     rows = [
         _row(f"case-{number}", entry, _swept_values(plan, case, swept), names)
         for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
@@ -105,7 +97,10 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "shape": _shape(plan),
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
-        "swept": [(_meaning(name), _list_values(rows, column)) for column, name in enumerate(swept)],
+        "swept": [
+            (_meaning(name), listed(list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))))
+            for column, name in enumerate(swept)
+        ],
         "headings": [_heading(name) for name in swept],
         "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
         "intensities": any(name.startswith("end_intensity") for name in names),
@@ -114,33 +109,31 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "answers": _answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
-        "provenance": _provenance([_run(entry) for entry in entries if entry.run]),
+        "provenance": _provenance([attribute(_record(entry), RUN_ATTRIBUTE) for entry in entries if entry.run]),
     }
 
 
-def figures_of_folder(path: Path, selection: Mapping[str, Any] | None = None) -> dict[str, StudyFigure]:
-    """Draw the figures of the study in a folder, by name; only files of cases with drawn surfaces are opened."""
+def figures_of_folder(
+    path: Path, selection: Mapping[str, Any] | None = None
+) -> dict[str, tuple[Figure, dict[str, str]]]:
+    """Draw the figures of the study in a folder, by name; only files of cases with drawn surfaces are opened.
+
+    Each has its parameters with a single value, and another value of these as an example.
+    """
     results = Folder(path).results()
     part = select_values(collect(path), selection or {})
 
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 
+    def last_value(dim: str) -> str:
+        value = part.indexes[dim][-1]
+        return value if isinstance(value, str) else f"{float(value):.10g}"
+
     return {
-        name: StudyFigure(figure, {dim: _last_value(part, dim) for dim in fixed})
+        name: (figure, {dim: last_value(dim) for dim in fixed})
         for name, (figure, fixed) in figures_with_selections(part, load).items()
     }
-
-
-def _last_value(dataset: xr.Dataset, dim: str) -> str:
-    """Last value of a parameter as text."""
-    value = dataset.indexes[dim][-1]
-    return value if isinstance(value, str) else f"{float(value):.10g}"
-
-
-def _explicit(study: Study) -> list[str]:
-    """Parameters in which explicit cases differ from the base."""
-    return [name for case in study.cases for name in case]
 
 
 def _meaning(name: str) -> str:
@@ -168,7 +161,7 @@ def _swept_values(plan: Plan, case: PlannedCase, swept: list[str]) -> list[str]:
 
 def _row(anchor: str, entry: Entry, values: list[str], names: list[str]) -> Row:
     """Row of a case."""
-    assessment = _assess(entry) if entry.numbers else None
+    assessment = assess(_record(entry)) if entry.numbers else None
     answer, reason = (assessment.overall, assessment.verdict) if assessment else ("", "")
     numbers = [_number(entry.numbers, name) for name in names]
     return Row(anchor, values, numbers, entry.status, reason if answer == NO else entry.reason, answer, reason)
@@ -210,15 +203,10 @@ def _is_singular(scalars: Mapping[str, float], name: str) -> bool:
     return f"end_intensity_{name.rpartition('_')[2]}" in scalars and np.isfinite(scalars.get(name, np.nan))
 
 
-def _run(entry: Entry) -> dict[str, Any]:
-    """Record of the run of a case, without malformed entries."""
-    return attribute(xr.Dataset(attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}), RUN_ATTRIBUTE)
-
-
-def _assess(entry: Entry) -> Assessment:
-    """Assessment from the scalars and the run of a case."""
+def _record(entry: Entry) -> xr.Dataset:
+    """Scalars of a case, with the record of its run."""
     scalars = {name: value for name, value in entry.numbers.items() if not np.isnan(value)}
-    return assess(xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)}))
+    return xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)})
 
 
 def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
@@ -249,12 +237,6 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
         worst = CARE
     words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
     return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
-
-
-def _list_values(rows: list[Row], column: int) -> str:
-    """Distinct values of a swept parameter, in order."""
-    values = list(dict.fromkeys(row.values[column] for row in rows if row.values[column]))
-    return ", ".join(values) if len(values) <= 12 else f"{len(values)} values, {values[0]} to {values[-1]}"
 
 
 def _shape(plan: Plan) -> str:

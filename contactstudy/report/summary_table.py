@@ -131,49 +131,42 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
         ("hertz_half_width", "Hertz half-width a"),
     ):
         if name in case:
-            yield (_row_with_error if f"{name}_error" in case else _row)(case, name, meaning)
+            yield _row(case, name, meaning, None if f"{name}_error" in case else "")
     yield from _peak_pressure(case)
     for suffix, end in ENDS.items():
         if f"end_pressure_{suffix}" in case:
-            yield _row_with_error(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
+            yield _row(case, f"end_pressure_{suffix}", f"pressure at {end} of the roller")
         if f"end_intensity_{suffix}" in case:
             yield _intensity(case, suffix, end)
         if f"end_load_{suffix}" in case:
-            yield _row_with_error(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
+            yield _row(case, f"end_load_{suffix}", f"load on the last half-width, {end}")
     for name in FILMS:
         if name in case:
-            yield _row_with_error(case, name, variable_of(name, case[name].attrs).long_name)
+            yield _row(case, name, variable_of(name, case[name].attrs).long_name)
     yield from _length(case)
     yield from _peak_stress(case)
     yield from _edge_tension(case)
     for name, meaning in SCALARS.items():
         if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
             estimated = f"{name}_error" in case and name not in BALANCED
-            row = _row_with_error(case, name, meaning) if estimated else _row(case, name, meaning, _mark(case, name))
-            yield _rounded(case, row)
+            yield _rounded(case, _row(case, name, meaning, None if estimated else _mark(case, name)))
     yield from _slip(case)
 
 
-def _row(case: xr.Dataset, name: str, meaning: str, remark: str = "") -> Quantity:
-    """Row of a scalar without an error."""
+def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -> Quantity:
+    """Row of a scalar with its error, or with the reason why it has none; without an error if a remark is given."""
+    value, error = float(case[name]), np.nan if remark is not None else float(case.get(f"{name}_error", np.nan))
     units = variable_of(name, case[name].attrs).units
-    value = float(case[name])
-    return Quantity(name, meaning, value, np.nan, units, quantity(value, units), remark)
-
-
-def _row_with_error(case: xr.Dataset, name: str, meaning: str) -> Quantity:
-    """Row of a scalar with its error, or with the reason why it has none."""
-    value, error = float(case[name]), float(case.get(f"{name}_error", np.nan))
-    units = variable_of(name, case[name].attrs).units
-    remark = str(case[f"{name}_error"].attrs.get("comment", "")) if f"{name}_error" in case else ""
-    if np.isinf(value):
-        remark = SINGULAR
-    elif np.isnan(error):
-        remark = NOT_ESTIMATED
-    elif np.isinf(error):
-        remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
-    elif value == 0 and error == 0 and name.startswith("end_"):
-        remark = OPEN_END
+    if remark is None:
+        remark = str(case[f"{name}_error"].attrs.get("comment", "")) if f"{name}_error" in case else ""
+        if np.isinf(value):
+            remark = SINGULAR
+        elif np.isnan(error):
+            remark = NOT_ESTIMATED
+        elif np.isinf(error):
+            remark = f"{NOT_ESTIMATED}: {remark or 'two grids show no limit'}"
+        elif value == 0 and error == 0 and name.startswith("end_"):
+            remark = OPEN_END
     text = with_error(value, None if np.isnan(error) else error, units)
     return Quantity(name, meaning, value, error, units, text, remark)
 
@@ -182,7 +175,7 @@ def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest pressure: settled, or of a cell."""
     stated = float(case.get("peak_pressure", np.nan))
     if "peak_pressure_error" in case or np.isinf(stated):
-        yield _row_with_error(case, "peak_pressure", "largest pressure")
+        yield _row(case, "peak_pressure", "largest pressure")
     elif "peak_pressure" in case or "pressure" in case:
         value = stated if "peak_pressure" in case else float(case["pressure"].max())
         text = quantity(value, "Pa")
@@ -224,10 +217,10 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
     if singular:
         yield Quantity(name, meaning, np.inf, np.nan, "Pa", quantity(np.inf, "Pa"), SINGULAR)
         return
-    yield _row_with_error(case, name, meaning)
+    yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
         if f"{name}_{axis}" in case:
-            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}")
+            row = _row(case, f"{name}_{axis}", f"{coordinate} of the {meaning}", "")
             end = _nearest_end(case, row.value) if axis == "x" else ""
             yield row._replace(remark=", ".join(filter(None, (end, NOT_ESTIMATED))))
 
@@ -246,7 +239,7 @@ def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
     if bool(tension["edge_tension"].isnull().all()):
         return
     largest = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
-    row = _row_with_error(largest, "edge_tension", "largest tension at the trailing edge")
+    row = _row(largest, "edge_tension", "largest tension at the trailing edge")
     position = f"x = {quantity(float(largest['x']), 'm')}, y = {quantity(float(largest['trailing_edge']), 'm')}"
     yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
 

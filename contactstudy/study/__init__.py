@@ -8,13 +8,13 @@ several independent parts of the groups, for job arrays. The numbers of a case f
 from its friction alone, so results depend on neither workers, tasks, shares nor finished cases, to the last bit.
 
 ====================  ==================================================================
-numbers, parameters   values of a case, their checks, and the identity
-profile_tables        profiles as tables; user_profiles: profiles of a user's class
+parameters            values of a case, their checks, and the identity
+profile_tables        numbers and profiles as tables; user_profiles: profiles of a user's class
 setup                 from parameters to the case that is solved
 definition, plan      a study, and the list of its cases with identities and groups
 settings              times and sizes of a run
 worker                solution of a task
-executor, engine      tasks on processes and clusters
+engine                tasks on processes and clusters
 files, batches        netCDF files that appear whole or not at all
 folder                locks, states of cases, joining of batches
 run, progress         a run from the plan to the batches; its log

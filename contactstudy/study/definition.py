@@ -8,7 +8,7 @@ import math
 import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -23,14 +23,13 @@ from contactstudy.checks import factor_to
 from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
-from contactstudy.study.plan import LEVELS, Axis, Plan, label, make_plan, value_text
-from contactstudy.study.profile_tables import check_without_files, resolve_files
+from contactstudy.study.plan import LEVELS, Axis, Plan, label, listed, value_text
+from contactstudy.study.profile_tables import resolve_files
 
 KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclude")
 """Keys of a study file; each is also an argument of :class:`Study`."""
 
 MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
-LISTED = 12  # Values of a swept parameter that are all shown
 
 
 def _listed(name: str, values: object) -> list[Any]:
@@ -52,11 +51,6 @@ def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     if entries is None or not all(isinstance(entry, Mapping) for entry in entries):
         raise InvalidInputError(name, value, "a table of parameters, or a list of such tables")
     return entries
-
-
-def _shortened(texts: list[str]) -> str:
-    """Values of a swept parameter; of more than twelve the first and the last."""
-    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 @dataclass(frozen=True)
@@ -124,11 +118,10 @@ class Study:
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""
-        for name, values in self.sweep.items():
-            yield f"{name} (swept)", _shortened([value_text(name, value) for value in values])
-        for group in self.zip:
-            for name, values in group.items():
-                yield f"{name} (together)", _shortened([value_text(name, value) for value in values])
+        columns = [(name, "swept", values) for name, values in self.sweep.items()]
+        columns += [(name, "together", values) for group in self.zip for name, values in group.items()]
+        for name, word, values in columns:
+            yield f"{name} ({word})", listed([value_text(name, value) for value in values])
         if self.cases:
             yield "cases", f"{len(self.cases)} explicit ones"
         for name, value in self.base.items():
@@ -228,12 +221,6 @@ class Study:
         return cls(**content)
 
     @classmethod
-    def from_stored(cls, content: Mapping[str, Any]) -> Study:
-        """Study from the ``study.json`` of a folder, which contains the points of measured profiles and no file."""
-        check_without_files(content)
-        return cls.from_mapping(content)
-
-    @classmethod
     def from_dataset(
         cls,
         table: xr.Dataset,
@@ -271,9 +258,11 @@ class Study:
         >>> [case.name for case in study.plan()][:2]
         ['max_pressure=1e+09 friction=0', 'max_pressure=1e+09 friction=0.1']
         """
+        allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
+        checks.instance("table", table, xr.Dataset, allowed)
         arguments = {"name": name, "level": level, "description": description}
         arguments = {key: value for key, value in arguments.items() if value is not None}
-        if is_opened(table):
+        if STUDY_ATTRIBUTE in table.attrs and "case_id" in table:
             study = cls.from_mapping(attribute(table, STUDY_ATTRIBUTE))
             content = part_of_study(study, table, base or {})
         else:
@@ -308,29 +297,46 @@ class Study:
                 f"study {self.name!r} has {self.size} combinations, and {MOST_CASES} is the most that one study may "
                 "have: sweep fewer values, or make several studies"
             )
-        return make_plan(
-            name=self.name,
-            level=self.level,
-            base=self.base,
-            axes=self.axes(),
-            cases=tuple(self.cases),
-            exclude=tuple(dict(rule) for rule in self.exclude),
-        )
-
-    def axes(self) -> tuple[Axis, ...]:
-        """Swept parameters, then zipped ones."""
-        axes = [Axis(tuple({name: value} for value in values)) for name, values in self.sweep.items()]
+        axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
         for group in self.zip:
-            rows = zip(*group.values(), strict=True)
-            axes.append(Axis(tuple(dict(zip(group, row, strict=True)) for row in rows)))
-        return tuple(axes)
-
-
-def is_opened(table: xr.Dataset) -> bool:
-    """Whether a Dataset is an opened study, or a selection of one."""
-    allowed = "an xarray.Dataset of parameters, such as a pandas table's .to_xarray(), or an opened study"
-    checks.instance("table", table, xr.Dataset, allowed)
-    return STUDY_ATTRIBUTE in table.attrs and "case_id" in table
+            axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
+        cases, exclude = tuple(self.cases), self.exclude
+        product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
+        names = {entry for rule in exclude for entry in rule}
+        defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
+        shared = {**defaults, **self.base}
+        # Labels of the parameters in the rules: along the axis with the parameter, and in every explicit case.
+        number_of = {entry: number for number, axis in enumerate(axes) for entry in axis[0]}
+        steps = {
+            entry: [label(entry, step[entry]) for step in axes[number_of[entry]]]
+            if entry in number_of
+            else [label(entry, shared.get(entry))]
+            for entry in names
+        }
+        explicit = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
+        out = np.zeros(product.shape if product.products else (0,), dtype=bool)
+        for rule in exclude if product.products else ():
+            matching = np.ones(product.shape, dtype=bool)
+            for entry, allowed in rule.items():
+                matches = np.array([value in allowed for value in steps[entry]])
+                matching &= matches.reshape(
+                    [-1 if number == number_of.get(entry) else 1 for number in range(len(axes))]
+                )
+            out |= matching
+        out_explicit = [
+            any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude)
+            for values in explicit
+        ]
+        unknown = [
+            f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
+            for rule in exclude
+            for entry, values in rule.items()
+            for value in values
+            if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in explicit)]
+        ]
+        chosen_explicit = product.products + np.flatnonzero(~np.array(out_explicit, dtype=bool))
+        chosen = np.concatenate([np.flatnonzero(~out.ravel()), chosen_explicit]).astype(np.int64)
+        return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -342,7 +348,7 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
     for name in {*base} & {*columns}:
         raise InvalidInputError("base", name, "a parameter that the table does not have")
     content: dict[str, Any] = {"base": {**base, **{name: value for name, value in shared.items() if value is not None}}}
-    if any(array.ndim > 1 or _incomplete(array) for array in columns.values()):
+    if any(array.ndim and (array.ndim > 1 or None in map(_plain, array.values)) for array in columns.values()):
         return content | {"cases": list(_rows(table, columns))}
     groups: dict[str, dict[str, list[Any]]] = {}
     for name, array in columns.items():
@@ -377,11 +383,6 @@ def _plain(value: Any) -> Any:
     plain = value.item() if isinstance(value, np.generic) else value
     missing = plain is None or plain == "" or (isinstance(plain, float) and np.isnan(plain))
     return None if missing else plain
-
-
-def _incomplete(array: xr.Variable) -> bool:
-    """Whether some cases do not have a parameter."""
-    return bool(array.dims) and any(_plain(value) is None for value in array.values.flat)
 
 
 def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dict[str, Any]]:

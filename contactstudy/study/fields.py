@@ -13,7 +13,7 @@ import xarray as xr
 from xarray.backends import BackendArray
 from xarray.core import indexing
 
-from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, labels
+from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
 from contactstudy.checks import FloatArray
 from contactstudy.study.batches import IntArray, offsets, read_batch, read_slices
 from contactstudy.study.common_cells import (
@@ -172,31 +172,27 @@ class Fields:
         """Coordinates of equal positions."""
         positions = self._positions[dim]
         values = positions.values[0]
-        coordinates: dict[str, Any] = {dim: (dim, values, labels(dim, coordinate=True))}
+        coordinates: dict[str, Any] = {dim: (dim, values)}
         if positions.widths[0].size:
-            coordinates[f"{dim}_width"] = (dim, positions.widths[0], labels(f"{dim}_width", coordinate=True))
+            coordinates[f"{dim}_width"] = (dim, positions.widths[0])
         if np.isfinite(positions.scales).all():
             coordinates[f"{dim}_over_a"] = self._over_a(dim, dim, values.size)
         return coordinates
 
     def _over_a(self, dim: str, name: str, size: int) -> tuple[Any, ...]:
         """Coordinate of positions over the half-width along a dimension."""
-        positions, attributes = self._positions[dim], labels(f"{dim}_over_a", coordinate=True)
+        positions = self._positions[dim]
         if positions.over_a[0].size == size and _equal(positions.over_a, positions.over_a[0]):
-            return (name, positions.over_a[0], attributes)
-        return ((*self._states.plan.cube.dims, name), self._table(positions.over_a, positions.which, size), attributes)
+            return (name, positions.over_a[0])
+        return self._swept(name, positions.over_a, positions.which, size)
 
     def _padded(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of different positions, padded with NaN to the largest case."""
         positions, name = self._positions[dim], f"{dim}_index"
         size = max(values.size for values in positions.values)
-        dims = (*self._states.plan.cube.dims, name)
-        coordinates: dict[str, Any] = {
-            dim: (dims, self._table(positions.values, positions.which, size), labels(dim, coordinate=True))
-        }
+        coordinates: dict[str, Any] = {dim: self._swept(name, positions.values, positions.which, size)}
         if positions.has_widths:
-            widths = self._table(positions.widths, positions.which, size)
-            coordinates[f"{dim}_width"] = (dims, widths, labels(f"{dim}_width", coordinate=True))
+            coordinates[f"{dim}_width"] = self._swept(name, positions.widths, positions.which, size)
         if np.isfinite(positions.scales).all():
             coordinates[f"{dim}_over_a"] = self._over_a(dim, name, size)
         return {dim: StudyAxis(name, size)}, coordinates
@@ -234,15 +230,12 @@ class Fields:
         borders = first[0] if _equal(first, first[0]) else union(first)
         if "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
-            borders = centred_cells(borders, points) if self._points_are_given else split_cells(borders, points)
+            plan = self._states.plan
+            parameters = [plan.base, *(axis[0] for axis in plan.axes), *plan.explicit]
+            # Stress points that the study gives are positions of the common axis.
+            given = any("field_x_over_a" in entry for entry in parameters)
+            borders = centred_cells(borders, points) if given else split_cells(borders, points)
         return centres(borders), borders
-
-    @property
-    def _points_are_given(self) -> bool:
-        """Whether the study gives the stress points along x, which are positions of the common axis then."""
-        plan = self._states.plan
-        entries = [plan.base, *(axis.entries[0] for axis in plan.axes), *plan.explicit]
-        return any("field_x_over_a" in entry for entry in entries)
 
     def _common_coordinates(
         self,
@@ -260,44 +253,40 @@ class Fields:
             positions.has_widths or not _equal(sources[dim], borders) or np.ptp(np.diff(borders)) > 0
         )
         if metres:
-            coordinates: dict[str, Any] = {dim: (dim, axis, labels(dim, coordinate=True))}
+            coordinates: dict[str, Any] = {dim: (dim, axis)}
             if np.isfinite(positions.scales).all():
-                coordinates[over_a] = (dim, axis / positions.scales[0], labels(over_a, coordinate=True))
+                coordinates[over_a] = (dim, axis / positions.scales[0])
             if widths:
-                coordinates["x_width"] = (dim, np.diff(borders), labels("x_width", coordinate=True))
+                coordinates["x_width"] = (dim, np.diff(borders))
             if len(dims) > 1:
-                points = sources["x_field"][0]
-                coordinates["x_field"] = (dim, _within(axis, points), labels("x_field", coordinate=True))
+                coordinates["x_field"] = (dim, _within(axis, sources["x_field"][0]))
             return coordinates
-        swept = (*self._states.plan.cube.dims, over_a)
         rows = []
         for number, scale in enumerate(positions.scales):
             source = sources[dim][number]
             remains = _equal([source], axis if dim not in CELLS else borders)
             rows.append(scale * (axis if remains else _within(axis, source)))
-        coordinates = {
-            over_a: (over_a, axis, labels(over_a, coordinate=True)),
-            dim: (swept, self._table(rows, positions.which, axis.size), labels(dim, coordinate=True)),
-        }
+        coordinates = {over_a: (over_a, axis), dim: self._swept(over_a, rows, positions.which, axis.size)}
         if widths:
-            table = self._table([np.diff(borders) * scale for scale in positions.scales], positions.which, axis.size)
-            coordinates["x_width"] = (swept, table, labels("x_width", coordinate=True))
+            rows = [np.diff(borders) * scale for scale in positions.scales]
+            coordinates["x_width"] = self._swept(over_a, rows, positions.which, axis.size)
         if len(dims) > 1:
             stress = self._positions["x_field"]
             rows = [_within(axis, row) * scale for row, scale in zip(sources["x_field"], stress.scales, strict=True)]
-            table = self._table(rows, stress.which, axis.size)
-            coordinates["x_field"] = (swept, table, labels("x_field", coordinate=True))
+            coordinates["x_field"] = self._swept(over_a, rows, stress.which, axis.size)
         return coordinates
 
-    def _table(self, rows: Sequence[FloatArray], which: IntArray, size: int) -> FloatArray:
-        """Values of every case along the study's dimensions, padded with NaN."""
+    def _swept(
+        self, name: str, rows: Sequence[FloatArray], which: IntArray, size: int
+    ) -> tuple[tuple[str, ...], FloatArray]:
+        """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
         cube, plan = self._states.plan.cube, self._states.plan
         padded = np.full((len(rows) + 1, size), np.nan)
         for number, row in enumerate(rows):
             padded[number, : row.size] = row
         table = np.full((int(np.prod(cube.shape)), size), np.nan)
         table[plan.flat] = padded[which]
-        return table.reshape((*cube.shape, size))
+        return (*cube.dims, name), table.reshape((*cube.shape, size))
 
 
 def _within(axis: FloatArray, source: FloatArray) -> FloatArray:

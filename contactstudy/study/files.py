@@ -15,6 +15,7 @@ from threading import RLock
 
 import xarray as xr
 
+from contactstudy.errors import InvalidInputError
 from contactstudy.study.errors import StoreError
 
 NETCDF_LOCK = RLock()  # One netCDF operation at a time in this process
@@ -76,6 +77,16 @@ def write_dataset(path: Path, dataset: xr.Dataset) -> None:
             described.to_netcdf(part, engine="netcdf4", encoding=encoding)
 
     write_atomically(path, write)
+
+
+def load_result(path: Path, argument: str) -> xr.Dataset:
+    """Load the result in a netCDF file; an error names the argument with the path."""
+    try:
+        with xr.open_dataset(path, engine="netcdf4") as dataset:
+            return dataset.load()
+    except (OSError, ValueError) as error:
+        reason = "there is no such file" if isinstance(error, FileNotFoundError) else "this file is not netCDF"
+        raise InvalidInputError(argument, str(path), "a netCDF file or a study's folder", reason) from None
 
 
 def is_regular(path: Path) -> bool:

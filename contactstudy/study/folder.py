@@ -51,6 +51,7 @@ from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.files import PART, UNFINISHED, is_regular, write_text
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS, Plan
+from contactstudy.study.profile_tables import check_without_files
 from contactstudy.study.settings import RUN
 from contactstudy.study.setup import build_setup
 from contactstudy.study.user_profiles import are_registered
@@ -213,11 +214,6 @@ class States:
             batch[index], row[index] = self.results.locations[self.plan.ids[index]]
         return batch, row
 
-    @property
-    def number_names(self) -> list[str]:
-        """Names of all numbers."""
-        return sorted({name for batch in self.results.batches for name in batch.numbers})
-
     def numbers(self, name: str) -> npt.NDArray[np.float64]:
         """One number of every case, in the order of the plan; NaN where it is absent."""
         values = np.full(len(self.plan), np.nan)
@@ -299,7 +295,8 @@ class Folder:
         try:
             if isinstance(content, dict) and content.pop("schema", 1) == 1:
                 content["base"] = {name: PARAMETERS[name].default for name in CELLS} | dict(content.get("base", {}))
-            return Study.from_stored(content)
+            check_without_files(content)
+            return Study.from_mapping(content)
         except InvalidInputError as error:
             raise StudyFileError(f"{path} is not the definition of a study: {error}") from error
 
@@ -398,34 +395,27 @@ class Folder:
 
     def verified_results(self, share: Share) -> tuple[Results, list[str]]:
         """Results after every byte was verified, and messages on files that were damaged and are set aside."""
-        messages = []
-        for path in batch_paths(self.batches):
-            if path.name.startswith(share.prefix) and (reason := damage(path)):
-                messages.append(
-                    f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
-                )
-        results = self.results()
+        paths = batch_paths(self.batches)
+        damaged = {path: reason for path in paths if path.name.startswith(share.prefix) and (reason := damage(path))}
+        results = Results([path for path in paths if path not in damaged])
         if share.count == 1:
-            for path, reason in results.damaged.items():
-                messages.append(
-                    f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
-                )
-        return results, messages
+            damaged |= results.damaged
+        return results, [
+            f"{path.name} is damaged, its cases are missing: {reason}; moved to {self.set_aside(path)}"
+            for path, reason in damaged.items()
+        ]
 
     def compact(self, share: Share, *, at_end: bool = False) -> None:
         """Join small batches into larger ones, without results that later runs replaced; at the end all small ones."""
+        size_limit, least = (RUN.small_bytes, 2) if at_end else (RUN.batch_bytes, RUN.fan_in)
         tiers: dict[int, list[Path]] = {}
         for path in batch_paths(self.batches):
             with contextlib.suppress(OSError):
                 size, full = path.lstat().st_size, cases_of(path) > RUN.batch_cases // 2
-                if (
-                    path.name.startswith(share.prefix)
-                    and not full
-                    and size < (RUN.small_bytes if at_end else RUN.batch_bytes)
-                ):
+                if path.name.startswith(share.prefix) and not full and size < size_limit:
                     tiers.setdefault(0 if at_end else int(np.log(max(size, 1)) / np.log(RUN.fan_in)), []).append(path)
         for paths in tiers.values():
-            if len(paths) >= (2 if at_end else RUN.fan_in):
+            if len(paths) >= least:
                 self._join(paths, share)
 
     def _join(self, paths: list[Path], share: Share) -> None:

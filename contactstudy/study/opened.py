@@ -14,7 +14,6 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE
 from contactstudy.arrays.variables import DERIVED, describe, labels
 from contactstudy.checks import FloatArray
-from contactstudy.study.definition import Study
 from contactstudy.study.fields import Fields
 from contactstudy.study.folder import STATES, Folder, States
 from contactstudy.study.parameters import PARAMETERS
@@ -93,9 +92,7 @@ def collect(folder: str | Path) -> xr.Dataset:
     StudyFileError
         If the folder contains no study.
     """
-    results = Folder(folder)
-    study = results.read_study()
-    return _with_title(numbers_dataset(results.states(study.plan())), study)
+    return study_dataset(folder, cells=None)
 
 
 def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
@@ -121,21 +118,16 @@ def load_case(folder: str | Path, case_id: str) -> xr.Dataset:
     return Folder(folder).results().case(case_id)
 
 
-def study_dataset(folder: str | Path, *, cells: str = "common") -> xr.Dataset:
-    """Dataset of a study whose surfaces and fields are lazy."""
-    checks.known_name("cells", cells, CELLS)
+def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
+    """Dataset of a study whose surfaces and fields are lazy; without them if `cells` is None."""
+    if cells is not None:
+        checks.known_name("cells", cells, CELLS)
     results = Folder(folder)
     study = results.read_study()
     states = results.states(study.plan())
     dataset = numbers_dataset(states)
-    fields = Fields(states, common=cells == "common")
-    if fields.names:
+    if cells is not None and (fields := Fields(states, common=cells == "common")).names:
         dataset = fields.added_to(dataset)
-    return _with_title(dataset, study)
-
-
-def _with_title(dataset: xr.Dataset, study: Study) -> xr.Dataset:
-    """Add the study's definition and title."""
     dataset.attrs = {STUDY_ATTRIBUTE: study.to_json()}
     return describe(dataset, study.description or f"study {study.name}")
 
@@ -159,7 +151,7 @@ def numbers_dataset(states: States) -> xr.Dataset:
         "message": (cube.dims, spread(np.array(reasons, dtype=np.str_), "")),
         "case_id": (cube.dims, spread(plan.ids.astype(np.str_), "")),
     }
-    for name in states.number_names:
+    for name in sorted({name for batch in states.results.batches for name in batch.numbers}):
         if name not in coordinates:
             array = spread(states.numbers(name), np.nan)
             if name in ("e_over_a", "gamma"):
@@ -182,8 +174,7 @@ def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, 
         array = np.asarray(["" if value is None else str(value) for value in values], dtype=np.str_)
     else:
         array = np.asarray([np.nan if value is None else value for value in values])
-    parameter = PARAMETERS.get(name)
-    return dim, array, parameter.attrs if parameter else labels("case", coordinate=True)
+    return dim, array, PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
 
 
 def _reduced(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:

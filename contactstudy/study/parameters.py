@@ -25,8 +25,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.numbers import number, rounded
-from contactstudy.study.profile_tables import profile_table
+from contactstudy.study.profile_tables import number, profile_table, rounded
 
 MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
@@ -53,7 +52,7 @@ def one_of(words: Iterable[str]) -> Check:
 
 def profile(name: str, value: object) -> dict[str, Any]:
     """Return a profile's table with all its numbers rounded."""
-    return {key: _rounded_within(entry) for key, entry in profile_table(value).items()}
+    return dict(_rounded_within(profile_table(value)))
 
 
 def positive(name: str, value: object) -> float:
@@ -386,11 +385,6 @@ def with_defaults(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: entry.default for name, entry in PARAMETERS.items() if entry.default is not None} | dict(values)
 
 
-def canonical_json(values: object) -> str:
-    """JSON with sorted keys and no spaces, so that equal values give equal text."""
-    return json.dumps(values, sort_keys=True, separators=(",", ":"), allow_nan=False)
-
-
 def case_id(parameters: Mapping[str, Any]) -> str:
     """Identity of a case: SHA-256 of its canonical JSON without defaults, as 64 hexadecimal digits.
 
@@ -401,9 +395,10 @@ def case_id(parameters: Mapping[str, Any]) -> str:
 
 
 def fragment(name: str, value: Any) -> str:
-    """Return a checked parameter's part of the canonical JSON; empty if the value is the default."""
+    """Part of a checked parameter in JSON with sorted keys and without spaces; empty if the value is the default."""
     value = counted(name, value)
-    return "" if value is None else f'"{name}":{canonical_json(value)}'
+    text = json.dumps(value, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return "" if value is None else f'"{name}":{text}'
 
 
 def hash_of(fragments: Iterable[str]) -> bytes:

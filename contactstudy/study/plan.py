@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import repeat
@@ -26,6 +26,7 @@ from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
 
 LEVELS = ("summary", "surface", "fields")  # Arrays that a study retains: none; those on (x, y); also the stresses
+LISTED = 12  # Values of a swept parameter that are all shown
 LARGEST_FILL = 4  # Cells per case that a cube may have; sparser explicit cases are listed along one dimension `case`
 BYTES_PER_CASE, BYTES_PER_CELL, BYTES_PER_POINT = 700, 4 * 8, 7 * 4
 """Size of the numbers of a case, and of its arrays before compression."""
@@ -36,14 +37,8 @@ LOCAL = frozenset(
 """Parameters that do not change the operator of the surface. Speed."""
 
 IntArray = npt.NDArray[np.int64]
-Labeller = Callable[[str, Any], Any]
-
-
-@dataclass(frozen=True)
-class Axis:
-    """One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
-
-    entries: tuple[dict[str, Any], ...]
+Axis = tuple[dict[str, Any], ...]
+"""One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
 
 
 @dataclass(frozen=True)
@@ -55,25 +50,25 @@ class Cube:
     labels: dict[str, tuple[str, list[Any]]]
 
 
-def cube_of_axes(axes: Sequence[Axis], label: Labeller) -> Cube:
+def cube_of_axes(axes: Sequence[Axis]) -> Cube:
     """Cube of a product: one dimension per axis; a zipped one is named after its first parameter of distinct values."""
     if not axes:
         return Cube(("case",), (1,), {"case": ("case", [0])})
     dims, shape, labels = [], [], {}
     for axis in axes:
-        columns = {name: [label(name, entry[name]) for entry in axis.entries] for name in axis.entries[0]}
+        columns = {name: [label(name, entry[name]) for entry in axis] for name in axis[0]}
         distinct = [name for name, column in columns.items() if len(set(column)) == len(column)]
         dim = distinct[0] if distinct else "_and_".join(columns)
         if not distinct:
-            labels[dim] = (dim, list(range(len(axis.entries))))
+            labels[dim] = (dim, list(range(len(axis))))
         for name, column in columns.items():
             labels[name] = (dim, column)
         dims.append(dim)
-        shape.append(len(axis.entries))
+        shape.append(len(axis))
     return Cube(tuple(dims), tuple(shape), labels)
 
 
-def cube_of_cases(cases: Sequence[Mapping[str, Any]], label: Labeller) -> tuple[Cube, list[tuple[int, ...]]]:
+def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[int, ...]]]:
     """Cube of explicit cases over the parameters that differ, or along `case` if sparse; and each case's position."""
     names = list(dict.fromkeys(name for case in cases for name in case))
     rows = [{name: label(name, case.get(name)) if name in case else None for name in names} for case in cases]
@@ -144,7 +139,7 @@ class Plan(Sequence[PlannedCase]):
     @property
     def shape(self) -> tuple[int, ...]:
         """Number of steps of each axis."""
-        return tuple(len(axis.entries) for axis in self.axes)
+        return tuple(len(axis) for axis in self.axes)
 
     @property
     def products(self) -> int:
@@ -157,11 +152,7 @@ class Plan(Sequence[PlannedCase]):
         if number >= self.products:
             return dict(self.explicit[number - self.products])
         steps = np.unravel_index(number, self.shape) if self.shape else ()
-        return {
-            name: value
-            for axis, step in zip(self.axes, steps, strict=True)
-            for name, value in axis.entries[step].items()
-        }
+        return {name: value for axis, step in zip(self.axes, steps, strict=True) for name, value in axis[step].items()}
 
     def values(self, index: int) -> dict[str, Any]:
         """Parameters of a case as the study gives them."""
@@ -173,14 +164,16 @@ class Plan(Sequence[PlannedCase]):
 
     def words(self, index: int) -> str:
         """Swept parameters of a case, for messages."""
-        return " ".join(in_words(name, value) for name, value in self.varying(index).items()) or "the only case"
+        labels = {name: label(name, value) for name, value in self.varying(index).items()}
+        texts = (f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}" for name, text in labels.items())
+        return " ".join(texts) or "the only case"
 
     @cached_property
     def _layout(self) -> tuple[Cube, IntArray]:
         """Dimensions of the study, and each case's number in the flattened cube."""
         if not self.explicit:
-            return cube_of_axes(self.axes, label), self.chosen
-        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))], label)
+            return cube_of_axes(self.axes), self.chosen
+        cube, positions = cube_of_cases([self.values(index) for index in range(len(self))])
         return cube, np.ravel_multi_index(tuple(np.array(positions).T), cube.shape).astype(np.int64)
 
     @property
@@ -196,15 +189,15 @@ class Plan(Sequence[PlannedCase]):
     def _fragments(self) -> Iterator[tuple[str, ...]]:
         """Parts of each case's canonical JSON, sorted by name; empty for defaults."""
         product = self.chosen[self.chosen < self.products]
-        names = {name for axis in self.axes for name in axis.entries[0]}
+        names = {name for axis in self.axes for name in axis[0]}
         columns: dict[str, Iterable[str]] = {}
         for name, value in completed({**self.base, **dict.fromkeys(names)}).items():
             if name not in names:
                 columns[name] = repeat(fragment(name, value))
         steps = np.unravel_index(product, self.shape) if self.shape else ()
         for axis, column in zip(self.axes, steps, strict=True):
-            for name in axis.entries[0]:
-                table = [fragment(name, entry[name]) for entry in axis.entries]
+            for name in axis[0]:
+                table = [fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
         if product.size and self.axes:
             ordered = [columns[name] for name in sorted(columns)]
@@ -251,7 +244,7 @@ class Plan(Sequence[PlannedCase]):
             questions.update(doubts(setup.case))
             cells, points = cells + math.prod(setup.shape), points + setup.points
         # A group's cases differ in friction: its other values are checked here.
-        entries = [*(entry for axis in self.axes for entry in axis.entries), *self.explicit]
+        entries = [*(entry for axis in self.axes for entry in axis), *self.explicit]
         for friction in {entry["friction"] for entry in entries if "friction" in entry}:
             if message := friction_doubt(friction):
                 questions.setdefault(message, checked)
@@ -260,7 +253,7 @@ class Plan(Sequence[PlannedCase]):
 
     def setup(self, index: int) -> Setup:
         """Set up a case, or raise the reason why it cannot be solved."""
-        return build_setup(self.parameters(index), given=self.values(index))
+        return build_setup(completed(self.values(index)))
 
     def reason(self, index: int) -> str:
         """Reason why the plan skips a case, or empty."""
@@ -314,74 +307,6 @@ def _numbered(keys: Iterable[int], count: int) -> IntArray:
     return np.fromiter((numbers.setdefault(key, len(numbers)) for key in keys), dtype=np.int64, count=count)
 
 
-def make_plan(
-    *,
-    name: str,
-    level: str,
-    base: Mapping[str, Any],
-    axes: tuple[Axis, ...],
-    cases: tuple[Mapping[str, Any], ...],
-    exclude: tuple[Mapping[str, list[Any]], ...],
-) -> Plan:
-    """Plan of a study: the product of its axes, then the explicit cases, without those that match a rule of labels."""
-    product = Plan(name=name, level=level, base=base, axes=axes, explicit=cases)
-    names = {entry for rule in exclude for entry in rule}
-    defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
-    shape, products = product.shape, product.products
-    out = np.zeros(shape if products else (0,), dtype=bool)
-    listed = [{**defaults, **base, **case} for case in cases]
-    out_listed = [any(_matches(values, rule) for rule in exclude) for values in listed]
-    values_of: dict[str, set[Any]] = {entry: set() for entry in names}
-    for entry in names:
-        values_of[entry].update(label(entry, values.get(entry)) for values in listed)
-        if products:
-            values_of[entry].update(label(entry, value) for value in _steps(entry, axes, defaults | dict(base)))
-    for rule in exclude if products else ():
-        matching = np.ones(shape, dtype=bool)
-        for entry, allowed in rule.items():
-            steps = _steps(entry, axes, defaults | dict(base))
-            matches = np.array([label(entry, value) in allowed for value in steps])
-            number = next((index for index, axis in enumerate(axes) if entry in axis.entries[0]), None)
-            matching &= (
-                matches[0]
-                if number is None
-                else matches.reshape([-1 if index == number else 1 for index in range(len(shape))])
-            )
-        out |= matching
-    unknown = [
-        f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
-        for rule in exclude
-        for entry, values in rule.items()
-        for value in values
-        if value not in values_of[entry]
-    ]
-    chosen = np.concatenate(
-        [np.flatnonzero(~out.ravel()), products + np.flatnonzero(~np.array(out_listed, dtype=bool))]
-    ).astype(np.int64)
-    return Plan(
-        name=name,
-        level=level,
-        base=base,
-        axes=axes,
-        explicit=cases,
-        chosen=chosen,
-        unknown=tuple(dict.fromkeys(unknown)),
-    )
-
-
-def _steps(name: str, axes: tuple[Axis, ...], values: Mapping[str, Any]) -> list[Any]:
-    """Values of a parameter along the axis that contains it; one value if none does."""
-    for axis in axes:
-        if name in axis.entries[0]:
-            return [entry[name] for entry in axis.entries]
-    return [values.get(name)]
-
-
-def _matches(values: Mapping[str, Any], rule: Mapping[str, list[Any]]) -> bool:
-    """Return whether a case matches a rule."""
-    return all(label(name, values.get(name)) in allowed for name, allowed in rule.items())
-
-
 def label(name: str, value: Any) -> Any:
     """Value of a parameter as a coordinate contains it."""
     if name == "profile" and value is not None:
@@ -391,10 +316,9 @@ def label(name: str, value: Any) -> Any:
     return value
 
 
-def in_words(name: str, value: Any) -> str:
-    """Return a parameter as ``name=value``."""
-    text = label(name, value)
-    return f"{name}={text:g}" if isinstance(text, float) else f"{name}={text}"
+def listed(texts: Sequence[str]) -> str:
+    """Values of a swept parameter; of more than twelve the first and the last."""
+    return ", ".join(texts) if len(texts) <= LISTED else f"{len(texts)} values, {texts[0]} to {texts[-1]}"
 
 
 def value_text(name: str, value: Any) -> str:

@@ -15,11 +15,11 @@ from typing import Any
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import quantity
+from contactstudy.case.serialization import tables_within
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import UNITS
 from contactstudy.study import user_profiles
-from contactstudy.study.numbers import number
 
 Table = dict[str, Any]
 DEEPEST = 16  # Largest depth of profiles within profiles
@@ -31,6 +31,21 @@ POINTS = ("positions", "drops")  # Fields that contain lists of lengths
 NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
+DIGITS = 12  # Significant digits of a number in a study, beyond rounding
+SMALLEST, LARGEST = 1 / checks.LARGEST, checks.LARGEST
+
+
+def rounded(value: float) -> float:
+    """Return `value` to twelve significant digits, with one zero instead of two."""
+    return float(f"{value:.{DIGITS}g}") + 0.0
+
+
+def number(name: str, value: object) -> float:
+    """Return a finite number of limited size, rounded."""
+    finite = checks.finite(name, value)
+    if finite and not SMALLEST <= abs(finite) <= LARGEST:
+        raise InvalidInputError(name, value, f"0, or of a size from {SMALLEST:g} to {LARGEST:g}", "units are SI")
+    return rounded(finite)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -221,11 +236,9 @@ def resolve_files(content: Any, folder: Path) -> Any:
 
 def check_without_files(content: Any) -> None:
     """Raise if a measured profile within tables names a file: a stranger's study could name any file."""
-    entries = content.values() if isinstance(content, Mapping) else content if isinstance(content, list) else ()
-    if isinstance(content, Mapping) and content.get("kind") == "measured" and "file" in content:
-        raise InvalidInputError("profile.file", content["file"], "left out of study.json, which contains the points")
-    for entry in entries:
-        check_without_files(entry)
+    for table in tables_within(content):
+        if table["kind"] == "measured" and "file" in table:
+            raise InvalidInputError("profile.file", table["file"], "left out of study.json, which contains the points")
 
 
 def profile_label(table: Mapping[str, Any]) -> str:

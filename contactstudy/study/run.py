@@ -16,16 +16,15 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.errors import InvalidInputError, Terminated
-from contactstudy.study.batches import case_batch, write_batch
+from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
-from contactstudy.study.engine import WAIT_SECONDS, Engine, refuse_in_a_worker
+from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
 from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.executor import Results, Tasks, execute
 from contactstudy.study.folder import Entry, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
-from contactstudy.study.worker import Outcome, Solver, Task, circumstances
+from contactstudy.study.worker import Solver, Task, without_result
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -229,7 +228,10 @@ def run_study(
             tasks = Tasks(plan, groups, task)
             _collect(execute(tasks, engine, log.remark), task, results_folder, part, log)
         except KeyboardInterrupt as interrupt:
-            message = _interruption(results_folder, plan)
+            counts = results_folder.states(plan).counts
+            finished = counts.get("ok", 0) + counts.get("stale", 0)
+            message = f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}"
+            message += "; run again to go on"
             log.log(message)
             # The message counts, not the line at which the solver was.
             interrupt.args = (message,)
@@ -270,25 +272,26 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     members: dict[tuple[int, int], list[int]] = {}
     for index in unique.tolist():
         members.setdefault((int(plan.operators[index]), int(plan.groups[index])), []).append(index)
-    order = sorted(members, key=lambda key: (_is_cheap(plan.values(members[key][0])), key))
+
+    def order_of(key: tuple[int, int]) -> tuple[bool, tuple[int, int]]:
+        values = plan.values(members[key][0])
+        needs_no_ends = values.get("body") == "half-space" or values.get("model", "exact") != "exact"
+        return needs_no_ends, key
+
+    order = sorted(members, key=order_of)
     groups = [members[key] for key in order]
     if share.count > 1:
         pieces = _pieces([key[0] for key in order], max(1, len(groups) // (RUN.turns * share.count)))
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
-    return [remaining for group in groups if (remaining := _remaining(plan, group, missing))]
-
-
-def _remaining(plan: Plan, group: list[int], missing: set[int]) -> list[int]:
-    """Cases of a group to solve; films start from one another along falling speeds, so all of them or none."""
-    remaining = [index for index in group if index in missing]
-    if remaining and "entrainment_speed" in plan.values(group[0]):
-        return sorted(group, key=lambda index: -plan.values(index)["entrainment_speed"])
-    return remaining
-
-
-def _is_cheap(values: dict[str, object]) -> bool:
-    """Whether the ends of the body need no solution."""
-    return values.get("body") == "half-space" or values.get("model", "exact") != "exact"
+    remaining = []
+    for group in groups:
+        if "entrainment_speed" in plan.values(group[0]):
+            # Films start from one another along falling speeds: all of them or none.
+            films = sorted(group, key=lambda index: -plan.values(index)["entrainment_speed"])
+            remaining.append([] if missing.isdisjoint(group) else films)
+        else:
+            remaining.append([index for index in group if index in missing])
+    return [group for group in remaining if group]
 
 
 def _pieces(operators: list[int], longest: int) -> list[int]:
@@ -302,25 +305,18 @@ def _pieces(operators: list[int], longest: int) -> list[int]:
     return pieces
 
 
-def _interruption(results_folder: Folder, plan: Plan) -> str:
-    """Message on an interrupted run."""
-    counts = results_folder.states(plan).counts
-    finished = counts.get("ok", 0) + counts.get("stale", 0)
-    return f"interrupted: {finished} of {len(plan.unique)} cases are kept in {results_folder.path}; run again to go on"
-
-
 def _collect(results: Results, template: Task, results_folder: Folder, share: Share, log: Progress) -> None:
     """Take in the outcomes as they come, and join small batches meanwhile and at the end."""
     compacted = time.monotonic()
     try:
         with contextlib.closing(results):
             for jobs, outcomes in results:
-                names = {job.id: job.name for job in jobs}
+                job_of = {job.id: job for job in jobs}
                 for outcome in outcomes:
-                    log.finished(names[outcome.id], outcome)
+                    log.finished(job_of[outcome.id].name, outcome)
                     if outcome.message.startswith("WorkerDied"):
-                        parameters = next(job.parameters for job in jobs if job.id == outcome.id)
-                        _write_failure(outcome, parameters, template)
+                        batch = without_result(template, job_of[outcome.id], outcome.status, outcome.message)
+                        write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
                 log.show()
                 if time.monotonic() - compacted > RUN.compact_seconds:
                     _compact(results_folder, share, log)
@@ -336,19 +332,6 @@ def _compact(results_folder: Folder, share: Share, log: Progress, *, at_end: boo
         results_folder.compact(share, at_end=at_end)
     except StoreError as error:
         log.log(f"batches are not joined: {error}")
-
-
-def _write_failure(outcome: Outcome, parameters: dict[str, object], template: Task) -> None:
-    """Write the state of a case that no worker survived."""
-    batch = case_batch(
-        identity=outcome.id,
-        parameters=parameters,
-        status=outcome.status,
-        message=outcome.message,
-        run=template.run,
-        circumstances={**circumstances(), "study": template.study, "level": template.level},
-    )
-    write_batch(Path(template.folder), f"{template.prefix}{outcome.id[:12]}", batch)
 
 
 def rerun_study(

@@ -144,15 +144,6 @@ class Setup:
         return int(x * y * z)
 
 
-def check_cells(parameters: Mapping[str, Any]) -> None:
-    """Raise if a case has both an accuracy of refined columns and uniform cells."""
-    cells = {name: parameters[name] for name in ("accuracy", *UNIFORM) if name in parameters}
-    if "accuracy" in cells and len(cells) > 1:
-        raise InvalidInputError(
-            ", ".join(cells), tuple(cells.values()), "given as one of the two, accuracy or uniform cells"
-        )
-
-
 def _check_choices(values: Mapping[str, Any]) -> None:
     """Raise unless a case has exactly one parameter of each group of :data:`REQUIRED`."""
     for names in REQUIRED:
@@ -265,14 +256,13 @@ def _stress_points(
     return {"x": x, "y": y, "z": z}
 
 
-def build_setup(parameters: Mapping[str, Any], *, given: Mapping[str, Any] | None = None) -> Setup:
+def build_setup(parameters: Mapping[str, Any]) -> Setup:
     """Case, cells and stress points of a study's case.
 
     With ``a = 2 p0 R / E*`` and ``e = e_over_a a``: a `gamma` fixes the body, of length ``gamma R``, and the roller is
-    shorter by ``2 e``; a `roller_length` fixes the roller, and the body is longer by ``2 e``. With `given`, the checked
-    parameters as the study has them, `parameters` are not checked again.
+    shorter by ``2 e``; a `roller_length` fixes the roller, and the body is longer by ``2 e``.
     """
-    parameters = checked(parameters) if given is None else parameters
+    parameters = checked(parameters)
     values = with_defaults(parameters)
     _check_approach(parameters)
     _check_choices(values)
@@ -301,6 +291,10 @@ def build_setup(parameters: Mapping[str, Any], *, given: Mapping[str, Any] | Non
         solver_settings, values
     )
     options["tolerance"] = tolerance
+    given = {name: parameters[name] for name in ("accuracy", *UNIFORM) if name in parameters}
+    if "accuracy" in given and len(given) > 1:
+        allowed = "given as one of the two, accuracy or uniform cells"
+        raise InvalidInputError(", ".join(given), tuple(given.values()), allowed)
     grid: Grid | None = None
     cells: dict[str, float] = {}
     if "accuracy" in values:
@@ -310,7 +304,6 @@ def build_setup(parameters: Mapping[str, Any], *, given: Mapping[str, Any] | Non
         if all(gridding[name] == PARAMETERS[name].default for name in ("window", "margin")):
             cells = {name: gridding[name] for name in ("cells_x", "cells_y")}
         grid = choose_grid(case, **gridding)
-    check_cells(parameters if given is None else given)
     if case.lubricant is not None:
         rms = values.get("roughness_rms")
         options = {"accuracy": options["accuracy"], "asperities": None if rms is None else Asperities(rms=rms)}

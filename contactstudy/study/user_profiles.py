@@ -8,14 +8,14 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.case.serialization import Sampled
+from contactstudy.case.serialization import Sampled, tables_within
 from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import checked_drop, in_words, local_radius
@@ -63,7 +63,9 @@ def registered(table: Mapping[str, Any]) -> Profile:
 def user_profiles(parameters: Any) -> dict[str, Profile]:
     """Users' profiles within parameters of cases, by content, for a worker; raises if this process lacks one."""
     profiles = {}
-    for table in _tables(parameters):
+    for table in tables_within(parameters):
+        if table["kind"] != KIND:
+            continue
         if table["content"] not in _registry:
             raise InvalidInputError(
                 "profile",
@@ -77,24 +79,12 @@ def user_profiles(parameters: Any) -> dict[str, Profile]:
 
 def are_registered(parameters: Any) -> bool:
     """Whether this process has every user's profile within parameters."""
-    return all(table["content"] in _registry for table in _tables(parameters))
+    return all(table["content"] in _registry for table in tables_within(parameters) if table["kind"] == KIND)
 
 
 def receive(profiles: Mapping[str, Profile]) -> None:
     """Add profiles that another process sent to the registry of this worker."""
     _registry.update(profiles)
-
-
-def _tables(value: Any) -> Iterator[Mapping[str, Any]]:
-    """Tables of users' profiles at any depth."""
-    if isinstance(value, Mapping):
-        if value.get("kind") == KIND:
-            yield value
-            return
-        value = list(value.values())
-    if isinstance(value, (list, tuple)):
-        for entry in value:
-            yield from _tables(entry)
 
 
 def _attributes(profile: Profile) -> Iterable[tuple[str, Any]]:

@@ -21,7 +21,7 @@ import xarray as xr
 
 from contactstudy.analysis.summary import Number, case_numbers
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.variables import DERIVED, labels
+from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
 from contactstudy.errors import ContactStudyError, MagnitudeWarning
 from contactstudy.profiles import Profile
@@ -98,15 +98,15 @@ def single_threaded() -> Iterator[None]:
         pyfftw.config.NUM_THREADS = previous
 
 
-def perform(task: Task, solver: Solver | None = None, report: Callable[[Outcome], None] | None = None) -> list[Outcome]:
-    """Solve the cases of a task and write them in batches; `report` takes each outcome when its case is written.
+def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
+    """Solve the cases of a task, write them in batches, and return their outcomes.
 
     A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
     defect of the program, and raised after the cases finished before are written.
     """
     _check_folder(*task.lock)
     receive(task.profiles)
-    writer = _Writer(task, report or (lambda outcome: None))
+    writer = _Writer(task)
     try:
         with single_threaded():
             for _, jobs in groupby(task.jobs, key=lambda job: job.group):
@@ -135,8 +135,8 @@ def _check_folder(path: str, text: str) -> None:
 class _Writer:
     """Accumulates finished cases and writes them in batches."""
 
-    def __init__(self, task: Task, report: Callable[[Outcome], None]) -> None:
-        self._task, self._report = task, report
+    def __init__(self, task: Task) -> None:
+        self._task = task
         self._pending: list[Batch] = []
         self._since = time.monotonic()
         self.outcomes: list[Outcome] = []
@@ -157,9 +157,7 @@ class _Writer:
             for row, identity in enumerate(joined.ids):
                 status = STATUSES[joined.status[row]]
                 seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                outcome = Outcome(identity.decode(), status, seconds, joined.texts["message"][row])
-                self.outcomes.append(outcome)
-                self._report(outcome)
+                self.outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
         self._since = time.monotonic()
 
 
@@ -186,7 +184,7 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
         try:
             setup = build_setup(job.parameters)
         except ContactStudyError as error:
-            yield _without_result(task, job, "skipped", str(error))
+            yield without_result(task, job, "skipped", str(error))
             continue
         if solved is None:
             batch, result = _solve_case(task, job, setup, solver, film)
@@ -195,16 +193,14 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
             elif shares and batch.status[0] == 0 and setup.grid is None and not setup.options["stresses"]:
                 solved = batch
         else:
-            batch = replace(
-                _without_result(task, job, "ok"), numbers=dict(solved.numbers), attributes=dict(solved.attributes)
-            )
+            batch = without_result(task, job, "ok")
+            batch = replace(batch, numbers=dict(solved.numbers), attributes=dict(solved.attributes))
             batch.texts["warnings"] = solved.texts["warnings"]
         batch.numbers["seconds"] = np.array([time.perf_counter() - began])
-        batch.attributes["seconds"] = labels("seconds")
         yield batch
 
 
-def _without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
+def without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
     """Batch of one case without numbers."""
     return case_batch(
         identity=job.id,
@@ -245,11 +241,11 @@ def _solve_case(
     except StoreError:
         raise
     except (ContactStudyError, MemoryError, np.linalg.LinAlgError) as error:
-        return _without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
+        return without_result(task, job, "failed", f"{type(error).__name__}: {error}"), None
     except Exception as error:
         error.add_note(f"while solving the case {job.name} ({job.id[:16]})")
         raise
-    batch = _without_result(
+    batch = without_result(
         task, job, "ok", caught=(str(entry.message) for entry in caught if entry.category is not MagnitudeWarning)
     )
     e_over_a = setup.e_over_a

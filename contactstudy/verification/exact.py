@@ -227,12 +227,6 @@ def point_checks() -> Iterator[Check]:
         )
 
 
-def half_space_checks() -> Iterator[Check]:
-    """Every check of the half-space."""
-    for family in (hertz_checks, circle_checks, line_checks, rectangle_checks, point_checks):
-        yield from family()
-
-
 def plane_checks() -> Iterator[Check]:
     """Stresses in a thick and in a thin body under a line contact's pressure from end to end."""
     y, z = np.linspace(-2, 2, 17), np.array([0.1, 0.2, 0.35, 0.5, 1.0, 2.0, 4.0])
@@ -321,12 +315,6 @@ def body_checks() -> Iterator[Check]:
             quarter_fields,
             tolerance,
         )
-
-
-def limit_checks() -> Iterator[Check]:
-    """Every check of the limits."""
-    for family in (plane_checks, plate_contact_checks, body_checks):
-        yield from family()
 
 
 def _finite(length: float) -> FiniteLengthSpace:
@@ -446,12 +434,3 @@ def alternation_checks() -> Iterator[Check]:
         system.scale * face_load / scale,
         1e-9,
     )
-
-
-def consistency_checks() -> Iterator[Check]:
-    """Every check of consistency."""
-    yield from free_end_checks()
-    yield from equilibrium_checks()
-    yield from contact_condition_checks()
-    yield from reciprocity_checks()
-    yield from alternation_checks()

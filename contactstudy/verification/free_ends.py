@@ -173,12 +173,6 @@ def antiplane_checks() -> Iterator[Check]:
     )
 
 
-def quarter_space_checks() -> Iterator[Check]:
-    """Every check of the quarter space."""
-    for family in (edge_load_checks, extra_deflection_checks, resultant_checks, corner_checks, antiplane_checks):
-        yield from family()
-
-
 POISSON = 0.3  # Of every body here, unless a check states another
 # Guilbault's errors of the largest edge displacement under a mirrored load, by Poisson's ratio
 MIRROR_ERRORS = {0.3: -0.2190, 0.15: -0.1130}
@@ -262,12 +256,6 @@ def mirror_checks() -> Iterator[Check]:
             expected,
             0.01,
         )
-
-
-def published_checks() -> Iterator[Check]:
-    """Every check of a published number."""
-    for family in (johnson_checks, wedge_checks, mirror_checks):
-        yield from family()
 
 
 FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the checks, with error and unit

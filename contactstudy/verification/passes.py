@@ -149,12 +149,3 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"
     largest = np.abs(expected).max()
     yield compare_fields(label, quantity, source, drag / largest, expected / largest, tolerances[1])
-
-
-def passes_checks(*, full: bool) -> Iterator[Check]:
-    """Every check of passes; at the quick level two of the cases of finite elements."""
-    yield from shakedown_checks()
-    yield from residual_checks()
-    yield from passing_checks()
-    for name in PASSES_CASES if full else QUICK_CASES:
-        yield from finite_element_checks(name)

@@ -8,6 +8,7 @@ import time
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,12 +19,9 @@ from contactstudy import checks as arguments
 from contactstudy.arrays.variables import describe
 from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.study.files import write_dataset, write_text
+from contactstudy.verification import exact, film, free_ends, passes, tribology
 from contactstudy.verification.check import Check
-from contactstudy.verification.exact import consistency_checks, half_space_checks, limit_checks
-from contactstudy.verification.film import film_checks
-from contactstudy.verification.free_ends import finite_element_checks, published_checks, quarter_space_checks
-from contactstudy.verification.passes import passes_checks
-from contactstudy.verification.tribology import friction_checks, heat_checks, wear_checks
+from contactstudy.verification.problems import PASSES_CASES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -33,17 +31,49 @@ if TYPE_CHECKING:
 LEVELS = ("quick", "full")  # Levels of a run
 # Checks by the kind of their reference; the argument selects the full level
 GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
-    "half-space": lambda full: half_space_checks(),
-    "limits": lambda full: limit_checks(),
-    "quarter space": lambda full: quarter_space_checks(),
-    "finite elements": lambda full: finite_element_checks(full=full),
-    "published": lambda full: published_checks(),
-    "friction": lambda full: friction_checks(full=full),
-    "heat": lambda full: heat_checks(),
-    "wear": lambda full: wear_checks(),
-    "passes": lambda full: passes_checks(full=full),
-    "film": lambda full: film_checks(full=full),
-    "consistency": lambda full: consistency_checks(),
+    "half-space": lambda full: chain(
+        exact.hertz_checks(),
+        exact.circle_checks(),
+        exact.line_checks(),
+        exact.rectangle_checks(),
+        exact.point_checks(),
+    ),
+    "limits": lambda full: chain(exact.plane_checks(), exact.plate_contact_checks(), exact.body_checks()),
+    "quarter space": lambda full: chain(
+        free_ends.edge_load_checks(),
+        free_ends.extra_deflection_checks(),
+        free_ends.resultant_checks(),
+        free_ends.corner_checks(),
+        free_ends.antiplane_checks(),
+    ),
+    "finite elements": lambda full: free_ends.finite_element_checks(full=full),
+    "published": lambda full: chain(free_ends.johnson_checks(), free_ends.wedge_checks(), free_ends.mirror_checks()),
+    "friction": lambda full: chain(
+        tribology.carter_checks(),
+        tribology.slope_checks(full=full),
+        tribology.shift_checks(),
+        tribology.spence_checks(),
+        tribology.kalker_checks(full=full),
+        tribology.contact_program_checks(),
+    ),
+    "heat": lambda full: chain(
+        tribology.fast_checks(), tribology.band_checks(), tribology.resting_checks(), tribology.end_checks()
+    ),
+    "wear": lambda full: chain(tribology.sliding_wear_checks(), tribology.rolling_wear_checks()),
+    "passes": lambda full: chain(
+        passes.shakedown_checks(),
+        passes.residual_checks(),
+        passes.passing_checks(),
+        *(passes.finite_element_checks(name) for name in (PASSES_CASES if full else passes.QUICK_CASES)),
+    ),
+    "film": lambda full: chain(film.line_checks(full=full), film.dry_limit_checks(), film.roller_checks(full=full)),
+    "consistency": lambda full: chain(
+        exact.free_end_checks(),
+        exact.equilibrium_checks(),
+        exact.contact_condition_checks(),
+        exact.reciprocity_checks(),
+        exact.alternation_checks(),
+    ),
 }
 
 
@@ -78,12 +108,11 @@ class Verification:
     def to_dataset(self) -> xr.Dataset:
         """All checks as data along ``check``."""
         groups = [name for name, group in self.groups.items() for _ in group]
-        columns: dict[str, object] = {"group": np.array(groups, dtype=object)}
-        for name in ("case", "quantity", "source"):
-            columns[name] = np.array([getattr(check, name) for check in self.checks], dtype=object)
-        for name in ("computed", "expected", "difference", "tolerance"):
-            columns[name] = np.array([getattr(check, name) for check in self.checks])
-        columns["passed"] = np.array([check.passed for check in self.checks], dtype=bool)
+        columns = {"group": np.array(groups, dtype=object)}
+        kinds = dict.fromkeys(("case", "quantity", "source"), object)
+        kinds |= dict.fromkeys(("computed", "expected", "difference", "tolerance"), float) | {"passed": bool}
+        for name, kind in kinds.items():
+            columns[name] = np.array([getattr(check, name) for check in self.checks], dtype=kind)
         data = xr.Dataset({name: ("check", values) for name, values in columns.items()})
         data.attrs = {"level": self.level, "seconds": round(self.seconds, 1)}
         return describe(data, "verification of contactstudy")

@@ -27,7 +27,7 @@ import contactstudy
 from contactstudy import materials
 from contactstudy.analysis.peaks import MEASURES
 from contactstudy.arrays import vocabulary
-from contactstudy.commands import command_parser
+from contactstudy.cli import command_parser
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.study.parameters import documented
 from contactstudy.study.profile_tables import DESIGN, PROFILES

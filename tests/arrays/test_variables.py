@@ -295,7 +295,7 @@ def test_every_row_of_the_table_is_returned(returned: Returned) -> None:
 def test_a_study_of_listed_cases_has_the_coordinate_case() -> None:
     from contactstudy.study.plan import cube_of_axes
 
-    assert set(cube_of_axes([], lambda name, value: value).labels) == {"case"}
+    assert set(cube_of_axes([]).labels) == {"case"}
 
 
 def test_no_brace_is_left_in_a_label(returned: Returned) -> None:

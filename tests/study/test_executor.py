@@ -3,8 +3,7 @@
 import pytest
 
 from contactstudy.study import StudyFileError
-from contactstudy.study.engine import Engine
-from contactstudy.study.executor import Tasks, Workers, execute
+from contactstudy.study.engine import Engine, Tasks, Workers, execute
 from contactstudy.study.worker import Task
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake

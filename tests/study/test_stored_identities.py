@@ -10,8 +10,8 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import WINDOWS, widening_grids
 from contactstudy.solution import solve
 from contactstudy.study import Study
-from contactstudy.study.numbers import number
 from contactstudy.study.parameters import PARAMETERS, Parameter, taken_by
+from contactstudy.study.profile_tables import number
 from contactstudy.study.setup import build_setup
 from tests.small_study import BASE
 from tests.study.conftest import ROOT
