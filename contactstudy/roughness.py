@@ -245,7 +245,9 @@ def _interpolated(x: FloatArray, y: FloatArray, heights: FloatArray, grid: Grid)
 def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> FloatArray:
     """Polynomial of the least squares, with all terms up to an order."""
     # Over -1 to 1 the normal equations of so few terms lose two digits at most, and need no array per term.
-    along_x, along_y = (np.polynomial.legendre.legvander(_scaled(axis), order) for axis in (x, y))
+    along_x, along_y = (
+        np.polynomial.legendre.legvander(np.interp(axis, axis[[0, -1]], [-1.0, 1.0]), order) for axis in (x, y)
+    )
     terms = [(i, j) for i in range(order + 1) for j in range(order + 1 - i)]
     products_x, products_y = along_x.T @ along_x, along_y.T @ along_y
     matrix = np.array([[products_x[i, k] * products_y[j, m] for k, m in terms] for i, j in terms])
@@ -254,11 +256,6 @@ def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> Floa
     projections = np.array([moments[term] for term in terms])
     factors[tuple(np.transpose(terms))] = np.linalg.lstsq(matrix, projections, rcond=None)[0]
     return np.asarray(along_x @ factors @ along_y.T)
-
-
-def _scaled(positions: FloatArray) -> FloatArray:
-    """Positions over a range of -1 to 1."""
-    return np.asarray(np.interp(positions, positions[[0, -1]], [-1.0, 1.0]))
 
 
 Map = tuple[FloatArray, FloatArray, FloatArray]

@@ -195,15 +195,11 @@ def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.Da
         if target.ndim:
             lines[dim] = target
         else:
-            array = _interpolate_plane(array, dim, float(target))
+            position = float(target)
+            values = array[dim].values
+            right = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
+            weight = float((position - values[right - 1]) / (values[right] - values[right - 1]))
+            before, after = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
+            # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
+            array = before if weight == 0 else after if weight == 1 else (1 - weight) * before + weight * after
     return array.interp(lines) if lines else array
-
-
-def _interpolate_plane(array: xr.DataArray, dim: str, position: float) -> xr.DataArray:
-    """Linear interpolation between two planes, without SciPy, whose import is slow."""
-    values = array[dim].values
-    right = int(np.clip(np.searchsorted(values, position), 1, values.size - 1))
-    weight = float((position - values[right - 1]) / (values[right] - values[right - 1]))
-    before, after = (array.isel({dim: index}, drop=True) for index in (right - 1, right))
-    # At a plane itself the neighbouring plane, which may be infinite, has zero weight.
-    return before if weight == 0 else after if weight == 1 else (1 - weight) * before + weight * after

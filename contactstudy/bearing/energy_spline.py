@@ -146,17 +146,14 @@ def fit_errors(nodes: Nodes, length: float) -> FloatArray:
     degree = _differences(spline(*pairs), lowered.load, lowered.moment, length)
     # Largest value from each node to its neighbours, of values on finer steps.
     about = maximum_filter(degree, (1, 2 * BETWEEN + 1, 2 * BETWEEN + 1), mode="nearest")[:, ::BETWEEN, ::BETWEEN]
-    return np.asarray(np.maximum(residual, SAFETY * (about + _with_fewer(nodes, length))))
-
-
-def _with_fewer(nodes: Nodes, length: float) -> FloatArray:
-    """Residuals of splines at an omitted approach; the first and the last repeat the next one."""
     lines, residuals = np.arange(nodes.approaches.size), []
     for line in lines[1:-1]:
         fewer, removed = nodes.approached(lines != line), nodes.approached(lines == line)
         motion = EnergySpline.fitted(fewer)(*_pairs(removed.approaches, removed.tilts))
         residuals.append(_differences(motion, removed.load, removed.moment, length))
-    return np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)
+    return np.asarray(
+        np.maximum(residual, SAFETY * (about + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
+    )
 
 
 def _pairs(approaches: FloatArray, tilts: FloatArray) -> tuple[FloatArray, FloatArray]:

@@ -202,7 +202,12 @@ def contact_law(
     """
     checks.instance("case", case, Case, "a Case")
     warn_doubtful(case)
-    _check_case(case)
+    if case.tilt:
+        raise InvalidInputError("case.tilt", case.tilt, "0: the law has tilts of its own")
+    if case.load_position is not None:
+        raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
+    if case.coupled:
+        raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
     turned = _increasing("tilts", numbers_in_si("tilts", tilts, "rad"), "radians")
     if np.abs(turned).max() > LARGEST_TILT:
         raise InvalidInputError("tilts", tilts, f"small angles, at most {LARGEST_TILT} radians")
@@ -217,16 +222,6 @@ def contact_law(
     length = case.contact_length
     fit, cells = fit_errors(nodes, length), discretisation_errors(presser, nodes)
     return ContactLaw(law_table(presser, nodes, fit + cells[:, None, None]))
-
-
-def _check_case(case: Case) -> None:
-    """Raise unless the case leaves load and tilt to the law."""
-    if case.tilt:
-        raise InvalidInputError("case.tilt", case.tilt, "0: the law has tilts of its own")
-    if case.load_position is not None:
-        raise InvalidInputError("case.load_position", case.load_position, "None: the roller takes the law's tilts")
-    if case.coupled:
-        raise InvalidInputError("case.coupled", True, "False: with coupled friction the load derives from no energy")
 
 
 def _increasing(name: str, values: object, unit: str) -> FloatArray:

@@ -13,7 +13,6 @@ from scipy.sparse.linalg import LinearOperator
 
 from contactstudy import checks
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
-from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, in_si, without_error
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
@@ -205,7 +204,14 @@ def solve_contact(
     check_coupled(coefficient, motion, coupled=coupled)
     on_cells = on_columns(coefficient, grid.x)
     if surface is not None:
-        _check_surface(surface, grid, counterbody, motion, coupled=coupled)
+        checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
+        cells = grid.cells_x * grid.cells_y
+        if surface.shape != (cells, cells):
+            raise InvalidInputError("surface.shape", surface.shape, f"{(cells, cells)}, the cells of the gap")
+        if counterbody is not None:
+            raise InvalidInputError("counterbody", counterbody, "None with surface, the compliance of both bodies")
+        if coupled or not isinstance(motion, Sliding):
+            raise InvalidInputError("motion, coupled", (motion, coupled), "full sliding, uncoupled, with surface")
     shape = Shape(
         body,
         grid,
@@ -229,20 +235,6 @@ def solve_contact(
     frictional = frictional_contact(shape, iteration, request)
     frictional.warn_unless_converged()
     return with_tractions(contact_dataset(frictional.contact, on_cells, x=x, y=y), frictional)
-
-
-def _check_surface(
-    surface: LinearOperator, grid: Grid, counterbody: Counterbody | None, motion: Motion, *, coupled: bool
-) -> None:
-    """Raise unless a user's operator fits the grid and the other arguments."""
-    checks.instance("surface", surface, LinearOperator, "a scipy.sparse.linalg.LinearOperator")
-    cells = grid.cells_x * grid.cells_y
-    if surface.shape != (cells, cells):
-        raise InvalidInputError("surface.shape", surface.shape, f"{(cells, cells)}, the cells of the gap")
-    if counterbody is not None:
-        raise InvalidInputError("counterbody", counterbody, "None with surface, the compliance of both bodies")
-    if coupled or not isinstance(motion, Sliding):
-        raise InvalidInputError("motion, coupled", (motion, coupled), "full sliding, uncoupled, with surface")
 
 
 def _start_loads(after: xr.Dataset, motion: Motion, gap: xr.DataArray, body: Body) -> dict[Load, FloatArray]:

@@ -70,7 +70,11 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     if target.suffix == ".vtr":
         _write_rectilinear(target, *_on_points(fields))
     elif set(axis_dimensions(next(iter(fields.values()))).values()) == {"x", "y"}:
-        _write_cells(target, fields)
+        first = next(iter(fields.values()))
+        # Only the cells of the field matter: a gap is infinite beyond the roller.
+        _, grid = labelled_cells("variables", xr.zeros_like(first, dtype=np.float64))
+        edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
+        _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
     else:
         axes, data = _on_points(fields)
         _write_mesh(target, axes, on_points=data)
@@ -103,15 +107,6 @@ def _write_rectilinear(target: Path, axes: list[FloatArray], data: dict[str, Flo
     with checks.writing(target) as part, RectilinearGrid(str(part), tuple(axes)) as grid:
         for name, values in data.items():
             grid.addPointData(DataArray(values, range(3), name))
-
-
-def _write_cells(target: Path, fields: dict[str, xr.DataArray]) -> None:
-    """Write data of the contact's cells."""
-    first = next(iter(fields.values()))
-    # Only the cells of the field matter: a gap is infinite beyond the roller.
-    _, grid = labelled_cells("variables", xr.zeros_like(first, dtype=np.float64))
-    edges = [grid.x_edges, np.linspace(*grid.y_range, grid.cells_y + 1), np.zeros(1)]
-    _write_mesh(target, edges, in_cells={name: array.transpose("x", "y").values for name, array in fields.items()})
 
 
 def _write_mesh(

@@ -182,22 +182,17 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         return (*chosen, instant_index[:, 0].astype(np.float64))
 
     total, shear, mean, instant = over_history(criterion, stress, (None,) * 4)
+    instant = instant.compute()
+    loaded = instant < tensor.sizes[rolling]
+    number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
     values = {
         "dang_van": total,
         "utilisation": total / limits.torsion,
         "dang_van_shear": shear,
         "dang_van_hydrostatic": mean,
-        "dang_van_y": _position(tensor, rolling, instant),
+        "dang_van_y": positions(tensor, "y").isel({rolling: number}).where(loaded),
     }
     return _to_dataset("dang_van", values)
-
-
-def _position(tensor: xr.DataArray, rolling: str, instant: xr.DataArray) -> xr.DataArray:
-    """Position along the rolling direction of the instants with these numbers; NaN for the unloaded state."""
-    instant = instant.compute()
-    loaded = instant < tensor.sizes[rolling]
-    number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
-    return positions(tensor, "y").isel({rolling: number}).where(loaded)
 
 
 def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:

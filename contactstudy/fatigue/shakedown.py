@@ -33,7 +33,7 @@ from scipy import sparse
 from contactstudy import checks
 from contactstudy.analysis import dimension_along, single_case
 from contactstudy.analysis.axes import positions
-from contactstudy.analysis.peaks import Peak, interpolated_peak, label_peak
+from contactstudy.analysis.peaks import interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named, required_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
@@ -104,26 +104,21 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
     """
     checks.instance("axial", axial, (bool, np.bool_), "True or False")
     if axial:
-        _check_line_contact(stress)
+        tensor, _ = histories(stress)
+        axial_dims = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
+        if any(tensor.sizes[dim] > 1 for dim in axial_dims):
+            raise InvalidInputError(
+                "axial",
+                True,
+                f"False with {tensor.sizes[axial_dims[0]]} positions along x",
+                "residual stress along the axis is free in a line contact, which one position tells",
+            )
     results = over_history(partial(_of_history, axial=bool(axial)), stress, (None,) * 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
     result = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
     if not axial:
         del result["residual_sigma_xx"]
     return xr.Dataset(result)
-
-
-def _check_line_contact(stress: xr.Dataset) -> None:
-    """Raise unless the stress is known at one position along x."""
-    tensor, _ = histories(stress)
-    axial_dims = [str(dim) for dim in tensor.dims if str(dim).partition("_")[0] == "x"]
-    if any(tensor.sizes[dim] > 1 for dim in axial_dims):
-        raise InvalidInputError(
-            "axial",
-            True,
-            f"False with {tensor.sizes[axial_dims[0]]} positions along x",
-            "residual stress along the axis is free in a line contact, which one position tells",
-        )
 
 
 def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
@@ -189,7 +184,14 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         else:
             largest = largest._replace(error=largest.error + largest.value - min(half.value for half in halves))
         peak = label_peak(variable, largest, VARIABLES[variable])
-        peak[f"peak_{variable}"].attrs["comment"] = _where(case, largest)
+        words = ["on the top" if largest.position.get("z", 1.0) == 0 else "below the top"]
+        if "x" in largest.position and "x_bounds" in case.coords:
+            bounds = case["x_bounds"].values
+            if np.isclose(
+                largest.position["x"], [bounds.min(), bounds.max()], rtol=0, atol=1e-9 * np.ptp(bounds)
+            ).any():
+                words.append("at an end")
+        peak[f"peak_{variable}"].attrs["comment"] = ", ".join(words)
         result = result.merge(peak)
         if "hertz_max_pressure" in case and largest.value:
             name = variable.replace("stress", "limit")
@@ -239,16 +241,6 @@ def _border_decides(case: xr.Dataset, fields: xr.Dataset, variable: str) -> bool
     # An unloaded border is as bad as the unloaded state may be, which is known.
     unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL * largest
     return bool(((size[[0, -1]] >= largest * (1 - EQUAL)) & ~unloaded).any())
-
-
-def _where(case: xr.Dataset, peak: Peak) -> str:
-    """Words for a position on the top, and at an end of the cells."""
-    words = ["on the top" if peak.position.get("z", 1.0) == 0 else "below the top"]
-    if "x" in peak.position and "x_bounds" in case.coords:
-        bounds = case["x_bounds"].values
-        if np.isclose(peak.position["x"], [bounds.min(), bounds.max()], rtol=0, atol=1e-9 * np.ptp(bounds)).any():
-            words.append("at an end")
-    return ", ".join(words)
 
 
 DEGREE, CONTINUITY = 5, 3  # Of the stress function's polynomials: stresses that are smooth between the points

@@ -124,7 +124,14 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     if not line.any():
         return Search(grid, extent, off_rim, border, [])
     samples: list[Points] = []
-    symmetric = _symmetric(loads, grid, extent)
+    symmetric = bool(  # about the middle of the window, as far as the solver does not break it
+        np.isinf(extent[0]) == np.isinf(extent[1])
+        and np.allclose(grid.widths, grid.widths[::-1])
+        and all(
+            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
+            for kind, load in loads.items()
+        )
+    )
     for peak in _peaks(line, symmetric=symmetric):
         middle, half_width = _section(pressure[peak], grid)
         width = peak_width(pressure, grid.x, grid.dy, peak)
@@ -134,7 +141,12 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
                 _nearest_cells(grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, width * DEPTHS)
             )
     middle, half_width = _section(pressure[int(line.argmax())], grid)
-    x = _axis_positions(pressure, grid, half_width, symmetric=symmetric)
+    columns = np.flatnonzero(pressure.any(axis=1))
+    first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
+    inside = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
+    inside = inside[inside <= 0.5 * (last - first)]
+    # One point of the second half: the middle is inside the range.
+    x = np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
     samples.append(
         _nearest_cells(
             grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, half_width * AXIS_DEPTHS
@@ -161,16 +173,6 @@ def _section(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
     return float((pressure * grid.y).sum() / pressure.sum()), 0.5 * grid.dy * np.count_nonzero(pressure)
 
 
-def _axis_positions(pressure: FloatArray, grid: Grid, half_width: float, *, symmetric: bool) -> FloatArray:
-    """Positions from the ends of a contact to its middle, of one half and one more if the contact is symmetric."""
-    columns = np.flatnonzero(pressure.any(axis=1))
-    first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
-    inside = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
-    inside = inside[inside <= 0.5 * (last - first)]
-    # One point of the second half: the middle is inside the range.
-    return np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
-
-
 def separated(positions: FloatArray, spacing: float) -> IntArray:
     """Return indices of ascending positions more than `spacing` apart: polynomials through closer points oscillate."""
     indices: list[int] = []
@@ -178,18 +180,6 @@ def separated(positions: FloatArray, spacing: float) -> IntArray:
         if not indices or positions[index] - positions[indices[-1]] > spacing:
             indices.append(index)
     return np.array(indices)
-
-
-def _symmetric(loads: Loads, grid: Grid, extent: Extent) -> bool:
-    """Whether body and loads are symmetric about mid-length."""
-    return bool(
-        np.isinf(extent[0]) == np.isinf(extent[1])
-        and np.allclose(grid.widths, grid.widths[::-1])
-        and all(
-            np.allclose(load.cells, kind.sign_x * load.cells[::-1], rtol=0, atol=1e-4 * np.abs(load.cells).max())
-            for kind, load in loads.items()
-        )
-    )
 
 
 def _peaks(line: FloatArray, *, symmetric: bool) -> Iterator[int]:

@@ -117,7 +117,14 @@ class FilmCells:
     def along_y(self) -> Faces:
         """Faces between neighbours along y."""
         gradient = _gradient(self.y_edges, self.y, closed=False)
-        upwind = sparse.csr_array(_upwind(self.y_edges, self.y))
+        cells = self.y.size
+        matrix = np.zeros((cells + 1, cells))
+        for face, position in enumerate(self.y_edges):
+            stencil = np.arange(max(face - 2, 0), min(face + 1, cells)) if face else np.arange(min(2, cells))
+            for cell in stencil:
+                others = self.y[stencil[stencil != cell]]
+                matrix[face, cell] = np.prod((position - others) / (self.y[cell] - others))
+        upwind = sparse.csr_array(matrix)
         rows = sparse.eye_array(self.shape[0])
         return Faces.of(*(sparse.kron(rows, each) for each in (upwind, _mean(self.y_edges, self.y), gradient)))
 
@@ -266,18 +273,6 @@ def _mean(edges: FloatArray, centres: FloatArray) -> sparse.sparray:
         share = (edges[face] - centres[face - 1]) / (centres[face] - centres[face - 1])
         matrix[face, face - 1 : face + 1] = 1 - share, share
     return sparse.csr_array(matrix)
-
-
-def _upwind(edges: FloatArray, centres: FloatArray) -> FloatArray:
-    """Values on the faces by parabolas through two centres upstream and one downstream: array (face, cell)."""
-    cells = centres.size
-    matrix = np.zeros((cells + 1, cells))
-    for face, position in enumerate(edges):
-        stencil = np.arange(max(face - 2, 0), min(face + 1, cells)) if face else np.arange(min(2, cells))
-        for cell in stencil:
-            others = centres[stencil[stencil != cell]]
-            matrix[face, cell] = np.prod((position - others) / (centres[cell] - others))
-    return matrix
 
 
 def _gradient(edges: FloatArray, centres: FloatArray, *, closed: bool) -> sparse.sparray:

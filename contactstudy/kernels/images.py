@@ -227,7 +227,8 @@ def far_images(
         gathered = gathered @ from_load[loaded]
     else:
         gathered = np.pad(gathered, ((0, 0), (loaded.start, centres.size - loaded.stop)))
-    offsets, number = np.unique(np.subtract.outer(nodes_y, nodes_load).round(_digits(grid.dy)), return_inverse=True)
+    digits = int(np.ceil(-np.log10(ROUNDING * grid.dy)))
+    offsets, number = np.unique(np.subtract.outer(nodes_y, nodes_load).round(digits), return_inverse=True)
     number = number.reshape(nodes_y.size, nodes_load.size)
     field = np.zeros((influence.components, LOAD_POINTS, nodes_y.size, depths.size))
     for depth in range(depths.size):
@@ -243,8 +244,3 @@ def far_images(
     if to_y is not None:
         field = np.moveaxis(np.tensordot(field, to_y, axes=(1, 1)), 3, 1)
     return np.asarray(field.transpose(0, 3, 1, 2))
-
-
-def _digits(size: float) -> int:
-    """Decimals of equal positions, whose difference is a small part of `size`."""
-    return int(np.ceil(-np.log10(ROUNDING * size)))

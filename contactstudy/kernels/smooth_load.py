@@ -176,7 +176,8 @@ class ShapedLoad:
     def integral(self, x: FloatArray) -> FloatArray:
         """Integral of the load up to the positions: array (row, x)."""
         cell = np.clip(np.searchsorted(self.edges, x, side="right") - 1, 0, self.edges.size - 2)
-        return np.asarray(_sum_before(self._cell_moments[0])[:, cell] + self._moments_in(cell, x)[0])
+        before = np.pad(np.cumsum(self._cell_moments[0], axis=1), ((0, 0), (1, 0)))
+        return np.asarray(before[:, cell] + self._moments_in(cell, x)[0])
 
     def means(self, edges: FloatArray) -> FloatArray:
         """Means between other edges, metres: array (row, cell)."""
@@ -353,22 +354,6 @@ def _mean(a: FloatArray, b: FloatArray) -> FloatArray:
     return np.asarray(2 / 3 * (a * a + a * b + b * b) / np.where(total > 0, total, 1.0))  # eq. (32a)
 
 
-def _first_moment(a: FloatArray, b: FloatArray) -> FloatArray:
-    """First moment of such a function about its first end, over the length squared."""
-    total = a + b
-    total = np.where(total > 0, total, 1.0)
-    cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
-    return np.asarray(2 / 15 * cubes / (total * total))
-
-
-def _second_moment(a: FloatArray, b: FloatArray) -> FloatArray:
-    """Second moment of such a function about its first end, over the length cubed."""
-    total = a + b
-    total = np.where(total > 0, total, 1.0)
-    powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
-    return np.asarray(2 / 105 * powers / (total * total * total))
-
-
 class _Piece(NamedTuple):
     """Part of a function with a linear square: values at both ends, and length over the width of the cell."""
 
@@ -390,17 +375,23 @@ class _Piece(NamedTuple):
     @property
     def moment(self) -> FloatArray:
         """First moment about the start."""
-        return self.length**2 * _first_moment(self.first, self.last)
+        total = self.first + self.last
+        total = np.where(total > 0, total, 1.0)
+        cubes = (
+            (3 * self.last + 6 * self.first) * self.last + 4 * self.first * self.first
+        ) * self.last + 2 * self.first * self.first * self.first
+        return self.length**2 * np.asarray(2 / 15 * cubes / (total * total))
 
     @property
     def second_moment(self) -> FloatArray:
         """Second moment about the start."""
-        return self.length**3 * _second_moment(self.first, self.last)
-
-
-def _sum_before(values: FloatArray) -> FloatArray:
-    """Return sums over the cells before each cell of a row, and over all cells."""
-    return np.asarray(np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0))))
+        total = self.first + self.last
+        total = np.where(total > 0, total, 1.0)
+        powers = (
+            ((15 * self.last + 45 * self.first) * self.last + 48 * self.first * self.first) * self.last
+            + 24 * self.first * self.first * self.first
+        ) * self.last + 8 * self.first * self.first * self.first * self.first
+        return self.length**3 * np.asarray(2 / 105 * powers / (total * total * total))
 
 
 def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:

@@ -147,16 +147,11 @@ def _topography(path: Path) -> Heights:
         raise _refused(path, READ, hint) from None
     except Exception as error:  # its forty readers raise any class on a damaged file
         raise _refused(path, "a file that can be read", str(error)[:200]) from error
-    metres = _metres(path, unit)
-    if heights.ndim == 1:
-        return Heights(metres * np.asarray(positions), None, metres * heights)
-    return Heights(metres * positions[0][:, 0], metres * positions[1][0, :], metres * heights)
-
-
-def _metres(path: Path, unit: str | None) -> float:
-    """Metres per unit of a file; without one nothing is guessed."""
     from SurfaceTopography.Support.UnitConversion import get_unit_conversion_factor, is_length_unit
 
     if unit is None or not is_length_unit(unit):
         raise InvalidInputError(f"unit of {path}", unit, "a unit of length", "or columns with units, in a .csv file")
-    return float(get_unit_conversion_factor(unit, "m"))
+    metres = float(get_unit_conversion_factor(unit, "m"))
+    if heights.ndim == 1:
+        return Heights(metres * np.asarray(positions), None, metres * heights)
+    return Heights(metres * positions[0][:, 0], metres * positions[1][0, :], metres * heights)

@@ -185,7 +185,12 @@ class Measured(Shape):
         if self.largest_spike is not None:
             object.__setattr__(self, "largest_spike", checks.positive("largest_spike", self.largest_spike, "metres"))
         if self.cutoff is not None:
-            checks.store(self, cutoff=_checked_cutoff(self.cutoff, x))
+            length = checks.positive("cutoff", self.cutoff, "metres")
+            least, most = FEWEST_IN_WAVE * float(np.diff(x).max()), float(x[-1] - x[0])
+            if not least <= length <= most:
+                allowed = f"from {FEWEST_IN_WAVE} steps between points, {least:g} m, to the measured length, {most:g} m"
+                raise InvalidInputError("cutoff", length, allowed, "units are SI")
+            checks.store(self, cutoff=length)
         refuse_outliers(x, drops, self.largest_spike)
         object.__setattr__(self, "positions", tuple(x.tolist()))
         object.__setattr__(self, "drops", tuple(drops.tolist()))
@@ -346,16 +351,6 @@ def _minmod(first: FloatArray, second: FloatArray) -> FloatArray:
     """Return the value closer to 0 where both signs agree; 0 elsewhere."""
     smaller = np.minimum(np.abs(first), np.abs(second))
     return np.asarray(np.where(first * second > 0, np.copysign(smaller, first), 0.0))
-
-
-def _checked_cutoff(cutoff: object, x: FloatArray) -> float:
-    """Return a cut-off that suits the positions, or raise."""
-    length = checks.positive("cutoff", cutoff, "metres")
-    least, most = FEWEST_IN_WAVE * float(np.diff(x).max()), float(x[-1] - x[0])
-    if not least <= length <= most:
-        allowed = f"from {FEWEST_IN_WAVE} steps between points, {least:g} m, to the measured length, {most:g} m"
-        raise InvalidInputError("cutoff", length, allowed, "units are SI")
-    return length
 
 
 def _read(path: Path, turn: int) -> tuple[FloatArray, FloatArray, str]:

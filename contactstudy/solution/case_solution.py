@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import logging
 import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Literal
 
 import numpy as np
 import xarray as xr
@@ -13,14 +16,166 @@ from contactstudy.analysis.peaks import label_largest_stress
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
+from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
-from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy
-from contactstudy.case.magnitudes import check_balanced, warn_doubtful
-from contactstudy.errors import InvalidInputError
+from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
+from contactstudy.case.magnitudes import check_balanced, check_on_its_length, inclination, warn_doubtful
+from contactstudy.case.motion import Sliding
+from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.refinement.refined_contact import (
+    ROUGH_TOLERANCE,
+    ROUGHLY,
+    ApproachContact,
+    approach_load_error,
+    contact_at_approach,
+    prescribed_load,
+    refine_contact,
+    refined_values,
+)
+from contactstudy.contact.refinement.refined_tractions import refine_tractions
+from contactstudy.contact.rolling.frictional_contact import (
+    FrictionalContact,
+    FrictionRequest,
+    frictional_contact,
+    with_tractions,
+)
+from contactstudy.contact.solve import contact_dataset
+from contactstudy.errors import InvalidInputError, WindowError
 from contactstudy.fields.largest import Largest
+from contactstudy.fields.loads import TopLoad, sliding
 from contactstudy.fields.positions import FieldPositions, Positions, default_columns, default_depths, field_positions
 from contactstudy.fields.stress import contact_stresses
-from contactstudy.solution.case_contact import CaseContact, contact_on_cells, refined_case_contact
+from contactstudy.kernels.load import Load
+from contactstudy.roughness import heights_on
+
+Cells = Literal["refined", "chosen", "given"]
+"""Origin of the cells: refined to an accuracy, chosen for a rough surface, or given by the caller."""
+
+
+@dataclass(frozen=True, eq=False)
+class CaseContact:
+    """Contact of a case."""
+
+    case: Case  # the case; a prescribed approach is replaced by the load
+    cells: Cells  # origin of the cells
+    contact: Contact  # the contact
+    tractions: FrictionalContact | None = None  # stick and slip; none in full sliding
+    values: xr.Dataset = field(default_factory=xr.Dataset)
+    """Values of refined columns with their errors; empty on other cells."""
+
+    @property
+    def grid(self) -> Grid:
+        """Cells of the contact."""
+        return self.contact.shape.grid
+
+    @property
+    def loads(self) -> Mapping[Load, TopLoad]:
+        """Loads on the body."""
+        if self.tractions is not None:
+            return self.tractions.loads
+        return sliding(self.contact.pressure, self.case.friction_on(self.grid.x))
+
+    def dataset(self) -> xr.Dataset:
+        """Labelled contact with its values."""
+        result = _labelled(self.case, self.contact)
+        if self.tractions is not None:
+            result = with_tractions(result, self.tractions)
+        return result.assign(self.values.data_vars).assign(
+            initial_gap=(("x", "y"), self.contact.shape.gap.values.copy()),
+            hertz_half_width=self.case.hertz_half_width,
+            hertz_max_pressure=self.case.hertz_max_pressure,
+        )
+
+
+def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseContact:
+    """Contact on columns that are refined to an accuracy."""
+    if case.approach is None:
+        solution = ApproachContact(case, refine_contact(case, accuracy, tolerance))
+    else:
+        solution = contact_at_approach(case, accuracy, tolerance)
+    loaded, normal = solution
+    contact, values, tractions = _checked(loaded, normal.contact), refined_values(normal), None
+    if not isinstance(case.motion, Sliding):
+        refined = refine_tractions(loaded, normal, accuracy)
+        tractions, values = refined.contact, refined_values(refined.normal).assign(refined.error_dataset().data_vars)
+        tractions.warn_unless_converged()
+        contact = tractions.contact
+    if case.approach is not None:
+        values["normal_load_error"] = approach_load_error(solution)
+    return CaseContact(_with_load(case, contact), "refined", contact, tractions, values)
+
+
+def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | None, tolerance: float) -> CaseContact:
+    """Contact on given cells, or on uniform ones chosen for the case."""
+    cells: Cells = "chosen" if grid is None else "given"
+    if grid is None:
+        # At an approach the smooth roller determines the cells; the rough one carries another load.
+        loaded = case if case.approach is None else contact_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
+        grid = choose_grid(loaded)
+    contact, tractions = _contact(case, grid, roughness, tolerance), None
+    if not isinstance(case.motion, Sliding):
+        request = FrictionRequest(
+            motion=case.motion,
+            friction=case.friction_on(grid.x),
+            middle=case.roller_middle,
+            coupled=case.coupled,
+        )
+        tractions = frictional_contact(contact.shape, contact.settings, request)
+        tractions.warn_unless_converged()
+        contact = tractions.contact
+    return CaseContact(_with_load(case, contact), cells, contact, tractions)
+
+
+def _with_load(case: Case, contact: Contact) -> Case:
+    """Case with a prescribed load in place of its approach."""
+    return case if case.approach is None else replace(case, load=contact.carried, approach=None)
+
+
+def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: float) -> Contact:
+    """Contact of a case on given cells."""
+    clearance = case.gap(grid)
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError(
+            "grid",
+            grid.shape,
+            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
+            "move the roller by end_distance, or take more cells along x",
+        )
+    gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
+    shape = Shape(
+        case.body,
+        grid,
+        ArrayKey(gap),
+        prescribed_load(case).checked(gap, grid),
+        case.counterbody,
+        case.coupled_friction,
+    )
+    try:
+        contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))
+    except WindowError as error:
+        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
+        if not case.tilt and case.load_position is None:
+            raise WindowError(advice) from error
+        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
+    return _checked(case, contact)
+
+
+def _checked(case: Case, contact: Contact) -> Contact:
+    """Contact; raises if the roller touches with its end only, warns unless it converged."""
+    shape = contact.shape
+    check_on_its_length(_with_load(case, contact), shape.grid, shape.gap.values, contact.pressure)
+    contact.warn_unless_converged()
+    return contact
+
+
+def _labelled(case: Case, contact: Contact) -> xr.Dataset:
+    """Labelled contact of a case; `tilt` includes the tilt of the case."""
+    grid = contact.shape.grid
+    result = contact_dataset(contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
+    result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
+    result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
+    return result
+
 
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
 
@@ -140,7 +295,11 @@ def solve(
     checks.instance("case", case, Case, "a Case")
     warn_doubtful(case)
     check_balanced(case)
-    _check_cells(grid, roughness, accuracy)
+    if grid is not None:
+        checks.instance("grid", grid, Grid, "a Grid")
+    if accuracy is not None and (grid is not None or roughness is not None):
+        reason = "a grid" if grid is not None else "roughness"
+        raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")
     refines = grid is None and roughness is None
     tolerance = checks.positive("tolerance", tolerance)
     settings: dict[str, object] = {"tolerance": tolerance, "rough": roughness is not None}
@@ -159,12 +318,3 @@ def solve(
     LOGGER.info("stresses: %.2f s", stages["stresses"])
     described = describe(result, "roller on an elastic body: contact and stresses")
     return with_provenance(described, case, {"cells": contact.cells, **settings}, stages)
-
-
-def _check_cells(grid: Grid | None, roughness: xr.DataArray | None, accuracy: float | None) -> None:
-    """Raise for settings without effect on given cells or rough surfaces."""
-    if grid is not None:
-        checks.instance("grid", grid, Grid, "a Grid")
-    if accuracy is not None and (grid is not None or roughness is not None):
-        reason = "a grid" if grid is not None else "roughness"
-        raise InvalidInputError("accuracy", accuracy, f"omitted with {reason}: the cells are not refined")

@@ -9,7 +9,7 @@ from benchmarks.finite_elements.rolling import flexibility, roll
 from benchmarks.finite_elements.superpose import PANELS, Resolution
 from contactstudy import FiniteLengthSpace, Material, Rolling
 from contactstudy.bodies import Counterbody
-from contactstudy.contact.rolling import leading_edge
+from contactstudy.contact.rolling import tractions
 from contactstudy.contact.solve import solve_contact
 from contactstudy.verification.problems import on_cells
 
@@ -26,8 +26,8 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     mesh = Resolution(order=4, growth=2.0, smallest=0.05, panels=(*PANELS, 200))
     expected = roll(flexibility(LENGTH, COLUMNS, POISSON, mesh), STRIPS, WINDOW, LOAD, FRICTION, PART, 2 * STRIPS)
     assert expected.change < 1e-3
-    monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: 0.5 - leading_edge.EDGE_OFFSET)
-    monkeypatch.setattr(leading_edge, "SLIDING_OFFSET", 0.5)
+    monkeypatch.setattr(tractions, "_part_inside", lambda pressure: 0.5 - tractions.EDGE_OFFSET)
+    monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
     motion = Rolling(force_y=PART * FRICTION * LOAD)

@@ -10,7 +10,7 @@ import pytest
 from contactstudy import fatigue
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.eigenstrain.layers import LayerInfluence
-from contactstudy.plasticity.passage import Passage, State
+from contactstudy.plasticity.passes import Passage, State
 
 YOUNG, POISSON = 1000.0, 0.3
 LAYERS = LayerInfluence(POISSON, YOUNG)

@@ -10,7 +10,7 @@ import xarray as xr
 
 from contactstudy import ConvergenceWarning, HalfSpace, InvalidInputError, QuarterSpace, fatigue
 from contactstudy.arrays.variables import STRESSES
-from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, passage, residual_stress
+from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, passes, residual_stress
 from contactstudy.plasticity.passes import STRAINS
 
 ROOT = np.sqrt(3.0)
@@ -153,7 +153,7 @@ def test_yield_stress_over_depth(passing, steel_half_space) -> None:
 
 
 def test_flow_without_convergence(passing, steel_half_space, monkeypatch) -> None:
-    monkeypatch.setattr(passage, "MOST_REPETITIONS", 2)
+    monkeypatch.setattr(passes, "MOST_REPETITIONS", 2)
     with pytest.warns(ConvergenceWarning, match="did not reach tolerance"):
         found = residual_stress(passing(), steel_half_space, perfectly_plastic(0.27), passes=1)
     assert not found["converged"].all()

@@ -28,7 +28,7 @@ from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import exact, free_ends, passes, suite, tribology
 from contactstudy.verification.check import Check
-from contactstudy.wear.steps import WornContact
+from contactstudy.wear.wear_in import WornContact
 
 MODULES = (exact, free_ends, convergence)
 Patch = pytest.MonkeyPatch

@@ -7,7 +7,7 @@ from contactstudy import Case, FiniteLengthSpace, Material, Roller, choose_grid
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Settings, Shape
 from contactstudy.contact.normal.prescribed import Prescribed
-from contactstudy.wear.steps import Stepper, WornContact
+from contactstudy.wear.wear_in import Stepper, WornContact
 
 
 @pytest.fixture

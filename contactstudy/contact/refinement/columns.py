@@ -72,17 +72,14 @@ def first_edges(shape: AxialShape) -> FloatArray:
     if shape.corners:
         edges = split(_with_edges(edges, shape.corners), np.zeros(0, dtype=bool))
     while True:
-        marks = _bent(shape, edges) & (np.diff(edges) > NARROWEST_BENT * shape.half_width)
+        heights = _heights(shape, edges)
+        lowest = _lowest(shape, edges, heights)
+        # Only where the shape is low enough to be pressed for certain.
+        marks = _curved(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth)
+        marks &= np.diff(edges) > NARROWEST_BENT * shape.half_width
         if not marks.any() or edges.size > MOST_COLUMNS:
             return edges
         edges = split(edges, marks)
-
-
-def _bent(shape: AxialShape, edges: FloatArray) -> BoolArray:
-    """Columns inside which the shape leaves its chord, where it is low enough to be pressed for certain."""
-    heights = _heights(shape, edges)
-    lowest = _lowest(shape, edges, heights)
-    return np.asarray(_curved(shape, edges, heights) & (lowest - lowest.min() < 3 * shape.depth))
 
 
 def _heights(shape: AxialShape, edges: FloatArray) -> FloatArray:

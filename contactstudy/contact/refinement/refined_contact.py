@@ -129,7 +129,11 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         cells = first.grid(rough.edges)
         reach = float(np.abs(cells.y[rows]).max()) + 0.5 * cells.dy
         # Coupled friction moves the contact along y.
-        window = _window_half_width(case, reach)
+        room = COUPLED_ROOM if case.coupled else ROOM
+        if not isinstance(case.motion, Sliding):
+            room = MOVED_ROOM
+        least = room * reach / case.hertz_half_width
+        window = float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
         peak_cells = rough.pressure[int(rough.pressure.max(axis=1).argmax())] > 0
         cells_y = _cell_number_y(float(peak_cells.sum()) * cells.dy / (2 * window), accuracy)
         solver = _ColumnSolver(case, window, cells_y)
@@ -172,15 +176,6 @@ def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axia
         if jump * case.modulus > CORNER_SHARE * refined.peaks[side] and refined.pressure[column].any():
             errors[side] = np.inf
     return replace(refined, peak_errors=(errors[0], errors[1]))
-
-
-def _window_half_width(case: Case, reach: float) -> float:
-    """Half-width of the window of a contact up to `reach`, metres, on a scale that similar cases share."""
-    room = COUPLED_ROOM if case.coupled else ROOM
-    if not isinstance(case.motion, Sliding):
-        room = MOVED_ROOM
-    least = room * reach / case.hertz_half_width
-    return float(case.hertz_half_width * WINDOW_STEP ** np.ceil(np.log(least) / np.log(WINDOW_STEP)))
 
 
 def _cell_number_y(part: float, accuracy: float) -> int:

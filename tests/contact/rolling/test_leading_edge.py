@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from contactstudy import Rolling
-from contactstudy.contact.rolling import leading_edge
-from contactstudy.contact.rolling.leading_edge import EDGE_OFFSET, TIED_OFFSET, RollingCells, neighbour_shares
+from contactstudy.contact.rolling import tractions
+from contactstudy.contact.rolling.tractions import EDGE_OFFSET, TIED_OFFSET, RollingCells, neighbour_shares
 from contactstudy.verification.tribology import material, rolling_ellipse
 
 
@@ -92,8 +92,8 @@ def test_published_lateral_creepage_and_spin_are_those_of_slip_taken_half_a_cell
     three numbers; both ways converge to 0.625 of full sliding's force (docs/explanation/rolling.md).
     """
     between_neighbours = 0.5 - EDGE_OFFSET
-    monkeypatch.setattr(leading_edge, "_part_inside", lambda pressure: between_neighbours)
-    monkeypatch.setattr(leading_edge, "SLIDING_OFFSET", 0.5)
+    monkeypatch.setattr(tractions, "_part_inside", lambda pressure: between_neighbours)
+    monkeypatch.setattr(tractions, "SLIDING_OFFSET", 0.5)
     load, friction, spin, ahead = 82e3, 0.3, -0.625, 0.334 * 0.4e-3
     motion = Rolling(lateral_creepage=-6.25e-4 + spin * ahead, spin=spin)
     found = rolling_ellipse(4e-3, 8e-3, load, material(82e9, 0.28), friction, motion, (42, 46))
@@ -132,7 +132,7 @@ def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> N
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
     found = RollingCells.of(pressure, pressure, None, np.array([True, True, False]))
     assert found.to.size == 0
-    assert (found.offset[found.unknown[0] < 2] == leading_edge.SLIDING_OFFSET).all()
+    assert (found.offset[found.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
     assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
 
 

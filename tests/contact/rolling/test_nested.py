@@ -7,11 +7,11 @@ import pytest
 
 from contactstudy import Grid
 from contactstudy.checks import FloatArray
-from contactstudy.contact.rolling.leading_edge import RollingCells
 from contactstudy.contact.rolling.surfaces import Tractions
 from contactstudy.contact.rolling.tractions import (
     LARGEST_STICKING,
     CoarseTractions,
+    RollingCells,
     cell_means,
     guess_from_coarse,
     guess_from_last,
