@@ -25,13 +25,6 @@ def parse_line(text: str) -> Line:
     return start, end
 
 
-def _select(dataset: xr.Dataset, selections: Sequence[str]) -> xr.Dataset:
-    """Select the case of a study with these values of its swept parameters, each given as ``name=value``."""
-    for name, value in selection_of(selections).items():
-        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
-    return dataset
-
-
 def _open(path: Path) -> xr.Dataset:
     """Open the result in a netCDF file, or the study in a folder."""
     if path.is_dir():
@@ -58,7 +51,9 @@ def export(
     out: Path | None = None,
 ) -> Path | None:
     """Write a field or a line of a case as CSV or VTK, or a case or a study for MATLAB; None if ``-`` prints it."""
-    dataset = _select(_open(path), select)
+    dataset = _open(path)
+    for name, value in selection_of(select).items():
+        dataset = dataset.isel({name: place_of(dataset, name, value, "select")})
     swept = [str(dim) for dim in dataset["status"].dims if dataset.sizes[dim] > 1] if "status" in dataset else []
     if line is not None and kind != "csv":
         raise InvalidInputError("line", line, f"left out for {kind.upper()}", "write the line as CSV")

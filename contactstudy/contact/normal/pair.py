@@ -13,7 +13,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
 
@@ -69,16 +69,14 @@ class PairOperator:
         directions: tuple[Load, ...] = (Load.NORMAL,),
     ) -> PairOperator:
         """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
-        first = surface_operator(OperatorRequest(body, grid, loads, directions=directions))
+        first = surface_operator(body, grid, loads, directions=directions)
         shares = Shares.of(counterbody, grid)
         # Cells from labels may miss the counterbody's own by rounding; like bodies share one operator all the same.
         alike = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if shares is None and alike and counterbody.start == 0:
             return cls(first, first, None)
         own = counterbody.own_grid(grid)
-        return cls(
-            first, surface_operator(OperatorRequest(counterbody.body, own, loads, directions=directions)), shares
-        )
+        return cls(first, surface_operator(counterbody.body, own, loads, directions=directions), shares)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
