@@ -86,10 +86,14 @@ class PairOperator:
         """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
         if self.counterbody is self.body and self._shares is None:
             return self._twice(loads, directions)
-        reaction = {load: _opposed(load, self._to_counterbody(cells)) for load, cells in loads.items()}
+        shares = self._shares
+        reaction = {
+            load: _opposed(load, cells if shares is None else shares.to @ cells) for load, cells in loads.items()
+        }
         relative = self.body.displaced(loads, directions)
         for direction, other in self.counterbody.displaced(reaction, directions).items():
-            relative[direction] = relative[direction] + _opposed(direction, self._to_body(other))
+            moved = other if shares is None else shares.back @ other
+            relative[direction] = relative[direction] + _opposed(direction, moved)
         return relative
 
     def _twice(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
@@ -102,12 +106,6 @@ class PairOperator:
                 for direction, each in self.body.displaced(own, asked).items():
                     relative[direction] = 2 * each
         return relative
-
-    def _to_counterbody(self, load: FloatArray) -> FloatArray:
-        return load if self._shares is None else np.asarray(self._shares.to @ load)
-
-    def _to_body(self, displacement: FloatArray) -> FloatArray:
-        return displacement if self._shares is None else np.asarray(self._shares.back @ displacement)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that closes the gap."""
