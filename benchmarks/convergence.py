@@ -24,7 +24,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.contact import ContactSettings
 from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
+from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_stress
@@ -227,7 +227,7 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     stress = end_stress(
         EndProblem(8.0, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, resolution), [Points(*points)]
     )[0]
-    operator = SurfaceOperator.of(OperatorRequest(body, grid, resolution=resolution))
+    operator = SurfaceOperator.of(body, grid, resolution=resolution)
     return np.stack([stress[load] for load in stress]), operator({Load.NORMAL: pressure})
 
 

@@ -1,7 +1,7 @@
 """One cache for the process, bounded in bytes.
 
-The cases of a sweep share operators, kernels and fields through it. A value depends only on its request, the
-single argument of its function, so results are bit for bit the same with and without the cache.
+The cases of a sweep share operators, kernels and fields through it. A value depends only on the
+arguments of its function, so results are bit for bit the same with and without the cache.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import wraps
 from threading import RLock
-from typing import Any, TypeVar
+from typing import Any, ParamSpec, TypeVar
 
 import numpy as np
 from cachetools import LRUCache
@@ -20,7 +20,7 @@ from contactstudy import checks
 from contactstudy.checks import FloatArray
 
 LIMIT = 3 * 2**29  # Default bound of all cached values, bytes. Speed
-Request = TypeVar("Request", bound=Hashable)
+Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
 
@@ -129,25 +129,26 @@ def limit(nbytes: int) -> None:
 
 def cached(
     kind: str, nbytes: Callable[[Any], int]
-) -> Callable[[Callable[[Request], Value]], Callable[[Request], Value]]:
-    """Cache the values of a function of one hashable request, the complete key; `nbytes` is the size of a value.
+) -> Callable[[Callable[Arguments, Value]], Callable[Arguments, Value]]:
+    """Cache the values of a function of hashable positional arguments, the key; `nbytes` is the size of a value.
 
     Values are shared by all threads; their arrays become read-only.
     """
 
-    def decorator(compute: Callable[[Request], Value]) -> Callable[[Request], Value]:
+    def decorator(compute: Callable[Arguments, Value]) -> Callable[Arguments, Value]:
         counts = _counts.setdefault(kind, [0, 0])
 
         @wraps(compute)
-        def look_up(request: Request) -> Value:
-            key = (kind, request)
+        def look_up(*arguments: Arguments.args, **named: Arguments.kwargs) -> Value:
+            assert not named, "the key of a cached value is positional"
+            key = (kind, arguments)
             with _lock:
                 entry = _store.get(key)
                 counts[0 if entry else 1] += 1
             if entry:
                 value: Value = entry.value
                 return value
-            value = compute(request)
+            value = compute(*arguments, **named)
             _protect(value)
             entry = _Entry(value, nbytes(value))
             with _lock:
@@ -174,7 +175,7 @@ def _protect(value: object) -> None:
 
 
 class ArrayKey:
-    """An array compared by its values, as a part of a request; `values` is a read-only copy."""
+    """An array compared by its values, as an argument of a cached function; `values` is a read-only copy."""
 
     def __init__(self, values: FloatArray) -> None:
         self.values: FloatArray = np.array(values)

@@ -21,7 +21,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.equivalent import overlapping_operators
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.operators import OverlappingOperators
@@ -150,8 +150,8 @@ class _Displacement(LinearOperator):  # type: ignore[misc]
 
     def __init__(self, body: Body, grid: Grid, load: Load, direction: Load) -> None:
         self._grid, self._load, self._direction = grid, load, direction
-        self._forward = surface_operator(OperatorRequest(body, grid, (load,), directions=(direction,)))
-        self._backward = surface_operator(OperatorRequest(body, grid, (direction,), directions=(load,)))
+        self._forward = surface_operator(body, grid, (load,), directions=(direction,))
+        self._backward = surface_operator(body, grid, (direction,), directions=(load,))
         # On columns the displacement is a mean: forces on the cells and means are conjugate.
         self._weights = grid.weights if grid.observes_means else np.ones((1, 1))
         super().__init__(np.float64, (grid.cells_x * grid.cells_y,) * 2)

@@ -15,7 +15,7 @@ from benchmarks.performance.problems import HALF_WIDTH, STEEL, roller
 from benchmarks.performance.timing import Report, Row, medians, nudge, show
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, stress_field
 from contactstudy.bodies import Body
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
 LONG_CELLS = (250, 500, 1000)
@@ -26,14 +26,14 @@ def building(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and the time of a second case."""
     grid = Grid((0.0, 8 * HALF_WIDTH), (-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), 128, 64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
-    surface_operator(OperatorRequest(body, grid))
+    surface_operator(body, grid)
     works: dict[str, Callable[[], object]] = {
-        "cold": lambda: SurfaceOperator.of(OperatorRequest(body, grid)),
-        "friction": lambda: SurfaceOperator.of(OperatorRequest(body, grid, (Load.NORMAL, Load.ALONG_Y))),
-        "kept": lambda: surface_operator(OperatorRequest(body, grid)),
+        "cold": lambda: SurfaceOperator.of(body, grid),
+        "friction": lambda: SurfaceOperator.of(body, grid, (Load.NORMAL, Load.ALONG_Y)),
+        "kept": lambda: surface_operator(body, grid),
     }
     seconds = medians(works, repeats, warm_up=False)
-    megabytes = surface_operator(OperatorRequest(body, grid)).nbytes / 1e6
+    megabytes = surface_operator(body, grid).nbytes / 1e6
     yield Row(
         "building the operator, 128 x 64, L = 8a",
         show(seconds["cold"]),
@@ -97,7 +97,7 @@ def long_rollers(repeats: int, report: Report) -> Iterator[Row]:
     for cells in LONG_CELLS:
         problem = roller((cells, 48), cells / 10, free_ends=True)
         grid = Grid.from_centres(problem.labelled()["x"].values, problem.labelled()["y"].values)
-        make = partial(SurfaceOperator.of, OperatorRequest(problem.body, grid))
+        make = partial(SurfaceOperator.of, problem.body, grid)
         build[cells] = medians({"build": make}, min(repeats, 3), warm_up=False)["build"]
         contact[cells] = medians({"contact": partial(contact_of, problem)}, repeats)["contact"]
         counts[cells] = int(contact_of(problem)["iterations"])

@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy.analysis import largest_sample, peak
 from contactstudy.analysis.axes import cell_size
+from contactstudy.analysis.contact import contact_numbers
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, labels, require
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -22,14 +23,16 @@ COMMENTS = {
 }
 
 
-def contact_numbers(dataset: xr.Dataset) -> dict[str, float]:
+def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
     """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
     require(dataset, "pressure", "hertz_max_pressure")
     variables = dataset.variables
     pressure = variables["pressure"].transpose("x", "y").values
     x, y, scale = variables["x"].values, variables["y"].values, float(variables["hertz_max_pressure"].values)
     pressed = pressure > 0
-    columns, rows = (np.flatnonzero(pressed.any(axis=axis)) for axis in (1, 0))
+    facing = np.asarray(pressed.any(axis=1))
+    columns = np.flatnonzero(facing)
+    numbers = contact_numbers(pressure, facing, x, y, *(_widths(dataset, axis) for axis in "xy"))
     at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
     settled = [variables.get(f"end_pressure_{end}") for end in ("first", "last")]
@@ -43,8 +46,8 @@ def contact_numbers(dataset: xr.Dataset) -> dict[str, float]:
         "end_pressure_over_p0_first": first,
         "end_pressure_over_p0_last": last,
         "end_pressure_over_p0": 0.5 * (first + last),
-        "contact_length": _extent(x, _widths(dataset, "x"), columns),
-        "contact_width": _extent(y, _widths(dataset, "y"), rows),
+        "contact_length": float(numbers.contact_length),
+        "contact_width": float(numbers.contact_width),
     }
 
 
@@ -57,14 +60,6 @@ def _widths(dataset: xr.Dataset, axis: str) -> Array:
     positions = dataset.variables[axis].values
     uniform = (positions[-1] - positions[0]) / (size - 1) if size > 1 else cell_size(dataset["pressure"], axis).item()
     return np.full(size, uniform)
-
-
-def _extent(positions: Array, widths: Array, pressed: Array) -> float:
-    """Distance between the outer edges of the first and the last pressed cell."""
-    if not pressed.size:
-        return 0.0
-    low, high = positions[pressed] - 0.5 * widths[pressed], positions[pressed] + 0.5 * widths[pressed]
-    return float(high.max() - low.min())
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -87,7 +82,7 @@ class Number(NamedTuple):
 
 def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
     """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
-    numbers = {name: Number(value, _attributes(name)) for name, value in contact_numbers(dataset).items()}
+    numbers = {name: Number(value, _attributes(name)) for name, value in pressure_numbers(dataset).items()}
     for source in (stress_summary(dataset), dataset):
         for name, variable in source.variables.items():
             if variable.ndim == 0 and name not in source.coords:

@@ -9,15 +9,13 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import UNIFORM, Loads, end_cells, prescribed_loads, superposed
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.kernels.field import half_space_displacement
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_displacement
-from contactstudy.overlapping.problem import EndProblem, finest_cell
-from contactstudy.overlapping.quadrature import Resolution
 
 COMPONENTS = ("u_x", "u_y", "u_z")
 
@@ -128,18 +126,7 @@ def _part_displacement(
         for load in loads
     }
     if part.freed and cells.any():
-        length, mirrored_once = part.freed
-        distribution = end_cells(cells, shape, grid, length)
-        problem = EndProblem(
-            length,
-            material.poisson,
-            distribution.cells,
-            loads,
-            distribution.grid,
-            Resolution(),
-            mirrored_once,
-            finest_cell(grid),
-        )
+        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads)
         for load, from_ends in end_displacement(problem, *points, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

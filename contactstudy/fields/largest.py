@@ -333,20 +333,15 @@ def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[
         next_top = _interpolated(points, stress(points))
         change = abs(next_top.largest.value - top.largest.value)
         if next_top.largest.value < top.largest.value and not inside:
-            # The stress falls beyond the edge.
-            return _confirmed(top, change, stress)
+            # The stress falls beyond the edge, where the polynomials may overshoot: the stress itself.
+            sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
+            corners = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
+            largest = _sampled(corners, stress(corners)).largest
+            return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
         top = next_top
     if top.largest.position[2] <= shallowest * (1 + 1e-9):
         return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
     return top.largest
-
-
-def _confirmed(top: _Maximum, change: float, stress: Callable[[Points], FloatArray]) -> Largest:
-    """Return the stress itself at the maximum of the polynomials, which may overshoot beyond the last points."""
-    sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
-    points = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
-    largest = _sampled(points, stress(points)).largest
-    return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
 
 
 def _sampled(points: Points, stresses: FloatArray, selection: BoolArray | None = None) -> _Maximum:

@@ -12,13 +12,15 @@ from contactstudy import checks
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.grid import SPACING_TOLERANCE, Grid
 from contactstudy.arrays.variables import in_si
-from contactstudy.bodies.models import Body
+from contactstudy.bodies.models import Body, FreedEnds
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.positions import Labels
 from contactstudy.kernels.fine_cells import FineCells
 from contactstudy.kernels.load import Load
+from contactstudy.overlapping.problem import EndProblem, finest_cell
+from contactstudy.overlapping.quadrature import Resolution
 
 Result = TypeVar("Result")
 
@@ -71,18 +73,14 @@ def superposed(
     return totals
 
 
-class EndCells(NamedTuple):
-    """Load and cells for the end correction, see `end_cells`."""
-
-    cells: FloatArray
-    grid: Grid
-
-
-def end_cells(cells: FloatArray, shape: FloatArray | None, grid: Grid, length: float) -> EndCells:
-    """Load for the correction of the ends of a body from 0 to `length`, on the fine cells."""
-    if shape is None:
-        return EndCells(cells, grid)
-    return EndCells(*FineCells(cells, shape, grid, (0.0, length)).end_load())
+def end_problem(
+    freed: FreedEnds, poisson: float, cells: FloatArray, shape: FloatArray | None, grid: Grid, loads: tuple[Load, ...]
+) -> EndProblem:
+    """Problem of the ends that a load on cells leaves, on the fine cells of a `shape` inside them."""
+    finest = finest_cell(grid)
+    if shape is not None:
+        cells, grid = FineCells(cells, shape, grid, (0.0, freed.length)).end_load()
+    return EndProblem(freed.length, poisson, cells, loads, grid, Resolution(), freed.mirrored_once, finest)
 
 
 UNIFORM = "uniform"  # value of `inside_cells` for loads that are uniform in each cell

@@ -15,14 +15,14 @@ from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.fields.largest import Largest, largest_stress, largest_with_points, place_search
-from contactstudy.fields.loads import UNIFORM, Loads, end_cells, prescribed_loads, superposed
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed
 from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.kernels.field import half_space_stress
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import Points, UnitFields, unit_fields
 from contactstudy.overlapping.harmonics import STRESS, end_stress
-from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem, finest_cell
+from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import von_mises
 
@@ -126,76 +126,62 @@ def stresses_at(
     shape_cells = None if shape is None else ArrayKey(shape)
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
-        return _unit_stress(_StressRequest(body, grid, directions, ArrayKey(cells), keys, shape_cells))
+        return _unit_stress(body, grid, directions, ArrayKey(cells), keys, shape_cells)
 
     return superposed(loads, unit_fields)
 
 
-class _StressRequest(NamedTuple):
-    """Distribution and directions of a load, and sets of points."""
-
-    body: Body
-    grid: Grid
-    loads: tuple[Load, ...]
-    cells: ArrayKey
-    point_sets: tuple[tuple[ArrayKey, ...], ...]
-    shape: ArrayKey | None
-
-
 @cached("stress fields", lambda fields: sum(field.nbytes for by_points in fields.values() for field in by_points))
-def _unit_stress(request: _StressRequest) -> dict[Load, list[FloatArray]]:
+def _unit_stress(
+    body: Body,
+    grid: Grid,
+    loads: tuple[Load, ...],
+    cells: ArrayKey,
+    point_sets: tuple[tuple[ArrayKey, ...], ...],
+    shape: ArrayKey | None,
+) -> dict[Load, list[FloatArray]]:
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
     fields: dict[Load, list[FloatArray]] = {}
-    for part in request.body.parts:
-        for load, added in _part_stress(part, request).items():
+    for part in body.parts:
+        for load, added in _part_stress(part, body.material.poisson, grid, loads, cells, point_sets, shape).items():
             fields[load] = [a + b for a, b in zip(fields[load], added, strict=True)] if load in fields else added
     return fields
 
 
-class _MirroredRequest(NamedTuple):
-    """Load in the half-space with its mirror images, and points."""
-
-    load: Load
-    poisson: float
-    extent: tuple[float, float]
-    grid: Grid
-    cells: ArrayKey
-    points: tuple[ArrayKey, ...]
-    shape: ArrayKey | None
-
-
 @cached("half-space stresses", lambda field: field.nbytes)
-def _mirrored_stress(request: _MirroredRequest) -> FloatArray:
+def _mirrored_stress(
+    load: Load,
+    poisson: float,
+    extent: tuple[float, float],
+    grid: Grid,
+    cells: ArrayKey,
+    points: tuple[ArrayKey, ...],
+    shape: ArrayKey | None,
+) -> FloatArray:
     """Stresses (6, x, y, z) in the half-space; the stresses under a pressure are shared by all frictions."""
-    load, poisson, extent, grid, cells, points, shape = request
     axes = [axis.values for axis in points]
     values = None if shape is None else shape.values
     return half_space_stress(load, cells.values, poisson, grid, *axes, extent=extent, shape=values)
 
 
-def _part_stress(part: Part, request: _StressRequest) -> dict[Load, list[FloatArray]]:
+def _part_stress(
+    part: Part,
+    poisson: float,
+    grid: Grid,
+    loads: tuple[Load, ...],
+    cells: ArrayKey,
+    keys: tuple[tuple[ArrayKey, ...], ...],
+    shape: ArrayKey | None,
+) -> dict[Load, list[FloatArray]]:
     """Stresses of one part of a body, times its weight."""
-    body, grid, loads, cells, keys, shape = request
     point_sets = [Points(*(axis.values for axis in key)) for key in keys]
-    poisson = body.material.poisson
     mirrored = {
-        load: [_mirrored_stress(_MirroredRequest(load, poisson, part.extent, grid, cells, key, shape)) for key in keys]
-        for load in loads
+        load: [_mirrored_stress(load, poisson, part.extent, grid, cells, key, shape) for key in keys] for load in loads
     }
     fields: dict[Load, list[FloatArray]] = {load: [] for load in loads}
     if part.freed and cells.values.any():
-        length, mirrored_once = part.freed
-        distribution = end_cells(cells.values, None if shape is None else shape.values, grid, length)
-        problem = EndProblem(
-            length,
-            poisson,
-            distribution.cells,
-            loads,
-            distribution.grid,
-            Resolution(),
-            mirrored_once,
-            finest_cell(grid),
-        )
+        shape_cells = None if shape is None else shape.values
+        problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads)
         reference = reference_distance(part.extent)
         for number, (points, by_load) in enumerate(
             zip(point_sets, end_stress(problem, point_sets, reference), strict=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
-from typing import NamedTuple, overload
+from typing import overload
 
 import numpy as np
 import xarray as xr
@@ -23,20 +23,8 @@ from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
 
-
-class OperatorRequest(NamedTuple):
-    """Body, cells and directions of a surface operator."""
-
-    body: Body
-    grid: Grid  # cells; on a body with ends they begin at ``x = 0`` and span it
-    loads: tuple[Load, ...] = (Load.NORMAL,)  # directions of the loads, the pressure first
-    resolution: Resolution = Resolution()  # quadrature settings of the free ends' part
-    directions: tuple[Load, ...] = (Load.NORMAL,)  # directions of the displacements
-
-    @property
-    def responses(self) -> tuple[Response, ...]:
-        """All pairs of displacement and load."""
-        return tuple(Response(direction, load) for direction in self.directions for load in self.loads)
+NORMAL = (Load.NORMAL,)  # directions of a contact without friction
+RESOLUTION = Resolution()  # quadrature settings of the free ends' part
 
 
 class SurfaceOperator:
@@ -46,15 +34,20 @@ class SurfaceOperator:
         self.body, self._parts = body, parts
 
     @classmethod
-    def of(cls, request: OperatorRequest) -> SurfaceOperator:
-        """Build the operator."""
-        body, grid = request.body, request.grid
+    def of(
+        cls,
+        body: Body,
+        grid: Grid,
+        loads: tuple[Load, ...] = NORMAL,
+        directions: tuple[Load, ...] = NORMAL,
+        resolution: Resolution = RESOLUTION,
+    ) -> SurfaceOperator:
+        """Build the operator from loads, the pressure first, to displacements in some directions."""
+        # Between ends the cells begin at ``x = 0`` and span the body.
         body.check_span(grid)
         kind = ColumnsOperator if grid.observes_means else PartOperator
-        responses = request.responses
-        parts = [
-            (part.weight, kind.of(body.material, part, grid, responses, request.resolution)) for part in body.parts
-        ]
+        responses = tuple(Response(direction, load) for direction in directions for load in loads)
+        parts = [(part.weight, kind.of(body.material, part, grid, responses, resolution)) for part in body.parts]
         return cls(body, parts)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
@@ -98,15 +91,17 @@ class SurfaceOperator:
         return sum(part.nbytes for _, part in self._parts)
 
 
-def surface_operator(request: OperatorRequest) -> SurfaceOperator:
-    """Return the operator for a request; all cases with the same one share it, whatever depth they refer to."""
-    return _operator(request._replace(body=replace(request.body, reference_depth=None)))
+def surface_operator(
+    body: Body, grid: Grid, loads: tuple[Load, ...] = NORMAL, directions: tuple[Load, ...] = NORMAL
+) -> SurfaceOperator:
+    """Return the operator of a body; all cases with the same one share it, whatever depth they refer to."""
+    return _cached_operator(replace(body, reference_depth=None), grid, loads, directions)
 
 
 @cached("surface operators", lambda operator: operator.nbytes)
-def _operator(request: OperatorRequest) -> SurfaceOperator:
+def _cached_operator(body: Body, grid: Grid, loads: tuple[Load, ...], directions: tuple[Load, ...]) -> SurfaceOperator:
     """Build an operator, or return the cached one."""
-    return SurfaceOperator.of(request)
+    return SurfaceOperator.of(body, grid, loads, directions)
 
 
 @overload
@@ -188,7 +183,7 @@ def surface_displacement(
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     directions = (Load.NORMAL,) if components is None else _directions(components)
     grid, loads = prescribed.grid, prescribed.loads
-    operator = surface_operator(OperatorRequest(body, grid, tuple(loads), directions=directions))
+    operator = surface_operator(body, grid, tuple(loads), directions=directions)
     with one_blas_thread():
         displaced = operator.displaced({load: top.values for load, top in loads.items()}, directions)
     attributes = displacement_reference(operator.reference)

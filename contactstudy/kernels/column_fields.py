@@ -112,17 +112,6 @@ def _odd_count(ratio: float) -> int:
     return 2 * max(0, int(np.ceil(0.5 * (ratio - 1) - OFFSET_TOLERANCE))) + 1
 
 
-class SplitRequest(NamedTuple):
-    """Load and points that determine the columns."""
-
-    cells: ArrayKey  # load on the cells of `grid`
-    shape: ArrayKey | None  # pressure that determines the distribution inside the cells; None for uniform cells
-    grid: Grid
-    extent: tuple[float, float]  # positions of the mirrors, metres; infinite for none
-    image: int  # sign of the load's mirror image
-    axes: tuple[ArrayKey, ArrayKey, ArrayKey]  # positions along x, y and z
-
-
 class SplitColumns(NamedTuple):
     """Columns around each point, and merged columns far away."""
 
@@ -148,9 +137,15 @@ class SplitColumns(NamedTuple):
 
 
 @cached("split columns", lambda columns: columns.nbytes)
-def split_columns(request: SplitRequest) -> SplitColumns:
-    """Columns around the points of a request."""
-    cells, shape, grid, extent, image, axes = request
+def split_columns(
+    cells: ArrayKey,
+    shape: ArrayKey | None,
+    grid: Grid,
+    extent: tuple[float, float],
+    image: int,
+    axes: tuple[ArrayKey, ArrayKey, ArrayKey],
+) -> SplitColumns:
+    """Columns around points (x, y, z) under loads on cells, of a `shape` inside them, with mirrors at an extent."""
     x, y, z = (axis.values for axis in axes)
     reach = FAR * (grid.y_range[1] - grid.y_range[0])
     depths, to_z = interpolation_points(z, reach, FAR_ERROR)
@@ -319,7 +314,7 @@ def columns_field(
     """Field in the half-space under a load and all its mirror images, as `half_space_field`."""
     axes = (ArrayKey(x), ArrayKey(y), ArrayKey(z))
     key = None if shape is None else ArrayKey(shape)
-    columns = split_columns(SplitRequest(ArrayKey(load), key, grid, extent, influence.load.sign_x, axes))
+    columns = split_columns(ArrayKey(load), key, grid, extent, influence.load.sign_x, axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     far_field = np.zeros((influence.components, x.size, y.size, columns.depths))
     for i, (position, (near, sides)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):

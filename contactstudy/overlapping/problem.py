@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 
@@ -41,20 +40,7 @@ THINNEST = 0.004
 third of it a tenth."""
 
 
-class _EquationSetRequest(NamedTuple):
-    """Request of an equation set."""
-
-    modes: AxialModes
-    lateral: float
-    poisson: float
-    shortest: float
-    resolution: Resolution
-
-
-@cached("equation sets", lambda system: system.nbytes)
-def _equation_set(request: _EquationSetRequest) -> EquationSet:
-    """Equation set of some axial wavenumbers at one wavenumber along y."""
-    return EquationSet.build(*request)
+_equation_set = cached("equation sets", lambda system: system.nbytes)(EquationSet.build)
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,7 +134,7 @@ class EndProblem:
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
         """Equation set of some axial modes at the wavenumber `lateral`; the cache holds it."""
-        return _equation_set(_EquationSetRequest(modes, lateral, self.poisson, shortest, self.resolution))
+        return _equation_set(modes, lateral, self.poisson, shortest, self.resolution)
 
     def auxiliary_loads(
         self, view: View, lateral: float, number: int, shortest: float

@@ -4,7 +4,7 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.analysis.summary import contact_numbers, stress_summary, summarize
+from contactstudy.analysis.summary import pressure_numbers, stress_summary, summarize
 from contactstudy.errors import InvalidInputError
 
 
@@ -18,30 +18,30 @@ VALUES = [[0, 0, 0], [0, 1, 0], [2, 3, 2], [0, 4, 1], [0, 0, 0]]
 
 
 def test_peak_and_its_position():
-    result = contact_numbers(contact(VALUES))
+    result = pressure_numbers(contact(VALUES))
     assert [result[name] for name in ("peak_pressure", "peak_pressure_x", "peak_pressure_y")] == [4, 3.5, 0]
 
 
 def test_ends_are_the_first_and_last_loaded_cells():
-    result = contact_numbers(contact(VALUES))
+    result = pressure_numbers(contact(VALUES))
     assert (result["end_pressure_over_p0_first"], result["end_pressure_over_p0_last"]) == (0.5, 2.0)
     assert result["end_pressure_over_p0"] == 1.25
 
 
 def test_extent_in_whole_cells():
-    result = contact_numbers(contact(VALUES))
+    result = pressure_numbers(contact(VALUES))
     assert (result["contact_length"], result["contact_width"]) == (3, 3)
 
 
 def test_no_contact_at_all():
-    result = contact_numbers(contact(np.zeros((3, 2))))
+    result = pressure_numbers(contact(np.zeros((3, 2))))
     assert np.isnan(result["end_pressure_over_p0"])
     assert result["contact_length"] == 0
 
 
 @given(st.floats(0.1, 1e9))
 def test_ratios_do_not_depend_on_the_unit(scale):
-    one, other = contact_numbers(contact(VALUES)), contact_numbers(contact(np.multiply(VALUES, scale), 2 * scale))
+    one, other = pressure_numbers(contact(VALUES)), pressure_numbers(contact(np.multiply(VALUES, scale), 2 * scale))
     assert other["end_pressure_over_p0"] == pytest.approx(one["end_pressure_over_p0"])
 
 

@@ -15,7 +15,7 @@ from contactstudy import (
     QuarterSpace,
     surface_displacement,
 )
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
 
@@ -30,7 +30,7 @@ def test_hertz_pressure_sinks_the_inside_as_a_paraboloid(on_cells, half_space: H
 @pytest.mark.parametrize("tangential", [False, True])
 def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, tangential: bool) -> None:
     grid = Grid((0.0, 8.0), (-2.0, 2.0), 24, 16)
-    operator = SurfaceOperator.of(OperatorRequest(short_body, grid, (Load.NORMAL, Load.ALONG_Y)))
+    operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first, second = np.random.default_rng(1).random((2, 24, 16))
     if tangential:
         there = operator({Load.ALONG_Y: first})
@@ -92,7 +92,7 @@ def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, u
     random = np.random.default_rng(3)
     for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
         grids = Grid((0.0, 8.0), (-3.0, 3.0), *cells), Grid((0.0, 8.0), (-3.0, 3.0), cells[0] // 2, cells[1] // 2)
-        operator, built = (surface_operator(OperatorRequest(body, grid)) for grid in grids)
+        operator, built = (surface_operator(body, grid) for grid in grids)
         pressure = random.random((cells[0] // 2, cells[1] // 2))
         expected = built({Load.NORMAL: pressure})
         assert np.abs(operator.coarse({Load.NORMAL: pressure}) - expected).max() < 5e-3 * np.ptp(expected)

@@ -21,7 +21,7 @@ from contactstudy import (
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.pair import PairOperator
-from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 MATERIAL = Material(1.0, 0.3)
@@ -58,7 +58,7 @@ def acting(load: Load, values: xr.DataArray) -> dict[str, xr.DataArray]:
 @bodies
 @pytest.mark.parametrize("grid", GRIDS.values(), ids=GRIDS)
 def test_operator_is_symmetric_and_positive(body: Body, grid: Grid) -> None:
-    operator = surface_operator(OperatorRequest(body, grid, ALL, directions=ALL))
+    operator = surface_operator(body, grid, ALL, directions=ALL)
     random = np.random.default_rng(0)
     first, second = ({load: random.standard_normal(grid.shape) for load in ALL} for _ in range(2))
 
@@ -178,7 +178,7 @@ def test_equal_bodies_do_not_couple_pressure_and_traction() -> None:
     for direction in (Load.ALONG_X, Load.ALONG_Y):
         assert np.abs(moved[direction]).max() < 1e-12 * np.abs(moved[Load.NORMAL]).max()
     dragged = pair.displaced({Load.ALONG_X: pressure}, ALL)
-    own = surface_operator(OperatorRequest(body, grid, ALL, directions=ALL)).displaced({Load.ALONG_X: pressure}, ALL)
+    own = surface_operator(body, grid, ALL, directions=ALL).displaced({Load.ALONG_X: pressure}, ALL)
     assert dragged[Load.ALONG_X] == pytest.approx(2 * own[Load.ALONG_X], rel=1e-12)
     assert np.abs(dragged[Load.NORMAL]).max() < 1e-12 * np.abs(own[Load.ALONG_X]).max()
 

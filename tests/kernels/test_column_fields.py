@@ -12,7 +12,6 @@ from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (
     AlongY,
-    SplitRequest,
     _Surroundings,
     _surroundings,
     columns_field,
@@ -434,7 +433,7 @@ def test_columns_do_not_depend_on_the_unit(*, uniform: bool) -> None:
         cells = fine(unit=unit)
         x, y, z = np.array([0.3, 1.3, 2.9]), np.array([-0.1, 0.0, 0.3]), np.linspace(0.01, 6.0, 30)
         axes, load = (ArrayKey(unit * x), ArrayKey(unit * y), ArrayKey(unit * z)), ArrayKey(cells.load)
-        found.append(split_columns(SplitRequest(load, None if uniform else load, cells.grid, cells.extent, 1, axes)))
+        found.append(split_columns(load, None if uniform else load, cells.grid, cells.extent, 1, axes))
     plain, other = found
     assert plain.depths == other.depths
     assert len(plain.layers) == len(other.layers)

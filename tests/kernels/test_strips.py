@@ -14,7 +14,7 @@ from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSp
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.fields.part import ColumnsOperator
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator
+from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load, Response
 from contactstudy.kernels.strips import (
     FAR_COLUMNS,
@@ -245,12 +245,12 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
     pressure = np.random.default_rng(0).random(coarse.shape)
     sinks_only = getattr(body, "model", "") == "single-mirror"
     loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
-    request = OperatorRequest(body, fine, loads, directions=directions)
-    own = SurfaceOperator.of(request)
+    responses = tuple(Response(direction, load) for direction in directions for load in loads)
+    own = SurfaceOperator.of(body, fine, loads, directions)
     columns = SurfaceOperator(
         body,
         [
-            (part.weight, ColumnsOperator.of(body.material, part, coarse, request.responses, Resolution()))
+            (part.weight, ColumnsOperator.of(body.material, part, coarse, responses, Resolution()))
             for part in body.parts
         ],
     )
@@ -273,7 +273,7 @@ def test_operator_converges_to_that_of_uniform_cells() -> None:
     apart = []
     for finer in (4, 8, 16):
         fine = Grid((0.0, LENGTH), (-1.2e-4, 1.2e-4), cells_x * finer, cells_y)
-        own = SurfaceOperator.of(OperatorRequest(body, fine))({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
+        own = SurfaceOperator.of(body, fine)({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
         apart.append(np.abs(own.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns))
     assert apart[1] < 0.35 * apart[0]
     assert apart[2] < 0.35 * apart[1]

@@ -28,7 +28,7 @@ from contactstudy.contact.normal.prescribed import (
 )
 from contactstudy.contact.normal.problem import ContactOperator, ContactProblem, solve_coupled, solve_normal
 from contactstudy.errors import ConvergenceWarning, WindowError
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
@@ -185,7 +185,7 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     """Solve a contact, optionally from a first guess of the pressure."""
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
-        iterate, motions = _iterate(_ContactRequest(shape, settings, start))
+        iterate, motions = _iterate(shape, settings, start)
         pressure = iterate.pressure.copy()
         loads = shape.loads(pressure)
         displacement = _body_operator(shape)(loads)
@@ -238,18 +238,9 @@ def _off_position(prescribed: Prescribed, grid: Grid, pressure: FloatArray) -> f
     return abs(float((line * (grid.x - prescribed.load_position)).sum() / line.sum())) / float(length)
 
 
-class _ContactRequest(NamedTuple):
-    """Request of a contact, the key of the cache."""
-
-    shape: Shape
-    settings: Settings
-    start: ArrayKey | None
-
-
 @cached("contacts", lambda referred: referred.iterate.pressure.nbytes)
-def _iterate(request: _ContactRequest) -> Referred:
+def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referred:
     """Pressure of a contact, and the motion of the reference lines."""
-    shape, settings, first = request
     grid, operator = shape.grid, contact_operator(shape)
 
     def solve(motion: RigidMotion, start: FloatArray | None) -> ContactIterate:
@@ -274,7 +265,7 @@ def contact_operator(shape: Shape) -> ContactOperator:
 
 def _body_operator(shape: Shape) -> SurfaceOperator | PrescribedSurface:
     """Operator of the body alone."""
-    operator = surface_operator(OperatorRequest(shape.body, shape.grid, shape.directions))
+    operator = surface_operator(shape.body, shape.grid, shape.directions)
     return operator if shape.surface is None else PrescribedSurface(shape.surface, operator)
 
 

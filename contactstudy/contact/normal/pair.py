@@ -13,7 +13,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
 
@@ -69,16 +69,14 @@ class PairOperator:
         directions: tuple[Load, ...] = (Load.NORMAL,),
     ) -> PairOperator:
         """Operator of two bodies for `loads` and displacements of given directions, on the cells of the first."""
-        first = surface_operator(OperatorRequest(body, grid, loads, directions=directions))
+        first = surface_operator(body, grid, loads, directions=directions)
         shares = Shares.of(counterbody, grid)
         # Cells from labels may miss the counterbody's own by rounding; like bodies share one operator all the same.
         alike = replace(counterbody.body, reference_depth=body.reference_depth) == body
         if shares is None and alike and counterbody.start == 0:
             return cls(first, first, None)
         own = counterbody.own_grid(grid)
-        return cls(
-            first, surface_operator(OperatorRequest(counterbody.body, own, loads, directions=directions)), shares
-        )
+        return cls(first, surface_operator(counterbody.body, own, loads, directions=directions), shares)
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cells towards each other under `loads` on the first body (Pa)."""
@@ -88,10 +86,14 @@ class PairOperator:
         """Relative displacements (m) in some `directions` under `loads` on the first body (Pa)."""
         if self.counterbody is self.body and self._shares is None:
             return self._twice(loads, directions)
-        reaction = {load: _opposed(load, self._to_counterbody(cells)) for load, cells in loads.items()}
+        shares = self._shares
+        reaction = {
+            load: _opposed(load, cells if shares is None else shares.to @ cells) for load, cells in loads.items()
+        }
         relative = self.body.displaced(loads, directions)
         for direction, other in self.counterbody.displaced(reaction, directions).items():
-            relative[direction] = relative[direction] + _opposed(direction, self._to_body(other))
+            moved = other if shares is None else shares.back @ other
+            relative[direction] = relative[direction] + _opposed(direction, moved)
         return relative
 
     def _twice(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
@@ -104,12 +106,6 @@ class PairOperator:
                 for direction, each in self.body.displaced(own, asked).items():
                     relative[direction] = 2 * each
         return relative
-
-    def _to_counterbody(self, load: FloatArray) -> FloatArray:
-        return load if self._shares is None else np.asarray(self._shares.to @ load)
-
-    def _to_body(self, displacement: FloatArray) -> FloatArray:
-        return displacement if self._shares is None else np.asarray(self._shares.back @ displacement)
 
     def precondition(self, gap: FloatArray) -> FloatArray:
         """Roughly the pressure that closes the gap."""

@@ -63,11 +63,6 @@ class ContactProblem:
             level = level + amount * each
         return level
 
-    @property
-    def joins_in_twos(self) -> bool:
-        """Whether the cells can be joined in twos, along x and along y."""
-        return self.grid.cells_x % 2 == 0 and self.grid.cells_y % 2 == 0
-
     def coarser(self) -> ContactProblem:
         """Return the same contact on cells joined in twos."""
         grid = self.grid.coarsened()
@@ -90,7 +85,7 @@ def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArr
     """Pressure to begin with: the solution on coarser cells, or, on few cells, one that follows the gap."""
     gap = problem.gap
     possible = np.isfinite(gap)
-    if gap.size >= NESTED_CELLS and problem.joins_in_twos:
+    if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):
         coarse = problem.coarser()
         squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
         finer = between_columns(_refined(squared.T).T, coarse.grid.x, problem.grid.x)

@@ -81,16 +81,8 @@ def refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedCont
     if not isinstance(case.motion, Sliding):
         # No creepage or shift changes the columns.
         case = replace(case, friction=0.0, motion=Rolling())
-    request = _Request(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
-    return _cached_contact(request) if _is_immutable(case) else _refine_contact(request)
-
-
-class _Request(NamedTuple):
-    """Request of a refined contact: its friction is 0 unless it is coupled."""
-
-    case: Case
-    accuracy: float
-    tolerance: float
+    refine = _cached_contact if _is_immutable(case) else _refine_contact
+    return refine(case if case.coupled else replace(case, friction=0.0), accuracy, tolerance)
 
 
 def _is_immutable(part: object) -> bool:
@@ -103,9 +95,8 @@ def _is_immutable(part: object) -> bool:
     return part is None or isinstance(part, (str, int, float, np.number, np.bool_))
 
 
-def _refine_contact(request: _Request) -> RefinedContact:
+def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Refine in the narrowest window that contains the contact."""
-    case, accuracy, tolerance = request
     *narrower, widest = WINDOWS
     for window in narrower:
         with contextlib.suppress(WindowError):

@@ -245,12 +245,6 @@ class _Refinement:
         self.ends.append(ends)
         self.loads.append(end_loads(self.edges, self.pressure, self.shape.half_width))
 
-    def _unknown_law(self, side: int) -> bool:
-        """Whether the pressure at an end, sharp or fading at the end of the face, does not settle and has no law."""
-        fades = self.shape.fades and self.shape.room[side] == 0
-        unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
-        return unsettled and bool(self.pressure[-side].any())
-
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
         """Values with their errors."""
         finite = [value for value in self.peaks[-1] if 0 < value < np.inf]  # a half may have no contact
@@ -259,7 +253,10 @@ class _Refinement:
         peak_errors = [_change_error([peaks[side] for peaks in self.peaks], floor) for side in (0, 1)]
         first, last = (_change_error([ends[side] for ends in self.ends], floor) for side in (0, 1))
         for side in (0, 1):
-            if self._unknown_law(side):
+            fades = self.shape.fades and self.shape.room[side] == 0
+            # The pressure at an end, sharp or fading at the end of the face, does not settle and has no law.
+            unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
+            if unsettled and self.pressure[-side].any():
                 first, last = (np.inf, last) if side == 0 else (first, np.inf)
                 if self._half(side).max() <= self.pressure[-side].max():
                     peak_errors[side] = np.inf

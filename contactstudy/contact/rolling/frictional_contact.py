@@ -19,7 +19,7 @@ from contactstudy.contact.rolling.surfaces import TANGENTIAL, Surfaces, Traction
 from contactstudy.contact.rolling.tractions import CoarseTractions, TractionSettings, solve_tractions
 from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
 from contactstudy.fields.loads import Loads, TopLoad
-from contactstudy.fields.surface import OperatorRequest, SurfaceOperator, surface_operator
+from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
@@ -108,7 +108,7 @@ class FrictionalContact:
 def relative_operator(shape: Shape, directions: tuple[Load, ...]) -> PairOperator | SurfaceOperator:
     """Operator from pressure and tractions to displacements of the surfaces relative to each other."""
     if shape.counterbody is None:
-        return surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=directions))
+        return surface_operator(shape.body, shape.grid, ALL, directions=directions)
     return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
 
 
@@ -173,7 +173,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             if change <= tolerance:
                 converged = True
                 break
-        body = surface_operator(OperatorRequest(shape.body, shape.grid, ALL, directions=ALL))
+        body = surface_operator(shape.body, shape.grid, ALL, directions=ALL)
         loads = dict(zip(ALL, (contact.pressure, *tractions.traction), strict=True))
         with one_blas_thread():
             contact = replace(contact, shape=shape, displacement=body(loads))

@@ -10,7 +10,7 @@ from scipy import fft
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
-from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
+from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.strips import ColumnsRequest, surface_kernel
 
@@ -32,15 +32,12 @@ class TangentialInverse:
         parts = (yy / determinant, -xy / determinant, xx / determinant)
         self._inverse = tuple(part.astype(np.complex64) for part in parts)
 
-    def _offsets(self, number: int, step: float) -> FloatArray:
-        return np.asarray(step * np.arange(number // 2 + 1.0))
-
     def _compliance(
         self, materials: list[Material], direction: Load, load: Load, cell: tuple[float, float]
     ) -> ComplexArray:
         """Spectrum of the displacement in one direction under a load in another."""
         response = Response(direction, load)
-        x, y = (self._offsets(number, step) for number, step in zip(self._shape, cell, strict=True))
+        x, y = (step * np.arange(number // 2 + 1.0) for number, step in zip(self._shape, cell, strict=True))
         kernel = np.zeros((x.size, y.size))
         for material in materials:
             normalised = surface_kernel(response, material.poisson, x, y, cell)
@@ -140,8 +137,3 @@ def _unfold(kernel: FloatArray, number: int, sign: int, axis: int) -> FloatArray
     half = kernel.shape[axis]
     back = np.flip(np.take(kernel, np.arange(1, number - half + 1), axis=axis), axis=axis)
     return np.concatenate([kernel, sign * back], axis=axis)
-
-
-def contact_cells(mask: BoolArray) -> IntArray:
-    """Rows and columns (2, cell) of the cells of a mask (x, y)."""
-    return np.argwhere(mask).T

@@ -37,7 +37,7 @@ from contactstudy.contact.rolling.coulomb import (
     solve_with_continuation,
 )
 from contactstudy.contact.rolling.fastsim import solve_strips
-from contactstudy.contact.rolling.preconditioners import contact_cells, tangential_inverse
+from contactstudy.contact.rolling.preconditioners import tangential_inverse
 from contactstudy.contact.rolling.surfaces import (
     TANGENTIAL,
     Surfaces,
@@ -374,7 +374,7 @@ def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping
 
 def _shift_cells(bound: FloatArray) -> RollingCells:
     """Cells of a shifted contact: all cells that carry a traction are unknown."""
-    unknown = contact_cells(bound > 0)
+    unknown = np.argwhere(bound > 0).T
     empty = np.zeros((2, 0), dtype=np.int64)
     return RollingCells(unknown, np.zeros(unknown.shape[1]), empty, empty[0], np.zeros(0))
 

@@ -15,11 +15,11 @@ from contactstudy.contact.normal.conjugate_gradients import (
     _State,
     solve_complementarity,
 )
-from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 GRID = Grid((0.0, 3.0), (-1.0, 1.0), 18, 12)
-BODY_OPERATOR = surface_operator(OperatorRequest(FiniteLengthSpace(material=Material(1.0, 0.3), length=3.0), GRID))
+BODY_OPERATOR = surface_operator(FiniteLengthSpace(material=Material(1.0, 0.3), length=3.0), GRID)
 
 
 def operator(pressure: np.ndarray) -> np.ndarray:

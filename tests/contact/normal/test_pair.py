@@ -8,7 +8,7 @@ import pytest
 from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material
 from contactstudy.bodies import Counterbody
 from contactstudy.contact.normal.pair import PairOperator, ScaledOperator, Shares
-from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 STEEL, SOFT = Material(210e9, 0.3), Material(70e9, 0.3)
@@ -36,7 +36,7 @@ def test_the_coarse_operator_sinks_as_the_fine_one(cells: int) -> None:
 
 def test_like_half_spaces_are_twice_as_soft_and_so_is_what_scales_one() -> None:
     half = HalfSpace(material=STEEL)
-    one = surface_operator(OperatorRequest(half, GRID))
+    one = surface_operator(half, GRID)
     unlike = PairOperator.of(half, Counterbody(HalfSpace(material=SOFT)), GRID, (Load.NORMAL,))
     factor = 1 + STEEL.plane_strain_modulus / SOFT.plane_strain_modulus
     scaled, load = ScaledOperator(one, factor), random_load()

@@ -22,7 +22,7 @@ from contactstudy.contact.normal.problem import (
     solve_coupled,
     solve_normal,
 )
-from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 BODY = HalfSpace(material=Material(0.91, 0.3))
@@ -33,7 +33,7 @@ class Counting:
     """An operator that counts its applications."""
 
     def __init__(self, grid: Grid) -> None:
-        self.own, self.number = surface_operator(OperatorRequest(BODY, grid, LOADS)), 0
+        self.own, self.number = surface_operator(BODY, grid, LOADS), 0
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         self.number += 1
@@ -196,7 +196,7 @@ def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
     """Of the displacement's variation, in any unit: strong friction settles slowly."""
     grid = Grid((-1.5 * unit, 1.5 * unit), (-1.5 * unit, 1.5 * unit), 16, 16)
     body = HalfSpace(material=Material(0.91, 0.0))
-    own = surface_operator(OperatorRequest(body, grid, LOADS))
+    own = surface_operator(body, grid, LOADS)
     bent: list[FloatArray] = []
 
     class Noting(Counting):

@@ -239,7 +239,7 @@ def test_a_contact_that_needs_the_widest_window_gets_it(monkeypatch: pytest.Monk
         return "found"
 
     monkeypatch.setattr(module, "_refine_in_window", too_narrow)
-    assert module._refine_contact(module._Request(case, 0.01, 1e-6)) == "found"
+    assert module._refine_contact(case, 0.01, 1e-6) == "found"
     assert tried == pytest.approx([2.0, 3.0, 5.0, 8.0, 12.0])
 
 

@@ -8,7 +8,7 @@ import pytest
 from contactstudy import Grid, HalfSpace, Material
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.contact.rolling.preconditioners import tangential_inverse
-from contactstudy.fields.surface import OperatorRequest, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 MATERIALS = [Material(210e9, 0.3), Material(70e9, 0.2)]
@@ -25,9 +25,9 @@ def displaced(edges: FloatArray, row: int) -> FloatArray:
     unit, found = np.zeros(grid.shape), np.zeros((2, 2, *grid.shape))
     unit[row, COLUMNS] = 1.0
     for material in MATERIALS:
-        request = OperatorRequest(HalfSpace(material=material), grid, TANGENTIAL, directions=TANGENTIAL)
+        operator = surface_operator(HalfSpace(material=material), grid, TANGENTIAL, TANGENTIAL)
         for number, load in enumerate(TANGENTIAL):
-            each = surface_operator(request).displaced({load: unit}, TANGENTIAL)
+            each = operator.displaced({load: unit}, TANGENTIAL)
             found[:, number] += np.stack([each[direction] for direction in TANGENTIAL])
     return found
 
