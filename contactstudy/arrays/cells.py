@@ -61,7 +61,15 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
     if "x_width" in array.coords:
         widths = checks.coordinates("x_width", array["x_width"].values)
         centres = checks.coordinates("x", array["x"].values)
-        return _tiled(centres - 0.5 * widths, centres + 0.5 * widths, y_range, cells_y)
+        low, high = centres - 0.5 * widths, centres + 0.5 * widths
+        apart = np.abs(high[:-1] - low[1:])
+        wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
+        if wrong.size:
+            index = int(wrong[0])
+            borders = f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m"
+            raise InvalidInputError("x_width", borders, "such that cells meet")
+        edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+        return Grid.between(edges, y_range, cells_y)
     try:
         x_range, cells_x = uniform_range("x", array["x"].values)
     except InvalidInputError as error:
@@ -72,21 +80,6 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
             ) from None
         return Grid.between(_edges_from_end(centres, extent), y_range, cells_y)
     return Grid(x_range, y_range, cells_x, cells_y)
-
-
-def _tiled(low: FloatArray, high: FloatArray, y_range: tuple[float, float], cells_y: int) -> Grid:
-    """Grid of cells from `low` to `high`, which have to meet."""
-    apart = np.abs(high[:-1] - low[1:])
-    wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
-    if wrong.size:
-        index = int(wrong[0])
-        raise InvalidInputError(
-            "x_width",
-            f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m",
-            "such that cells meet",
-        )
-    middle = 0.5 * (high[:-1] + low[1:])
-    return Grid.between(np.concatenate([low[:1], middle, high[-1:]]), y_range, cells_y)
 
 
 def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:

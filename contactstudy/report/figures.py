@@ -98,11 +98,13 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     # Functions that draw into a figure and return its caption.
     draw: list[Callable[[Figure, xr.Dataset], str]] = []
     if "pressure" in result and bool((result["pressure"] > 0).any()):
-        draw += [_axial_pressure, _pressure_map]
+        top = "Pressure on the top of the body. The two axes have different scales."
+        draw += [_axial_pressure, partial(_map, plot_pressure_map, top)]
         if {"stick", "traction_x", "slip_x"} <= set(result.data_vars):
             draw += [_traction_map, _slip_map]
     if "film_thickness" in result:
-        draw += [_film_lines, _film_map]
+        film = "Film thickness. Cross: least film. The two axes have different scales."
+        draw += [_film_lines, partial(_map, plot_film_map, film)]
     if case is not None and checked_drop(case.roller.profile, _along(case.roller, 0.5), case.roller.length).any():
         draw.append(partial(_profile, case.roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
@@ -145,10 +147,10 @@ def _axial_pressure(figure: Figure, result: xr.Dataset) -> str:
     return caption
 
 
-def _pressure_map(figure: Figure, result: xr.Dataset) -> str:
-    """Pressure on the top."""
-    plot_pressure_map(result, figure.subplots(), si=True)
-    return "Pressure on the top of the body. The two axes have different scales."
+def _map(plot: Callable[..., Axes], caption: str, figure: Figure, result: xr.Dataset) -> str:
+    """Draw one map."""
+    plot(result, figure.subplots(), si=True)
+    return caption
 
 
 def _film_lines(figure: Figure, result: xr.Dataset) -> str:
@@ -157,12 +159,6 @@ def _film_lines(figure: Figure, result: xr.Dataset) -> str:
     plot_film_line(result, axes[0], si=True)
     plot_film_line(result, axes[1], x=float(result["least_film_x"]), si=True)
     return "Film and pressure along the axis at y = 0, and across the least film."
-
-
-def _film_map(figure: Figure, result: xr.Dataset) -> str:
-    """Film with contours."""
-    plot_film_map(result, figure.subplots(), si=True)
-    return "Film thickness. Cross: least film. The two axes have different scales."
 
 
 def _traction_map(figure: Figure, result: xr.Dataset) -> str:
