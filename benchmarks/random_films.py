@@ -25,14 +25,14 @@ RADIUS = 5e-3
 VISCOSITY = 0.05
 
 
-def random_profile(chance: Random, amplitude: float, length: float) -> cs.profiles.Profile:
+def random_profile(chance: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
     """A profile with drops about those that a design for the pressure has."""
     drop = amplitude * magnitude(chance, 0.5, 3.0)
     kind = chance.choice(("Lundberg", "logarithmic", "crown", "partial crown"))
     if kind == "Lundberg":
         return cs.profiles.Lundberg(amplitude=drop, delta=chance.choice((0.0, 1.0)))
     if kind == "logarithmic":
-        return cs.profiles.JohnsGohar(amplitude=drop, edge_distance=chance.uniform(0.02, 0.3) * length)
+        return cs.profiles.JohnsGohar(amplitude=drop, half_width=half_width)
     depth = 4 * drop
     if kind == "crown":
         return cs.profiles.FullCrown(length**2 / (8 * depth))
@@ -47,7 +47,7 @@ def random_case(chance: Random) -> cs.Case:
     modulus = STEEL.plane_strain_modulus / (1 if rigid else 2)
     pressure = half_width * modulus / (2 * RADIUS)
     length = half_width * magnitude(chance, 8.0, 250.0)
-    profile = random_profile(chance, half_width**2 / (4 * RADIUS), length)
+    profile = random_profile(chance, half_width**2 / (4 * RADIUS), half_width, length)
     distance = chance.choice((0.0, 0.0, chance.uniform(0.0, 5.0))) * half_width
     tilt = chance.choice((0.0, 0.0, chance.uniform(-0.3, 0.3))) * half_width**2 / RADIUS / length
     roller = cs.Roller(radius=RADIUS, length=length, profile=profile, material=None if rigid else STEEL)
@@ -71,14 +71,14 @@ def random_case(chance: Random) -> cs.Case:
     return replace(case, lubricant=oil, motion=cs.Sliding(body_speed=speed, roller_speed=speed))
 
 
-def outcome(seed: int) -> tuple[str, str]:
+def outcome(seed: int, accuracy: float) -> tuple[str, str]:
     """Run one seed: its kind, and what to print."""
     case = random_case(Random(seed))
     began = time.perf_counter()
     kind, text = "smooth", ""
     try:
         try:
-            film = solve_film(case)
+            film = solve_film(case, accuracy=accuracy)
         except cs.FilmError as error:
             if "closes" not in str(error):
                 raise
@@ -90,7 +90,7 @@ def outcome(seed: int) -> tuple[str, str]:
             load = case.normal_load / case.contact_length / (2 * case.modulus * RADIUS * root)
             lubricant = case.lubricant.pressure_viscosity * 2 * case.modulus * root**0.5
             central = float(moes_line(load, lubricant)) * RADIUS * root
-            film = solve_film(case, asperities=Asperities(rms=0.1 * central))
+            film = solve_film(case, accuracy=accuracy, asperities=Asperities(rms=0.1 * central))
         central = float(film.central_film)
         text = (
             f"M {float(film.moes_load):.0f} L {float(film.moes_lubricant):.1f} central {1e6 * central:.4g} um "
@@ -110,12 +110,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.random_films", description=__doc__)
     parser.add_argument("--cases", type=int, default=100, help="number of seeds")
     parser.add_argument("--first", type=int, default=0, help="first seed")
+    parser.add_argument("--accuracy", type=float, default=0.02, help="accuracy of the films")
     options = parser.parse_args()
     warnings.simplefilter("ignore")
     kinds: Counter[str] = Counter()
     failed = []
     for seed in range(options.first, options.first + options.cases):
-        kind, text = outcome(seed)
+        kind, text = outcome(seed, options.accuracy)
         kinds[kind] += 1
         failed += [seed] if kind == "failed" else []
         print(f"seed {seed}: {kind}: {text}", flush=True)

@@ -63,7 +63,7 @@ class FilmResolution:
     inlet, outlet : float
         Distance of the window's ends from the contact's edges over the inlet length. Accuracy.
     ratio : float
-        Ratio of the cells of one level to the next one's.
+        Ratio of the cells of one level to the next one's along y; its square for the narrowest columns.
     levels : int
         Most levels.
     most_cells : int
@@ -78,7 +78,7 @@ class FilmResolution:
     inner_inlet: float = 2.5
     growth: float = 0.12
     columns: float = 0.12
-    columns_inlet: float = 0.8
+    columns_inlet: float = 0.4
     columns_growth: float = 0.35
     widest_column: float = 10.0
     inlet: float = 25.0
@@ -252,7 +252,7 @@ def cells_of(
     """Return the cells of a level, with narrow columns at some `places` along x, over the half-width."""
     resolution, scale = film.resolution, film.resolution.ratio**-level
     start, stop = (end / film.half_width for end in film.case.contact_range)
-    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale
+    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale**2
     growth = resolution.columns_growth * scale**0.7
 
     def width(x: float) -> float:

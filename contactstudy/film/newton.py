@@ -201,7 +201,7 @@ class _Linearised(NamedTuple):
     flow : Flow
         Flow and its derivatives.
     residual : array (cell + motion)
-        Residual of cells, divided by `scale`, and of load and moment.
+        Residual of cells, over their film, and of load and moment.
     by_pressure, by_distance : sparse array (cell, cell)
         Derivatives of the cells' residuals at a fixed distance of the surfaces and at a fixed pressure.
     cavitated : array of bool (cell)
@@ -314,6 +314,7 @@ class _Iteration:
         elastic = _diagonals(problem.column_stiffness, by_distance)
         scale = np.abs(by_pressure.diagonal() + elastic)
         cavitated = fluid_pressure.ravel() - outflow / scale <= 0
+        # Over the film that flows through the cell: the far inlet would vanish in a norm of pressures.
         full = sparse.diags_array(np.where(cavitated, 0.0, 1 / film.value.ravel()))
         by_pressure = full @ by_pressure + sparse.diags_array(cavitated.astype(np.float64))
         by_distance = full @ by_distance - sparse.diags_array(cavitated * asperities.slope.ravel())
@@ -406,7 +407,7 @@ class _Iteration:
         return moved, part, largest
 
     def solve_linear(self, linearised: _Linearised, mismatch: FloatArray) -> FloatArray:
-        """Change of pressure and rigid motion, by GMRES with columns as preconditioner, eq. (405)."""
+        """Change of pressure and rigid motion, by GMRES with eliminated columns as preconditioner, eq. (405)."""
         from scipy.sparse.linalg import LinearOperator, gmres
 
         problem = self.problem
