@@ -375,23 +375,22 @@ class _Piece(NamedTuple):
     @property
     def moment(self) -> FloatArray:
         """First moment about the start."""
-        total = self.first + self.last
-        total = np.where(total > 0, total, 1.0)
-        cubes = (
-            (3 * self.last + 6 * self.first) * self.last + 4 * self.first * self.first
-        ) * self.last + 2 * self.first * self.first * self.first
+        a, b, total = self.first, self.last, self._total
+        cubes = ((3 * b + 6 * a) * b + 4 * a * a) * b + 2 * a * a * a
         return self.length**2 * np.asarray(2 / 15 * cubes / (total * total))
 
     @property
     def second_moment(self) -> FloatArray:
         """Second moment about the start."""
-        total = self.first + self.last
-        total = np.where(total > 0, total, 1.0)
-        powers = (
-            ((15 * self.last + 45 * self.first) * self.last + 48 * self.first * self.first) * self.last
-            + 24 * self.first * self.first * self.first
-        ) * self.last + 8 * self.first * self.first * self.first * self.first
+        a, b, total = self.first, self.last, self._total
+        powers = (((15 * b + 45 * a) * b + 48 * a * a) * b + 24 * a * a * a) * b + 8 * a * a * a * a
         return self.length**3 * np.asarray(2 / 105 * powers / (total * total * total))
+
+    @property
+    def _total(self) -> FloatArray:
+        """Sum of both values, 1 where both are 0."""
+        total = self.first + self.last
+        return np.where(total > 0, total, 1.0)
 
 
 def _middle(mean: FloatArray, first: FloatArray, last: FloatArray) -> FloatArray:
