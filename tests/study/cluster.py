@@ -49,11 +49,7 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
     processes = [start(SCHEDULER, ROOT), *(start(WORKER, ROOT) for _ in range(workers))]
     processes += [start(WORKER, folder / "lame") for _ in range(lame)]
     try:
-        file, end = folder / "scheduler.json", time.monotonic() + 300
-        while not file.exists():
-            assert time.monotonic() < end, "the scheduler did not start"
-            time.sleep(0.05)
-        address = Cluster(json.loads(file.read_text())["address"])
+        address = Cluster(_address(folder / "scheduler.json"))
         address.processes = processes
         yield address
     finally:
@@ -66,3 +62,13 @@ def cluster(folder: Path, workers: int = 2, *, lame: int = 0) -> Iterator[Cluste
             with contextlib.suppress(ProcessLookupError):
                 os.killpg(process.pid, signal.SIGKILL)
             process.wait()
+
+
+def _address(file: Path) -> str:
+    """Address in a scheduler's file, which is absent or incomplete until the scheduler has started."""
+    end = time.monotonic() + 300
+    while True:
+        with contextlib.suppress(FileNotFoundError, json.JSONDecodeError):
+            return str(json.loads(file.read_text())["address"])
+        assert time.monotonic() < end, "the scheduler did not start"
+        time.sleep(0.05)
