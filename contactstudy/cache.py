@@ -19,7 +19,7 @@ from cachetools import LRUCache
 from contactstudy import checks
 from contactstudy.checks import FloatArray
 
-LIMIT = 3 * 2**29  # Default bound of all cached values, bytes. Speed
+LIMIT = 2**30  # Default bound of all cached values, bytes. Speed
 Arguments = ParamSpec("Arguments")
 Value = TypeVar("Value")
 
