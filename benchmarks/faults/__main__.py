@@ -43,7 +43,7 @@ def main() -> int:
     found = rows(asked.kills)
     if asked.page:
         write_table(asked.page, found)
-    return int(any(row.held < row.tried for row in found))
+    return int(any(row.passed < row.tried for row in found))
 
 
 if __name__ == "__main__":

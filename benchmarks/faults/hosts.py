@@ -34,15 +34,15 @@ def two_systems(calm: xr.Dataset, count: int) -> Row:
     )
     if not possible:
         return Row(fault, 0, 0, "not tried: no right to make a system with a name of its own")
-    held = sum(_held(calm, names[number % 2], killed=number % 4 > 1) for number in range(count))
+    passed = sum(_passed(calm, names[number % 2], killed=number % 4 > 1) for number in range(count))
     found = (
         "while it goes on: code 2, its host is named, and it ends bit for bit; after a kill its lock is free, and "
         "a run resumes bit for bit"
     )
-    return Row(fault, count, held, found)
+    return Row(fault, count, passed, found)
 
 
-def _held(calm: xr.Dataset, name: str, *, killed: bool) -> bool:
+def _passed(calm: xr.Dataset, name: str, *, killed: bool) -> bool:
     """Whether nothing was lost or done twice."""
     with studies.study_folder() as folder:
         out, study = folder / "out", folder / "study.toml"

@@ -32,7 +32,7 @@ chance = random.Random(17)
 
 def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
     """SIGKILL to the run and its workers, a random while after it began."""
-    held = most = total = 0
+    passed = most = total = 0
     longest = _seconds_of_a_run(workers)
     with studies.study_folder() as folder:
         for _ in range(count):
@@ -48,7 +48,7 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
             total += len(set(after) - set(before))
             most = max(most, len(set(after) - set(before)))
             lost = [identity for identity, run in before.items() if after.get(identity) != run]
-            held += not lost and not studies.unreadable(folder)
+            passed += not lost and not studies.unreadable(folder)
         complete = studies.resume(folder) == {"ok": CASES}
         complete &= studies.values(folder).identical(calm)
         complete &= not studies.left_over(folder) and not (folder / "out" / "set-aside").exists()
@@ -57,7 +57,7 @@ def kills(calm: xr.Dataset, count: int, *, workers: int = 0) -> Row:
         f"no written case lost or solved again, every batch intact ({total} cases written between the kills, up to "
         f"{most} in one run); resumed {'bit for bit as without kills, nothing left behind' if complete else 'WRONGLY'}"
     )
-    return Row(f"run {kind}: SIGKILL at a random moment", count, held if complete else 0, result)
+    return Row(f"run {kind}: SIGKILL at a random moment", count, passed if complete else 0, result)
 
 
 def _started(folder: Path, workers: int) -> subprocess.Popen[str] | studies.Forked:
@@ -77,7 +77,7 @@ def _seconds_of_a_run(workers: int) -> float:
 
 def full_disks(calm: xr.Dataset, count: int) -> Row:
     """A file system of its own that fills up; without the right to mount one, files that may not grow."""
-    held = cases = 0
+    passed = cases = 0
     mounted = False
     for _ in range(count):
         with studies.study_folder() as folder:
@@ -98,7 +98,7 @@ def full_disks(calm: xr.Dataset, count: int) -> Row:
                 if own:
                     subprocess.run(["mount", "-o", "remount,size=50m", str(disk)], check=True)
                 right = right and studies.resume(folder) == {"ok": CASES}
-                held += right and studies.values(folder).identical(calm)
+                passed += right and studies.values(folder).identical(calm)
             finally:
                 if own:
                     subprocess.run(["umount", "-l", str(disk)], check=True)
@@ -106,7 +106,7 @@ def full_disks(calm: xr.Dataset, count: int) -> Row:
     return Row(
         f"full disk: {how}",
         count,
-        held,
+        passed,
         f"code 2 and a message, no traceback, no lock held and no torn file left, {cases} cases kept in all; "
         "resumed with room, bit for bit",
     )
@@ -114,7 +114,7 @@ def full_disks(calm: xr.Dataset, count: int) -> Row:
 
 def dead_schedulers(calm: xr.Dataset, count: int) -> Row:
     """The scheduler of a cluster is killed while its worker solves."""
-    held = 0
+    passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             out = folder / "out"
@@ -128,13 +128,13 @@ def dead_schedulers(calm: xr.Dataset, count: int) -> Row:
             right = process.returncode == 2 and "scheduler has gone away" in errors and "Traceback" not in errors
             right = right and not Folder(out).holders and not studies.unreadable(folder)
             right = right and studies.resume(folder) == {"ok": CASES}
-            held += right and studies.values(folder).identical(calm)
-    return Row("scheduler of a cluster killed", count, held, "code 2, message, no lock held; resumed bit for bit")
+            passed += right and studies.values(folder).identical(calm)
+    return Row("scheduler of a cluster killed", count, passed, "code 2, message, no lock held; resumed bit for bit")
 
 
 def damaged_files(calm: xr.Dataset, count: int) -> Row:
     """Batches are torn, changed, exchanged, or foreign."""
-    held = 0
+    passed = 0
     with studies.study_folder() as folder:
         aside = folder / "out" / "set-aside"
         for number in range(count):
@@ -146,11 +146,11 @@ def damaged_files(calm: xr.Dataset, count: int) -> Row:
             DAMAGES[number % len(DAMAGES)](path, other)
             report = run_study(STUDY, folder / "out", workers=0, solver=solve_fake)
             right = report.counts == {"ok": CASES} and report.solved == lost and not studies.unreadable(folder)
-            held += right and len(list(aside.iterdir())) == 1 and studies.values(folder).identical(calm)
+            passed += right and len(list(aside.iterdir())) == 1 and studies.values(folder).identical(calm)
     return Row(
         "a batch torn, with changed bytes, empty, a text, a folder, exchanged with another or a dangling link",
         count,
-        held,
+        passed,
         "set aside with a message, its cases alone solved again, afterwards bit for bit",
     )
 
@@ -202,7 +202,7 @@ DAMAGES: tuple[Callable[[Path, Path], None], ...] = (
 
 def damaged_records(calm: xr.Dataset, count: int) -> Row:
     """Log or lock of a folder is torn, changed, or full of something else."""
-    held = 0
+    passed = 0
     with studies.study_folder() as folder:
         studies.resume(folder)
         out = folder / "out"
@@ -214,14 +214,14 @@ def damaged_records(calm: xr.Dataset, count: int) -> Row:
                 data[chance.randrange(len(data))] = chance.randrange(256)
             path.write_bytes(bytes(data[: chance.randrange(1, len(data) + 1)]))
             report = run_study(STUDY, out, workers=0, solver=solve_fake)
-            held += report.counts == {"ok": CASES} and studies.values(folder).identical(calm)
+            passed += report.counts == {"ok": CASES} and studies.values(folder).identical(calm)
     names = ", ".join(f"`{path.name}`" for path in sorted(records))
-    return Row(f"changed and torn bytes in {names}", count, held, "all cases found again, bit for bit")
+    return Row(f"changed and torn bytes in {names}", count, passed, "all cases found again, bit for bit")
 
 
 def two_runs(calm: xr.Dataset, count: int) -> Row:
     """Others begin while a run goes on."""
-    held = 0
+    passed = 0
     with studies.study_folder() as folder:
         out = folder / "out"
         first = start_run(folder / "study.toml", out, "--workers", "0", tickets=2)
@@ -229,21 +229,21 @@ def two_runs(calm: xr.Dataset, count: int) -> Row:
         seconds = [start_run(folder / "study.toml", out, "--workers", "0", tickets=0) for _ in range(count)]
         for second in seconds:
             _, errors = second.communicate(timeout=SECONDS)
-            held += second.returncode == 2 and f"process {first.pid} on " in errors and "Traceback" not in errors
+            passed += second.returncode == 2 and f"process {first.pid} on " in errors and "Traceback" not in errors
         give_tickets(tickets_of(out), CASES)
         first.communicate(timeout=SECONDS)
         whole = first.returncode == 0 and studies.values(folder).identical(calm)
     return Row(
         "a second run while the first goes on",
         count,
-        held if whole else 0,
+        passed if whole else 0,
         "code 2, the holder named; the first run ends bit for bit",
     )
 
 
 def at_once(calm: xr.Dataset, count: int) -> Row:
     """Two runs begin at the same moment."""
-    held = 0
+    passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             runs = [studies.start(folder, "--workers", "0") for _ in range(2)]
@@ -251,23 +251,25 @@ def at_once(calm: xr.Dataset, count: int) -> Row:
             codes = [run.returncode for run in runs]
             # Both may run to the end, one after the other.
             right = codes in ([0, 2], [2, 0], [0, 0]) and not any("Traceback" in errors for errors in said)
-            held += right and not studies.left_over(folder) and studies.values(folder).identical(calm)
-    return Row("two runs begun at once", count, held, "one solves, the other is refused or finds all done; bit for bit")
+            passed += right and not studies.left_over(folder) and studies.values(folder).identical(calm)
+    return Row(
+        "two runs begun at once", count, passed, "one solves, the other is refused or finds all done; bit for bit"
+    )
 
 
 def clock_steps(calm: xr.Dataset, count: int) -> Row:
     """The time of day jumps by up to ten years either way at every reading, in this process."""
-    held = 0
+    passed = 0
     for _ in range(count):
         with studies.study_folder() as folder, _jumping_clock():
             right = studies.resume(folder) == {"ok": CASES} and not studies.left_over(folder)
             studies.batches(folder)[0].unlink()
             right = right and studies.resume(folder) == {"ok": CASES}
-            held += right and studies.values(folder).identical(calm)
+            passed += right and studies.values(folder).identical(calm)
     return Row(
         "time of day jumps by up to ten years at every reading",
         count,
-        held,
+        passed,
         "run and resumed run, bit for bit; the clock of the process was replaced, a system's clock was not set",
     )
 
@@ -299,7 +301,7 @@ class _jumping_clock:  # noqa: N801
 
 def edited_study(calm: xr.Dataset, count: int) -> Row:
     """The file of the study is changed while a run goes on."""
-    held = 0
+    passed = 0
     for _ in range(count):
         with studies.study_folder() as folder:
             process = studies.start(folder, "--workers", "0")
@@ -307,8 +309,8 @@ def edited_study(calm: xr.Dataset, count: int) -> Row:
             text = as_toml(STUDY)
             (folder / "study.toml").write_text(text[: chance.randrange(len(text))])
             _, errors = process.communicate(timeout=SECONDS)
-            held += process.returncode == 0 and "Traceback" not in errors and studies.values(folder).identical(calm)
-    return Row("the study's file torn while it runs", count, held, "the run goes on with what it read, bit for bit")
+            passed += process.returncode == 0 and "Traceback" not in errors and studies.values(folder).identical(calm)
+    return Row("the study's file torn while it runs", count, passed, "the run goes on with what it read, bit for bit")
 
 
 def _holds_the_lock(pid: int, out: Path) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path
 BEGIN, END = "<!-- faults -->", "<!-- end of faults -->"
 """Lines of the page between which the table stands."""
 
-HEAD = "| fault | tried | held | what was looked at |\n|---|---|---|---|"
+HEAD = "| fault | tried | passed | what was looked at |\n|---|---|---|---|"
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Row:
     ----------
     fault : str
         What was done to the study.
-    tried, held : int
+    tried, passed : int
         How often, and how often everything that was looked at was right.
     found : str
         What was looked at, with figures.
@@ -27,11 +27,11 @@ class Row:
 
     fault: str
     tried: int
-    held: int
+    passed: int
     found: str
 
     def __str__(self) -> str:
-        return f"| {self.fault} | {self.tried} | {self.held} | {self.found} |"
+        return f"| {self.fault} | {self.tried} | {self.passed} | {self.found} |"
 
 
 def write_table(page: Path, rows: list[Row]) -> None:

@@ -461,18 +461,10 @@ def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArr
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Equations of columns that exchange lubricant with their neighbours, as if all columns carried alike, eliminated.
+    """Equations of columns that exchange lubricant with their neighbours, as if all columns carried alike, eliminated."""
 
-    Attributes
-    ----------
-    inverses : array (x, y, y)
-        Inverses of the columns' equations without the columns before.
-    before, after : array (x, y)
-        Coefficients of the pressures in the column before and in the one after.
-    """
-
-    inverses: FloatArray
-    before: FloatArray
+    inverses: FloatArray  # (x, y, y): inverses of the columns' equations without the columns before
+    before: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
     after: FloatArray
 
     @classmethod

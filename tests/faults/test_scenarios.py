@@ -22,8 +22,8 @@ def calm() -> xr.Dataset:
 def test_the_table_replaces_the_one_before(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"before\n\n{BEGIN}\nold\n{END}\n\nafter\n")
-    for held in (1, 2):
-        write_table(page, [Row("kill", 2, held, "all")])
+    for passed in (1, 2):
+        write_table(page, [Row("kill", 2, passed, "all")])
     text = page.read_text()
     assert text.startswith("before\n\n")
     assert text.endswith("\n\nafter\n")
@@ -44,11 +44,11 @@ def test_faults_hold(calm: xr.Dataset) -> None:
         scenarios.kills(calm, 1),
         hosts.two_systems(calm, 4),
     ):
-        assert row.held == row.tried, row
+        assert row.passed == row.tried, row
 
 
 @pytest.mark.system
 def test_a_lost_file_is_counted(calm: xr.Dataset, monkeypatch) -> None:
     monkeypatch.setattr(scenarios, "DAMAGES", (lambda path, other: path.unlink(),))
     monkeypatch.setattr(studies, "unreadable", lambda folder: 1)
-    assert scenarios.damaged_files(calm, 1).held == 0
+    assert scenarios.damaged_files(calm, 1).passed == 0

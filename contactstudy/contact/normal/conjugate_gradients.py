@@ -33,7 +33,7 @@ STEEPEST = 1e4  # largest slope of the exponential factor that restores the mome
 
 @dataclass(frozen=True, eq=False)
 class Resultants:
-    """What is prescribed of the pressure; the rigid motions conjugate to it follow."""
+    """Prescribed resultants of the pressure; the rigid motions are conjugate to them."""
 
     total: float | None
     """Sum over the cells, Pa, conjugate to the approach; None if the approach is prescribed (as part of the gap)."""
@@ -57,7 +57,7 @@ class Resultants:
         line = pressure.sum(axis=1)
         arm = self.lever[:, 0]
         sums = [float((line * arm**power).sum()) for power in (0, 1, 2)]
-        # One column of cells has no second moment: then only its sum can be restored.
+        # One column of cells lacks a second moment: the factor restores the sum only.
         if sums[0] * sums[2] - sums[1] ** 2 <= 1e-9 * sums[0] * sums[2]:
             return np.asarray(pressure * (self.total / sums[0]))
         constant, slope = np.linalg.solve([sums[:2], sums[1:]], [self.total, 0.0])
@@ -70,13 +70,13 @@ class Resultants:
         """Factor ``C exp(s arm)``, positive whatever the moment; without pressure on both sides, only the sum's."""
         assert self.total is not None
         loaded = line > 0
-        line, own = line[loaded], arm[loaded]
+        line, lever = line[loaded], arm[loaded]
         slope = 0.0
-        if own.min() < 0 < own.max():
+        if lever.min() < 0 < lever.max():
 
-            def moment(at: float) -> float:
-                weighted = line * np.exp(at * own - (at * own).max())
-                return float((weighted * own).sum() / weighted.sum())
+            def moment(slope: float) -> float:
+                weighted = line * np.exp(slope * lever - (slope * lever).max())
+                return float((weighted * lever).sum() / weighted.sum())
 
             reach = 1.0
             while reach < STEEPEST and moment(-reach) * moment(reach) > 0:
@@ -85,7 +85,7 @@ class Resultants:
                 from scipy.optimize import brentq
 
                 slope = float(brentq(moment, -reach, reach, xtol=1e-15, rtol=1e-14))
-        factor = np.exp(slope * arm - (slope * own).max())
+        factor = np.exp(slope * arm - (slope * lever).max())
         return np.asarray((factor * (self.total / float((line * factor[loaded]).sum())))[:, None])
 
     def off_position(self, pressure: FloatArray) -> float:
@@ -124,18 +124,18 @@ def solve_complementarity(
         residual = np.where(state.contact, opening, 0.0)
         violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
         scale = np.ptp(state.sunk)
-        # On a few coarse cells, all of which touch, everything may sink alike.
+        # All cells of a coarse grid may touch and sink equally.
         history.append(float(violation / scale) if scale > 0 else np.inf)
-        step, along, curvature = state.search(residual)
+        step, displacement, curvature = state.search(residual)
         moved = state.pressure - step * state.direction
         change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
         closed = ~state.contact & (opening < -OVERLAP * tolerance * scale)
         if (moved < 0).any() or closed.any():
-            state.change_area(moved, closed, opening, step, along)
+            state.change_area(moved, closed, opening, step, displacement)
         else:
-            state.pressure, state.sunk, state.fresh = moved, state.sunk - step * along, False
-            settled = violation <= tolerance * scale and change <= tolerance
-            if settled and resultants.off_position(state.pressure) <= tolerance:
+            state.pressure, state.sunk, state.fresh = moved, state.sunk - step * displacement, False
+            converges = violation <= tolerance * scale and change <= tolerance
+            if converges and resultants.off_position(state.pressure) <= tolerance:
                 converged = True
                 break
         if curvature <= 0:
@@ -173,7 +173,7 @@ class _State:
         return self._operator(pressure)
 
     def _scale_guess(self) -> None:
-        """Take the multiple of the guess on which the prescribed approach does as much work as the displacement."""
+        """Scale the guess: the work of the prescribed approach equals the work of the displacement."""
         gap = self._gap
         work = -float((self.pressure * np.where(self._possible, gap, 0.0)).sum())
         if work <= 0:  # a guess that lies where the shape does not reach
@@ -197,9 +197,9 @@ class _State:
         motions = self._motions
         if self.fresh:
             self._weights = [
-                np.where(self.contact, self._preconditioner(np.where(self.contact, each, 0.0)), 0.0) for each in motions
+                np.where(self.contact, self._preconditioner(np.where(self.contact, mode, 0.0)), 0.0) for mode in motions
             ]
-            self._gram = np.array([[float((weight * each).sum()) for each in motions] for weight in self._weights])
+            self._gram = np.array([[float((weight * mode).sum()) for mode in motions] for weight in self._weights])
         height = np.where(self._possible, self._gap + self.sunk, np.inf)
         inside = np.where(self.contact, height, 0.0)
         if motions:
@@ -208,11 +208,11 @@ class _State:
                 self.motion = np.asarray(np.array(works) / self._gram[0])
             else:  # least squares, for a contact of one column of cells cannot tilt
                 self.motion = np.asarray(np.linalg.lstsq(self._gram, works, rcond=None)[0])
-        level = sum((amount * each for amount, each in zip(self.motion, motions, strict=True)), np.zeros((1, 1)))
+        level = sum((amount * mode for amount, mode in zip(self.motion, motions, strict=True)), np.zeros((1, 1)))
         return np.asarray(height - level)
 
     def search(self, residual: FloatArray) -> tuple[float, FloatArray, float]:
-        """Turn the direction; return the step along it, what it displaces and its curvature."""
+        """Turn the direction; return the step, the displacement under the direction and the curvature."""
         descent = np.where(self.contact, self._preconditioner(residual), 0.0)
         if self.fresh or self._slope == 0.0:
             direction = descent
@@ -222,13 +222,13 @@ class _State:
             direction = descent + turn * self.direction
         self._slope, self._residual = float((residual * descent).sum()), residual
         self.direction = np.where(self.contact, direction, 0.0)
-        along = self._apply(self.direction)
-        curvature = float((self.direction * along).sum())
+        displacement = self._apply(self.direction)
+        curvature = float((self.direction * displacement).sum())
         step = float((residual * self.direction).sum()) / curvature if curvature > 0 else 0.0
-        return step, along, curvature
+        return step, displacement, curvature
 
     def change_area(
-        self, moved: FloatArray, closed: BoolArray, opening: FloatArray, step: float, along: FloatArray
+        self, moved: FloatArray, closed: BoolArray, opening: FloatArray, step: float, displacement: FloatArray
     ) -> None:
         """Take cells out of the contact whose pressure has become negative, and cells that overlap into it."""
         moved[moved < 0] = 0.0
@@ -237,20 +237,20 @@ class _State:
             scaled = self._preconditioner(np.where(closed, opening, 0.0))
             moved[closed] = np.maximum(-scaled[closed], LEAST_ENTRY * moved.max())
         moved = self._resultants.restored(self._balance_sides(moved))
-        settled = self._apply(moved)
+        sunk = self._apply(moved)
         part = 1.0
-        # Cells that only leave the contact cannot do so for ever; those that enter may overshoot.
+        # Cells leave the contact finitely often; cells that enter may overshoot.
         if closed.any():
-            part = _descent_fraction(moved - self.pressure, settled - self.sunk, opening)
+            part = _descent_fraction(moved - self.pressure, sunk - self.sunk, opening)
         if part > 0:
             self.pressure = moved if part == 1.0 else self.pressure + part * (moved - self.pressure)
-            self.sunk = settled if part == 1.0 else self.sunk + part * (settled - self.sunk)
+            self.sunk = sunk if part == 1.0 else self.sunk + part * (sunk - self.sunk)
         else:
-            self._step_to_border(step, along)
+            self._step_to_border(step, displacement)
         self.contact = self.pressure > 0
         self.fresh = True
 
-    def _step_to_border(self, step: float, along: FloatArray) -> None:
+    def _step_to_border(self, step: float, displacement: FloatArray) -> None:
         """Follow the direction until the first cell leaves the contact: that keeps the resultants and descends."""
         change = -step * self.direction
         falling = self.contact & (change < 0)
@@ -258,7 +258,7 @@ class _State:
         part = min(1.0, float(reach.min(initial=1.0)))
         pressure = self.pressure + part * change
         pressure[falling] = np.where(reach <= part, 0.0, np.maximum(pressure[falling], 0.0))
-        self.pressure, self.sunk = pressure, self.sunk - part * step * along
+        self.pressure, self.sunk = pressure, self.sunk - part * step * displacement
 
 
 def _descent_fraction(change: FloatArray, sinking: FloatArray, opening: FloatArray) -> float:

@@ -27,7 +27,7 @@ OPENING_POWER = 2 / 3
 
 
 class ContactOperator(Protocol):
-    """What the contact needs of one body or of two."""
+    """Surface operator of one body or of a pair."""
 
     def __call__(self, loads: Mapping[Load, FloatArray]) -> FloatArray:
         """Displacement (m) of the cell centres under `loads` (Pa)."""
@@ -51,7 +51,7 @@ class ContactProblem:
     gap: FloatArray
     """(x, y): initial gap, metres, less the approach if that is prescribed; infinite where there is nothing to
     touch."""
-    resultants: Resultants  # what the pressure has to sum up to
+    resultants: Resultants  # prescribed resultants of the pressure
     friction: float  # coefficient of the traction along +y
     tolerance: float  # tolerance of the iteration
     max_iterations: int  # bound on the iterations
@@ -110,16 +110,16 @@ def _levelled(problem: ContactProblem) -> FloatArray:
     return problem.gap - slope * lever
 
 
-def _continued_square(operator: ContactOperator, problem: ContactProblem, found: ContactIterate) -> FloatArray:
+def _continued_square(operator: ContactOperator, problem: ContactProblem, iterate: ContactIterate) -> FloatArray:
     """Squared pressure, continued smoothly below zero outside the contact."""
     # Near an edge the squared pressure and the opening to the power 2/3 are linear in the distance from it (Johnson,
     # Contact Mechanics, section 5.1): interpolated to finer cells the zero puts the edge within a cell.
     from scipy.ndimage import binary_dilation
 
-    squared = found.pressure**2
+    squared = iterate.pressure**2
     contact = squared > 0
-    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: found.pressure})
-    opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(found.motion), 0.0))
+    height = np.where(np.isfinite(problem.gap), problem.gap, 0.0) + operator({Load.NORMAL: iterate.pressure})
+    opened = np.where(contact | np.isinf(problem.gap), 0.0, np.maximum(height - problem.level(iterate.motion), 0.0))
     opening = opened**OPENING_POWER
     inner = contact & binary_dilation(~contact)
     outer = (opening > 0) & binary_dilation(contact)
@@ -149,7 +149,7 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
     # The unknowns are forces on the cells, pressure times weight: conjugate to displacements in the plain product.
     weights = problem.grid.weights
     guess = _first_guess(operator, problem) if start is None else start
-    found = solve_complementarity(
+    iterate = solve_complementarity(
         lambda forces: operator({Load.NORMAL: forces / weights}),
         lambda gap: weights * operator.precondition(gap),
         problem.gap,
@@ -158,7 +158,7 @@ def solve_normal(operator: ContactOperator, problem: ContactProblem, start: Floa
         tolerance=problem.tolerance,
         max_iterations=problem.max_iterations,
     )
-    return replace(found, pressure=found.pressure / weights)
+    return replace(iterate, pressure=iterate.pressure / weights)
 
 
 def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> ContactIterate:
@@ -174,9 +174,9 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
         previous, bent_before = iterate.pressure, bent
         bent = operator({Load.ALONG_Y: problem.friction * previous})
         applications += 1
-        # What the friction of this pressure bends the surface otherwise than that of the last one.
-        unsettled = float(np.ptp((bent - bent_before)[previous > 0])) / scale
-        if max(tolerance, change) <= problem.tolerance and unsettled <= 0.5 * problem.tolerance:
+        # Difference of the displacements under the last two tractions.
+        bending_change = float(np.ptp((bent - bent_before)[previous > 0])) / scale
+        if max(tolerance, change) <= problem.tolerance and bending_change <= 0.5 * problem.tolerance:
             return ContactIterate(previous, iterate.motion, applications, True, iterate.history)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
         iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)

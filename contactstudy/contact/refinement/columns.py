@@ -31,7 +31,7 @@ MOST_COLUMNS = 600  # columns at which the refinement ends, whatever is settled
 
 @dataclass(frozen=True, eq=False)
 class AxialShape:
-    """What the refinement knows of the shape that is pressed."""
+    """Shape of the indenter along the axis."""
 
     start: float  # where it can be pressed, metres
     stop: float
@@ -42,7 +42,7 @@ class AxialShape:
     """How far the face of the body goes on beyond either end, metres; 0 or less where it does not."""
     exponents: tuple[float, float] = (np.nan, np.nan)
     """Exponent ``m`` of the pressure ``K d**-m`` at either end, if that is a sharp one on a face that goes on; NaN
-    where theory knows none."""
+    without a law."""
     fades: bool = False
     """Whether the pressure falls towards a common end like a small power of the distance, which no columns settle."""
     corners: tuple[float, ...] = ()  # positions of convex corners, metres: edges of columns
@@ -128,12 +128,12 @@ def overlooked(shape: AxialShape, edges: FloatArray, pressed: BoolArray, opening
     heights = _heights(shape, edges)
     level = heights.mean(axis=1) - opening
     deepest = heights.argmin(axis=1)
-    beside = np.zeros_like(pressed)
-    beside[1:] |= pressed[:-1] & (deepest[1:] == 0)
-    beside[:-1] |= pressed[1:] & (deepest[:-1] == PART.size - 1)
+    neighbour = np.zeros_like(pressed)
+    neighbour[1:] |= pressed[:-1] & (deepest[1:] == 0)
+    neighbour[:-1] |= pressed[1:] & (deepest[:-1] == PART.size - 1)
     lowest = _lowest(shape, edges, heights)
-    beside &= lowest >= heights.min(axis=1)
-    missed = ~pressed & ~beside & (level - lowest > MISSED * shape.depth)
+    neighbour &= lowest >= heights.min(axis=1)
+    missed = ~pressed & ~neighbour & (level - lowest > MISSED * shape.depth)
     wide = np.diff(edges) > NARROWEST_BENT * shape.half_width
     return np.asarray(wide & (missed | (pressed & _curved(shape, edges, heights))))
 

@@ -28,17 +28,17 @@ def _crest_jumps(pressure: FloatArray) -> FloatArray:
     """Per column with a pressure above both neighbours: the larger step of its square, over this square."""
     # A narrow crest beside a contact's end may be lower than the peak of its half, by which jumps are measured.
     top = pressure.max(axis=1)
-    own, lowest = top[1:-1], np.minimum(top[:-2], top[2:])
-    crest = (own > top[:-2]) & (own > top[2:]) & (own > LESSER_HALF * top.max())
+    middle, lowest = top[1:-1], np.minimum(top[:-2], top[2:])
+    crest = (middle > top[:-2]) & (middle > top[2:]) & (middle > LESSER_HALF * top.max())
     steps = np.zeros_like(top)
-    steps[1:-1][crest] = 1 - (lowest[crest] / own[crest]) ** POWERS[0]
+    steps[1:-1][crest] = 1 - (lowest[crest] / middle[crest]) ** POWERS[0]
     return np.asarray(steps)
 
 
 def _jumps(edges: FloatArray, pressure: FloatArray, power: float) -> FloatArray:
     """Per column: largest step of a power of the pressure to a neighbour, over its largest in the same half."""
-    left = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
-    top = np.where(left, pressure[left].max(), pressure[~left].max())
+    first_half = centres_of(edges) < 0.5 * (edges[0] + edges[-1])
+    top = np.where(first_half, pressure[first_half].max(), pressure[~first_half].max())
     top = np.maximum(top, LESSER_HALF * pressure.max())
     steps = np.abs(np.diff((pressure / pressure.max()) ** power, axis=0)).max(axis=1)
     return np.asarray(np.maximum(np.append(steps, 0), np.insert(steps, 0, 0)) / (top / pressure.max()) ** power)
@@ -83,7 +83,7 @@ Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
 
 @dataclass(frozen=True, eq=False)
 class RefinedColumns:
-    """Columns on which a contact is settled."""
+    """Columns of a refined contact."""
 
     edges: FloatArray  # edges of the columns, metres
     pressure: FloatArray  # (column, y): pressure, Pa
@@ -126,7 +126,7 @@ class RoughColumns(NamedTuple):
 
 
 def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
-    """Columns on which to begin, whose peak is within some percent; `refine_columns` says what is raised."""
+    """First columns, with a peak to some percent."""
     state = _Refinement(solve, shape, first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
         state.refine(theta)
@@ -234,9 +234,9 @@ class _Refinement:
         return float(self.edges[-1] - self.edges[0])
 
     def _half(self, side: int) -> FloatArray:
-        left = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
-        own: FloatArray = self.pressure[left if side == 0 else ~left]
-        return own
+        first_half = centres_of(self.edges) < 0.5 * (self.edges[0] + self.edges[-1])
+        half: FloatArray = self.pressure[first_half if side == 0 else ~first_half]
+        return half
 
     def read(self) -> None:
         """Note the peak of either half, and the pressure and the load at either end."""
@@ -255,8 +255,8 @@ class _Refinement:
         for side in (0, 1):
             fades = self.shape.fades and self.shape.room[side] == 0
             # The pressure at an end, sharp or fading at the end of the face, does not settle and has no law.
-            unsettled = (self.shape.sharp(side) or fades) and self.laws[side] is None
-            if unsettled and self.pressure[-side].any():
+            diverges = (self.shape.sharp(side) or fades) and self.laws[side] is None
+            if diverges and self.pressure[-side].any():
                 first, last = (np.inf, last) if side == 0 else (first, np.inf)
                 if self._half(side).max() <= self.pressure[-side].max():
                     peak_errors[side] = np.inf
