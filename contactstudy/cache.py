@@ -130,7 +130,7 @@ def limit(nbytes: int) -> None:
 def cached(
     kind: str, nbytes: Callable[[Any], int]
 ) -> Callable[[Callable[Arguments, Value]], Callable[Arguments, Value]]:
-    """Cache the values of a function of hashable positional arguments, the key; `nbytes` is the size of a value.
+    """Cache the values of a function by its hashable arguments; `nbytes` is the size of a value.
 
     Values are shared by all threads; their arrays become read-only.
     """
@@ -140,8 +140,7 @@ def cached(
 
         @wraps(compute)
         def look_up(*arguments: Arguments.args, **named: Arguments.kwargs) -> Value:
-            assert not named, "the key of a cached value is positional"
-            key = (kind, arguments)
+            key = (kind, (arguments, tuple(named.items())))
             with _lock:
                 entry = _store.get(key)
                 counts[0 if entry else 1] += 1

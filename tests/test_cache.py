@@ -56,6 +56,15 @@ def test_a_value_larger_than_the_limit_is_not_kept_and_drops_nothing() -> None:
     assert made == ["aaaa", "larger than all", "larger than all"]
 
 
+def test_arguments_by_name_are_part_of_the_key() -> None:
+    @cached("products", lambda product: 1)
+    def multiply(number: int, factor: int = 1) -> int:
+        return number * factor
+
+    assert [multiply(2, factor=factor) for factor in (3, 4, 3)] == [6, 8, 6]
+    assert cache.info().kinds["products"].computed == 2
+
+
 def test_kinds_do_not_meet() -> None:
     first, _ = recorded("first")
     second, made = recorded("second")
