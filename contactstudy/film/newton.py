@@ -461,7 +461,7 @@ def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArr
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Equations of columns that exchange lubricant with their neighbours, as if all columns carried alike, eliminated."""
+    """Columns that exchange lubricant, eliminated one after the other, as if all columns carried alike."""
 
     inverses: FloatArray  # (x, y, y): inverses of the columns' equations without the columns before
     before: FloatArray  # (x, y): coefficients of the pressures in the column before and in the one after
