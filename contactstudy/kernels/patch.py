@@ -24,9 +24,15 @@ from contactstudy.kernels.load import Load
 TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres
 
 
-def _inverse_sinh_ratio(numerator: FloatArray, offset: FloatArray, z: FloatArray | float) -> FloatArray:
-    """``asinh(numerator / hypot(offset, z))``, finite where the denominator vanishes (the edge of a corner)."""
-    return np.asarray(np.arcsinh(numerator / np.maximum(np.hypot(offset, z), 1e-30)))
+def _inverse_sinh_ratio(numerator: FloatArray, square: FloatArray, r: FloatArray) -> FloatArray:
+    """``asinh(numerator / sqrt(square))`` with ``r**2 = numerator**2 + square``; finite where `square` vanishes."""
+    ratio = (np.abs(numerator) + r) / np.sqrt(np.maximum(square, TINY))
+    return np.copysign(np.log(np.maximum(ratio, 1.0)), numerator)
+
+
+def _angle(opposite: FloatArray, adjacent: FloatArray) -> FloatArray:
+    """Angle whose tangent is ``opposite / adjacent``, for `adjacent` not negative."""
+    return np.arctan(opposite / np.maximum(adjacent, TINY))
 
 
 def _stacked(*components: FloatArray) -> FloatArray:
@@ -42,8 +48,8 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
     xx, yy = x * x, y * y
     r = np.sqrt(xx + yy + z * z)
     xy = x * y
-    v_z = -np.arctan2(xy, z * r)
-    chi_xx = np.arctan2(xy * (xx + yy), (r + z) * (r * xx + z * yy))
+    v_z = -_angle(xy, z * r)
+    chi_xx = _angle(xy * (xx + yy), (r + z) * (r * xx + z * yy))
     chi_yy = -v_z - chi_xx
     along_x = 1.0 / np.maximum(r * (xx + z * z), TINY)
     along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
@@ -61,19 +67,19 @@ def normal_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: 
 
 def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
     """Corner functions of the six stresses under unit shear traction along +y; otherwise as :func:`normal_corner`."""
-    xx, yy = x * x, y * y
-    r = np.sqrt(xx + yy + z * z)
+    xx, yy, zz = x * x, y * y, np.square(z)
+    r = np.sqrt(xx + yy + zz)
     safe_r, r_z = np.maximum(r, TINY), np.maximum(r + z, TINY)
-    v_y = _inverse_sinh_ratio(x, y, z)
-    along_y = 1.0 / np.maximum(r * (yy + z * z), TINY)
+    v_y = _inverse_sinh_ratio(x, yy + zz, r)
+    along_y = 1.0 / np.maximum(r * (yy + zz), TINY)
     x_r, y_r, term = x / r_z, y / r_z, z * x * along_y
     return _stacked(
         2 * poisson * (v_y - x_r) - z / safe_r * x_r,
         2 * v_y + 2 * poisson * x_r + z / safe_r * x_r - z * term,
         z * term,
-        _inverse_sinh_ratio(y, x, z) - 2 * poisson * y_r - z / safe_r * y_r,
+        _inverse_sinh_ratio(y, xx + zz, r) - 2 * poisson * y_r - z / safe_r * y_r,
         -z / safe_r,
-        -np.arctan2(x * y, z * r) + y * term,
+        -_angle(x * y, z * r) + y * term,
     )
 
 
@@ -90,15 +96,16 @@ class _Potentials:
     """Corner functions of the potentials' derivatives at offsets ``(X, Y, z)``."""
 
     def __init__(self, x: FloatArray, y: FloatArray, z: FloatArray | float) -> None:
-        r = np.sqrt(x * x + y * y + z * z)
+        xx, yy, zz = x * x, y * y, np.square(z)
+        r = np.sqrt(xx + yy + zz)
         xy = x * y
         self.r, self.z = r, z
         self.log = np.log(np.maximum(r + z, TINY))
-        self.asinh_x = np.arcsinh(x / np.maximum(np.hypot(y, z), TINY ** (1 / 5)))
-        self.asinh_y = np.arcsinh(y / np.maximum(np.hypot(x, z), TINY ** (1 / 5)))
-        self.v_z = -np.arctan2(xy, z * r)
-        self.chi_xx = np.arctan2(xy * (r - z), x * x * r + y * y * z)
-        self.chi_yy = np.arctan2(xy * (r - z), y * y * r + x * x * z)
+        self.asinh_x = _inverse_sinh_ratio(x, yy + zz, r)
+        self.asinh_y = _inverse_sinh_ratio(y, xx + zz, r)
+        self.v_z = -_angle(xy, z * r)
+        self.chi_xx = _angle(xy * (r - z), x * x * r + y * y * z)
+        self.chi_yy = _angle(xy * (r - z), y * y * r + x * x * z)
         self.v = x * self.asinh_y + y * self.asinh_x + z * self.v_z
         self.chi_x = y * self.log + z * self.asinh_y + x * self.chi_xx
         self.chi_y = x * self.log + z * self.asinh_x + y * self.chi_yy

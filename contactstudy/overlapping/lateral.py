@@ -107,6 +107,20 @@ class LateralColumns:
         even, odd = (waves[:, selected].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
         return (even, odd) if load.sign_y > 0 else (odd, -even)
 
+    def at_positions(self) -> LateralColumns:
+        """Columns whose amplitudes are the parts of the sum at one position each: fewer for few positions along y."""
+        along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even, self.odd], axis=2)
+        along_x, parities, positions = [], [], []
+        for parity in np.unique(self.parities):
+            selected = self.parities == parity
+            sums = along_nodes[..., selected] @ waves[:, selected]
+            loaded = sums.any(axis=(0, 1))
+            along_x.append(sums[..., loaded].swapaxes(0, 1))
+            parities.append(np.full(loaded.sum(), parity))
+            positions.append(np.eye(loaded.size)[loaded])
+        even, odd = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
+        return LateralColumns(self.nodes, np.concatenate(along_x, axis=2), np.concatenate(parities), even, odd)
+
 
 def lateral_panels(
     first: float,
@@ -163,7 +177,9 @@ def lateral_columns(
     columns = LateralColumns(
         panel.fine, np.stack(along_x, axis=-1), np.array(parities), np.stack(even, axis=1), np.stack(odd, axis=1)
     )
-    return columns if panel.interpolation is None else _interpolate_columns(columns, panel.nodes, panel.interpolation)
+    if panel.interpolation is not None:
+        columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
+    return columns.at_positions() if 2 * y.size * len(parts) < columns.parities.size else columns
 
 
 def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:
