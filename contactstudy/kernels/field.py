@@ -22,6 +22,7 @@ from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, STRESS_CORNERS
 from contactstudy.kernels.strips import row_level, strips_of
+from contactstudy.threads import one_blas_thread
 
 ALIGNED_GROUPS = 2  # largest number of offsets along x with convolutions instead of corner sums. Speed.
 
@@ -55,7 +56,8 @@ def half_space_field(
             for row in rows:
                 aligned[row.points] = True
     if not aligned.all():
-        field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y, z, extent=extent)
+        with one_blas_thread():
+            field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y, z, extent=extent)
     if not aligned.any():
         return field
     if shape is None:
