@@ -205,7 +205,9 @@ def _shaped_jumps(
     """Jumps of the columns around each position, split unless they are narrow, and of far columns."""
     edges, shape = fine.edges, fine.shape_cells
     load = fine.along_y(fine.far_load, shape.far_load)
-    base, far = ([layer.loads(load) for layer in group] for group in (layers, beyond))
+    base, far = (
+        [with_images(layer.loads(load), fine.image, fine.extent) for layer in group] for group in (layers, beyond)
+    )
     for start in range(0, x.size, BATCH):
         positions = x[start : start + BATCH].tolist()
         surroundings = [_surroundings(position, fine, narrow) for position in positions]

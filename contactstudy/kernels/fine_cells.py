@@ -126,9 +126,9 @@ class FineCells:
 
     @cached_property
     def far_load(self) -> FloatArray:
-        """Load on the cells and their nearest images with forces and first moments of the smooth load."""
+        """Load on the cells with forces and first moments of the smooth load: array (cell_x, y)."""
         # Joined cells of the smooth load have other means than the cells.
-        return with_images(self._along_x.cell_means.T, self.image, self.extent) + self.x_moments.total.T
+        return np.asarray(self._along_x.cell_means.T + self._without_images(self.x_moments.total.T))
 
     def fine_depths(self, z: FloatArray) -> BoolArray:
         """Whether cells along y are refined at depths `z`."""

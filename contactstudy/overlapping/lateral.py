@@ -20,7 +20,7 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
 
-NEGLIGIBLE = 1e-13  # part of a load that is neglected: rounding. Fields of loads add up to this accuracy.
+NEGLIGIBLE = 1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
 
 POLES, BENDING_POLES = 2, 3
 """Order of an amplitude's pole at wavenumber 0, eq. (30); 3 under a force along x, which bends the body, eq. (30a)."""

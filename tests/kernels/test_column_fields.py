@@ -20,7 +20,7 @@ from contactstudy.kernels.column_fields import (
 )
 from contactstudy.kernels.corner_sums import AlignedPoints, EvenOffsets, Layer, merge_columns, midpoint_cells
 from contactstudy.kernels.field import STRESS_PARITIES, displacement_influence, half_space_field
-from contactstudy.kernels.fine_cells import FineCells, resolved_columns
+from contactstudy.kernels.fine_cells import FineCells, resolved_columns, with_images
 from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
 from contactstudy.kernels.patch import STRESS_CORNERS
@@ -263,7 +263,7 @@ def test_neither_unit_nor_place_decides_anything(x: float, narrow: float, *, ste
 def test_columns_with_those_inserted_carry_all_of_the_force(x: float, image: int) -> None:
     own = fine(image=image)
     each = around(x, own)
-    forces = own.far_load * np.diff(own.edges)[:, None]
+    forces = with_images(own.far_load, image, own.extent) * np.diff(own.edges)[:, None]
     inserted = own.columns([each.inserted]) + each.moment_loads(own)
     inside = (inserted * np.diff(each.inserted)[:, None]).sum(axis=0)
     outside = forces.sum(axis=0) - forces[each.lowest : each.highest].sum(axis=0)

@@ -29,10 +29,10 @@ GRID = Grid((0.0, 4.0), (-1.0, 1.0), 12, 40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 
-def integrated(panel: LateralPanel, parts: dict[int, np.ndarray]) -> np.ndarray:
+def integrated(panel: LateralPanel, parts: dict[int, np.ndarray], y: np.ndarray = Y) -> np.ndarray:
     """Integrals over the panel of ``exp(-0.3 k)`` times each load: array (load, part of y, parity, cell, y)."""
-    total = np.zeros((2, 2, len(parts), GRID.cells_x, Y.size))
-    columns = lateral_columns(panel, parts, GRID, Y)
+    total = np.zeros((2, 2, len(parts), GRID.cells_x, y.size))
+    columns = lateral_columns(panel, parts, GRID, y)
     assert columns is not None
     for index, parity in enumerate(parts):
         amplitudes = columns.along_x[..., columns.parities == parity] * np.exp(-0.3 * columns.nodes)[:, None]
@@ -53,6 +53,18 @@ def test_columns_equal_the_load_at_every_wavenumber(seed: int, rank: int, split:
     for panel in lateral_panels(0.05, 2.5, 60.0, replace(Resolution(), lateral_nodes=20)):
         direct = replace(panel, nodes=panel.fine, interpolation=None)
         np.testing.assert_allclose(integrated(panel, parts), integrated(direct, parts), atol=1e-9 * rank)
+
+
+def test_few_positions_have_two_columns_each_and_the_same_integrals():
+    pressure = np.random.default_rng(2).random(GRID.shape)
+    parts = {1: pressure + pressure[::-1], -1: pressure - pressure[::-1]}
+    for panel in lateral_panels(0.05, 2.5, 60.0, Resolution()):
+        few = lateral_columns(panel, parts, GRID, Y[:1])
+        assert few is not None
+        assert few.parities.size <= 4
+        for number in range(Y.size):
+            position = integrated(panel, parts, Y[number : number + 1])
+            np.testing.assert_allclose(position[..., 0], integrated(panel, parts)[..., number], atol=1e-12)
 
 
 def test_product_of_x_and_y_has_one_column_per_node():

@@ -38,6 +38,8 @@ CONVERGED_TOLERANCES = 10.0
 OPEN_TOLERANCES = 10.0
 """Least open gap of `open_pressure_error`, over the tolerance and the variation of the displacement."""
 
+SYMMETRIC = 1e-10  # rounding of a symmetric gap over the largest, and of symmetric edges over the window. Accuracy.
+
 
 @dataclass(frozen=True)
 class Certificate:
@@ -100,6 +102,28 @@ class Shape(NamedTuple):
     def directions(self) -> tuple[Load, ...]:
         """Loads that displace the surfaces normally."""
         return (Load.NORMAL, Load.ALONG_Y) if self.coupled_friction else (Load.NORMAL,)
+
+    def reflections(self) -> list[int]:
+        """Axes along which a reflection changes neither bodies nor gap nor load."""
+        if self.surface is not None:
+            return []
+        low, high = self.grid.x_range
+        rounding, position = SYMMETRIC * (high - low), self.prescribed.load_position
+        centres = [0.5 * sum(self.body.extent)]
+        if self.counterbody is not None:
+            centres.append(self.counterbody.start + 0.5 * sum(self.counterbody.body.extent))
+        if position is not None:
+            centres.append(position)
+        edges = self.grid.x_edges
+        even_x = np.abs(edges + edges[::-1] - (low + high)).max() < rounding and all(
+            np.isnan(centre) or abs(centre - 0.5 * (low + high)) < rounding for centre in centres
+        )
+        gap = np.where(np.isfinite(self.gap.values), self.gap.values, -1.0)
+        return [
+            axis
+            for axis, even in enumerate((even_x, not self.coupled_friction))
+            if even and np.abs(gap - np.flip(gap, axis)).max() < SYMMETRIC * gap.max()
+        ]
 
     def referred(self, solve: SolveReferred, tolerance: float, start: FloatArray | None = None) -> Referred:
         """Solve a contact of this shape relative to the reference lines of its bodies."""
@@ -186,7 +210,10 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate, motions = _iterate(shape, settings, start)
+        # Symmetric problems are convex: the mean of a solution and its image is a solution, and its fields cost less.
         pressure = iterate.pressure.copy()
+        for axis in shape.reflections():
+            pressure = 0.5 * (pressure + np.flip(pressure, axis))
         loads = shape.loads(pressure)
         displacement = _body_operator(shape)(loads)
         relative = displacement if shape.counterbody is None else contact_operator(shape)(loads)

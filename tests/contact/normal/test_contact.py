@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pytest
 
-from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material
+from contactstudy import ConvergenceWarning, FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
 from contactstudy.bodies import Body, Counterbody
 from contactstudy.cache import ArrayKey
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, _off_position, contact_of
@@ -78,6 +78,30 @@ def test_units_decide_nothing(asked: Asked) -> None:
         assert getattr(other, name) / unit == pytest.approx(value, rel=1e-6, abs=least), name
     for name, value in vars(plain.certificate).items():
         assert getattr(other.certificate, name) == pytest.approx(value, rel=0.1, abs=1e-10), name
+
+
+@pytest.mark.parametrize("ended", [False, True])
+def test_symmetric_contacts_have_symmetric_pressures(ended: bool) -> None:
+    edges = ENDED if ended else COARSE
+    grid = Grid.between(edges, (-1.5, 1.5), 20)
+    middle = 0.5 * (edges[0] + edges[-1])
+    gap = 0.05 * ((grid.x[:, None] - middle) ** 2 + grid.y**2)
+    material = Material(0.91, 0.3)
+    body: Body = FiniteLengthSpace(material=material, length=3.0) if ended else HalfSpace(material=material)
+    shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
+    pressure = contact_of(shape, Settings()).pressure
+    assert (pressure == pressure[::-1]).all()
+    assert (pressure == pressure[:, ::-1]).all()
+    assert shape.reflections() == [0, 1]
+    off_middle = (
+        (shape._replace(coupled_friction=0.3), [0]),
+        (shape._replace(gap=ArrayKey(gap + 1e-6 * grid.x[:, None])), [1]),
+        (shape._replace(prescribed=Prescribed(0.05, middle + 1e-6)), [1]),
+        (shape._replace(body=QuarterSpace(material=material)), [1]),
+        (shape._replace(counterbody=Counterbody(FiniteLengthSpace(length=1.0, material=material), 0.1)), [1]),
+    )
+    for other, axes in off_middle:
+        assert other.reflections() == axes
 
 
 def moved(found: Contact) -> Any:
