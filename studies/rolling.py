@@ -96,11 +96,11 @@ def draw_stress(ax: Axes, study: xr.Dataset) -> None:
     """Largest von Mises stress below the surface near a free end, and tension on the surface there."""
     swept = study["longitudinal_creepage"]
     p0 = study["hertz_max_pressure"]
-    near = study["x"] <= study["hertz_half_width"].max()
+    near = study.sel(x_over_a=slice(0.0, 1.0))
     # A transverse traction that ends at the edge makes the stress unbounded at the corner.
-    below = study["z"] >= BELOW * study["hertz_half_width"].max()
-    mises = study["von_mises"].isel(x=near.values, z=below.values).max(("x", "y_field", "z")) / p0
-    tension = study["sigma_yy"].isel(x=near.values).sel(z=0.0).max(("x", "y_field")) / p0
+    below = near["von_mises"].sel(z_over_a=slice(BELOW, None))
+    mises = below.max(("x_over_a", "y_field_over_a", "z_over_a")) / p0
+    tension = near["sigma_yy"].sel(z_over_a=0.0).max(("x_over_a", "y_field_over_a")) / p0
     markers = iter("osD^")
     ticks = np.arange(swept.size)
     for friction in study["friction"].values:

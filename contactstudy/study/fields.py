@@ -156,12 +156,11 @@ class Fields:
             if dim in axes:
                 continue
             over_a = scaled and _equal(entry.over_a, entry.over_a[0]) and not entry.has_widths
-            if self._common and dim == "x" and "x_field" in positions and (scaled or entry.alike):
-                added, coords = self._common_axis(["x", "x_field"])
+            if scaled and (self._common or over_a):
+                joint = self._common and dim == "x" and "x_field" in positions
+                added, coords = self._common_axis(["x", "x_field"] if joint else [dim])
             elif entry.alike:
                 added, coords = {dim: StudyAxis(dim, entry.values[0].size)}, self._plain(dim)
-            elif scaled and (self._common or over_a):
-                added, coords = self._common_axis([dim])
             else:
                 added, coords = self._padded(dim)
             axes |= added
@@ -198,10 +197,9 @@ class Fields:
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis that all cases share along dimensions of one direction: over the half-width, or metres if all agree."""
-        metres = all(self._positions[dim].alike for dim in dims) and len({*self._positions[dims[0]].scales}) == 1
-        name = dims[0] if metres else f"{dims[0]}_over_a"
-        sources = {dim: self._sources(dim, metres) for dim in dims}
+        """Axis over the half-width that all cases share along dimensions of one direction."""
+        name = f"{dims[0]}_over_a"
+        sources = {dim: self._sources(dim) for dim in dims}
         axis, borders = self._joint(sources)
         axes = {}
         for dim in dims:
@@ -210,15 +208,14 @@ class Fields:
             outside = 0.0 if dim == "y" else np.nan
             maps = None if remains else _maps(sources[dim], axis, borders, outside, of_points)
             axes[dim] = StudyAxis(name, axis.size, maps)
-        return axes, self._common_coordinates(dims, sources, axis, borders, metres=metres)
+        return axes, self._common_coordinates(dims, sources, axis, borders)
 
-    def _sources(self, dim: str, metres: bool) -> list[FloatArray]:
-        """Edges of the cells, or points, of all cases, in metres or over the half-width."""
+    def _sources(self, dim: str) -> list[FloatArray]:
+        """Edges of the cells, or points, of all cases over the half-width."""
         positions = self._positions[dim]
-        scales = [1.0] * len(positions.values) if metres else positions.scales
         if dim in CELLS:
-            return [positions.edges(number) / scale for number, scale in enumerate(scales)]
-        return [values / scale for values, scale in zip(positions.values, scales, strict=True)]
+            return [positions.edges(number) / scale for number, scale in enumerate(positions.scales)]
+        return positions.over_a
 
     def _joint(self, sources: dict[str, list[FloatArray]]) -> tuple[FloatArray, FloatArray]:
         """Positions of a common axis and the borders around each."""
@@ -238,13 +235,7 @@ class Fields:
         return centres(borders), borders
 
     def _common_coordinates(
-        self,
-        dims: list[str],
-        sources: dict[str, list[FloatArray]],
-        axis: FloatArray,
-        borders: FloatArray,
-        *,
-        metres: bool,
+        self, dims: list[str], sources: dict[str, list[FloatArray]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
         """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
         dim, positions = dims[0], self._positions[dims[0]]
@@ -252,15 +243,6 @@ class Fields:
         widths = dim == "x" and (
             positions.has_widths or not _equal(sources[dim], borders) or np.ptp(np.diff(borders)) > 0
         )
-        if metres:
-            coordinates: dict[str, Any] = {dim: (dim, axis)}
-            if np.isfinite(positions.scales).all():
-                coordinates[over_a] = (dim, axis / positions.scales[0])
-            if widths:
-                coordinates["x_width"] = (dim, np.diff(borders))
-            if len(dims) > 1:
-                coordinates["x_field"] = (dim, _within(axis, sources["x_field"][0]))
-            return coordinates
         rows = []
         for number, scale in enumerate(positions.scales):
             source = sources[dim][number]

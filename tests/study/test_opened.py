@@ -55,7 +55,7 @@ def test_stresses_at_different_points_lie_on_a_common_axis(tmp_path):
     cases = [{"e_over_a": e, "field_x_over_a": [0.0, 0.5 + e, 2.0, 4.0]} for e in (0.0, 1.0)]
     run_study(small_study(base=base, sweep={}, cases=cases), tmp_path, workers=0, solver=solve_fake)
     opened = open_study(tmp_path)
-    assert opened["von_mises"].dims[-3:] == ("x_over_a", "y_field", "z")
+    assert opened["von_mises"].dims[-3:] == ("x_over_a", "y_field_over_a", "z_over_a")
     assert opened["pressure"].dims[-2] == "x_over_a"
     for point in (0.0, 0.5, 1.5, 2.0, 4.0):
         assert float(np.abs(opened["x_over_a"] - point).min()) < (1e-12 if point else 1e-6)

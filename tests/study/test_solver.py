@@ -16,7 +16,7 @@ def test_quarter_space_with_the_roller_at_a_distance_from_its_end(tmp_path):
     opened = open_study(tmp_path).sel(body="quarter-space")
     for e_over_a in (0.0, 2.0):
         case = opened.sel(e_over_a=e_over_a)
-        pressed = case["x_over_a"].where(case["pressure"].max("y") > 0)
+        pressed = case["x_over_a"].where(case["pressure"].max("y_over_a") > 0)
         step = float(case["x_over_a"].diff("x_over_a").max())
         assert float(pressed.min()) == pytest.approx(e_over_a + step / 2, abs=step)
         assert float(case["end_traction_residual"]) < 1e-4
