@@ -101,7 +101,13 @@ class EnergySpline:
             (np.kron(first(u, i), second(t, j)) / size.reshape(-1, 1), (value / size).ravel())
             for (i, j), value, size in equations
         ]
-        return cls(first, second, scale, level, _solved(rows).reshape(first(u).shape[1], -1))
+        return cls(
+            approach_axis=first,
+            tilt_axis=second,
+            largest_tilt=scale,
+            level=level,
+            added=_solved(rows).reshape(first(u).shape[1], -1),
+        )
 
     def __call__(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""

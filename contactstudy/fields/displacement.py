@@ -23,11 +23,11 @@ COMPONENTS = ("u_x", "u_y", "u_z")
 def displacement_field(
     body: Body,
     pressure: xr.DataArray,
+    *,
     friction: float = 0.0,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
-    *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
     inside_cells: str | xr.DataArray = UNIFORM,
@@ -76,8 +76,8 @@ def displacement_field(
     >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
     True
     """
-    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells)
-    positions = field_positions(body, prescribed.grid, x, y, z, prescribed.labels)
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells=inside_cells)
+    positions = field_positions(body, prescribed.grid, x, y, z, labels=prescribed.labels)
     displacement = displacement_under(
         body, prescribed.loads, prescribed.grid, Points(*positions.axes), prescribed.shape
     )
@@ -99,7 +99,9 @@ def displacement_under(
         sizes = (axis.size for axis in points)
         fields: dict[Load, FloatArray] = dict.fromkeys(directions, np.zeros((3, *sizes)))
         for part in body.parts:
-            for load, field in _part_displacement(body, part, directions, cells, grid, points, shape).items():
+            for load, field in _part_displacement(
+                body, part, directions, cells, grid, points=points, shape=shape
+            ).items():
                 fields[load] = fields[load] + part.weight * field
         return {load: [field] for load, field in fields.items()}
 
@@ -126,7 +128,7 @@ def _part_displacement(
         for load in loads
     }
     if part.freed and cells.any():
-        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads)
+        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=loads)
         for load, from_ends in end_displacement(problem, *points, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

@@ -138,7 +138,9 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
             samples.append(
-                _nearest_cells(grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, width * DEPTHS)
+                _nearest_cells(
+                    grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, depths=width * DEPTHS
+                )
             )
     middle, half_width = _section(pressure[int(line.argmax())], grid)
     columns = np.flatnonzero(pressure.any(axis=1))
@@ -149,7 +151,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     x = np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
     samples.append(
         _nearest_cells(
-            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, half_width * AXIS_DEPTHS
+            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, depths=half_width * AXIS_DEPTHS
         )
     )
     return Search(grid, extent, off_rim, border, samples)

@@ -183,7 +183,7 @@ def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)
     y: FloatArray = request.dy * np.arange(request.shape[1] + 1.0)
     influence = request.influence
-    spectrum = influence.kernel(x, y, request.dx, request.dy, request.length, request.depth)
+    spectrum = influence.kernel(x, y, request.dx, request.dy, length=request.length, depth=request.depth)
     for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
         moved = spectrum.swapaxes(axis, 2)
         even = np.array(signs) > 0
@@ -232,6 +232,14 @@ def centred_field(
             transformed = 0.5 * transformed[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):
-        convolution = CentredConvolution(influence, *cell, length, mirrored, shape, depth)
+        convolution = CentredConvolution(
+            influence=influence,
+            dx=cell[0],
+            dy=cell[1],
+            length=length,
+            mirrored=mirrored,
+            shape=shape,
+            depth=depth,
+        )
         convolution.fill(field[:, :, number], transformed, rows, columns)
     return field.swapaxes(2, 3)

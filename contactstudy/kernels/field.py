@@ -55,13 +55,13 @@ def half_space_field(
             for row in rows:
                 aligned[row.points] = True
     if not aligned.all():
-        field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y, z, extent=extent)
+        field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y=y, z=z, extent=extent)
     if not aligned.any():
         return field
     if shape is None:
-        field[:, aligned] = _uniform_field(load, influence, grid, x[aligned], y, z, extent)
+        field[:, aligned] = _uniform_field(load, influence, grid, x[aligned], y, z=z, extent=extent)
         return field
-    fine = FineCells(load, shape, grid, extent, influence.load.sign_x)
+    fine = FineCells(load=load, shape=shape, grid=grid, extent=extent, image=influence.load.sign_x)
     components = np.arange(influence.components)
     near, near_x = fine.fine_depths(z), fine.fine_depths_x(z)
     for fine_x in (True, False):
@@ -69,7 +69,7 @@ def half_space_field(
         if deep.any():
             cells, coarse = fine.coarse_load(fine_x=fine_x)
             field[np.ix_(components, aligned, np.arange(y.size), deep)] = _uniform_field(
-                cells, influence, coarse, x[aligned], y, z[deep], extent
+                cells, influence, coarse, x[aligned], y, z=z[deep], extent=extent
             )
         shallow = near & (near_x == fine_x)
         for column in aligned_points(y, float(grid.y[0]), grid.dy) if shallow.any() else ():
@@ -77,7 +77,7 @@ def half_space_field(
             if not fine_x:
                 cells, refined = fine.coarsen_x(cells, refined)
             field[np.ix_(components, aligned, column.points, shallow)] = _uniform_field(
-                cells, influence, refined, x[aligned], y[column.points], z[shallow], extent
+                cells, influence, refined, x[aligned], y[column.points], z=z[shallow], extent=extent
             )
     return field
 
@@ -108,7 +108,7 @@ def _uniform_field(
             (grid.dx, grid.dy),
             rows[0].cells,
             columns[0].cells,
-            z,
+            z=z,
             mirrored=in_first,
             length=extent[1] if periodic else np.inf,
         )
@@ -118,7 +118,9 @@ def _uniform_field(
         start -= grid.cells_x * grid.dx
     elif in_second:
         load = np.concatenate([load, image * load[::-1]])
-    cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
+    cells = _LoadedCells(
+        load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=extent[1] if periodic else np.inf
+    )
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
         for row in aligned_points(x, float(start), grid.dx):
@@ -177,7 +179,7 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     """Kernel at uniform offsets `x`; offsets that include 0 are evaluated on one side and reflected."""
 
     def evaluate(offsets: FloatArray) -> FloatArray:
-        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, cells.length, depth)
+        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, length=cells.length, depth=depth)
 
     steps = x / cells.dx
     before = round(-float(steps[0]))
@@ -207,7 +209,7 @@ def half_space_stress(
 ) -> FloatArray:
     """Stresses xx, yy, zz, xy, xz, yz (6, x, y, z) of the half-space under a load and its mirror images, Pa."""
     influence = Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
-    return half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
+    return half_space_field(cells, influence, grid, x, y, z=z, extent=extent, shape=shape)
 
 
 DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))
@@ -231,7 +233,7 @@ def half_space_displacement(
     # With two mirrors relative to the top at the distance `reference` along y: they grow like a logarithm.
     nu, length = material.poisson, extent[1] - extent[0]
     influence = displacement_influence(load, nu, length, reference)
-    field = half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
+    field = half_space_field(cells, influence, grid, x, y, z=z, extent=extent, shape=shape)
     return field / (4 * np.pi * material.shear_modulus)
 
 

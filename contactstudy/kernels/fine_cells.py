@@ -70,7 +70,7 @@ class FineCells:
         """The shape as a load."""
         if np.array_equal(self.load, self.shape):
             return self
-        cells = FineCells(self.shape, self.shape, self.grid, self.extent, self.image)
+        cells = FineCells(load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image=self.image)
         for name in ("first", "count"):
             object.__setattr__(cells, name, getattr(self, name))
         return cells

@@ -45,7 +45,7 @@ def mirrored_kernel(
 ) -> FloatArray:
     """`cell_kernel` of a load and all its images at distances ``2 length``; offsets along x up to ``length``."""
     # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``.
-    images = image_kernel(corner, x, y, dx, dy, length, nearest=2 * length)
+    images = image_kernel(corner, x, y, dx, dy, length=length, nearest=2 * length)
     return cell_kernel(corner, x, y, dx, dy) + images
 
 
@@ -115,7 +115,7 @@ class FarImages:
         )
         total = np.zeros(())
         for distances, nearest, sign in rows:
-            kernel = image_kernel(corner, distances.ravel(), y, width, dy, self.length, nearest=nearest) / width
+            kernel = image_kernel(corner, distances.ravel(), y, width, dy, length=self.length, nearest=nearest) / width
             kernel = kernel + dy * level[..., None, None]
             total = total + sign * kernel.reshape(*kernel.shape[:-2], *distances.shape, y.size)
         return total
@@ -173,12 +173,12 @@ class Influence:
         """Influence of a load in any direction, from the parities along x and y of the components under a pressure."""
         along_x, along_y = under_pressure
         return cls(
-            corner,
-            poisson,
-            load,
-            tuple(load.sign_x * sign for sign in along_x),
-            tuple(load.sign_y * sign for sign in along_y),
-            (0.0,) * len(along_x) if image_level is None else image_level,
+            corner=corner,
+            poisson=poisson,
+            load=load,
+            sign_along_x=tuple(load.sign_x * sign for sign in along_x),
+            sign_along_y=tuple(load.sign_y * sign for sign in along_y),
+            image_level=(0.0,) * len(along_x) if image_level is None else image_level,
         )
 
     @property
@@ -194,7 +194,7 @@ class Influence:
         """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
         if np.isinf(length):
             return cell_kernel(self.corner_at(depth), x, y, dx, dy)
-        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length)
+        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length)
         return np.asarray(kernel + dx * dy * np.array(self.image_level)[:, None, None])
 
 

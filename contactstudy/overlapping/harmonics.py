@@ -100,7 +100,11 @@ def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> t
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
-    _stress_of_equivalent_load, _stress_of_face_load, even_in_y=[0, 1, 2, 4], odd_in_y=[3, 5], odd_along_x=[3, 4]
+    of_equivalent_load=_stress_of_equivalent_load,
+    of_face_load=_stress_of_face_load,
+    even_in_y=[0, 1, 2, 4],
+    odd_in_y=[3, 5],
+    odd_along_x=[3, 4],
 )
 
 
@@ -160,5 +164,9 @@ def _displacement_of_face_load(
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z
-    _displacement_of_equivalent_load, _displacement_of_face_load, even_in_y=[0, 2], odd_in_y=[1], odd_along_x=[0]
+    of_equivalent_load=_displacement_of_equivalent_load,
+    of_face_load=_displacement_of_face_load,
+    even_in_y=[0, 2],
+    odd_in_y=[1],
+    odd_along_x=[0],
 )

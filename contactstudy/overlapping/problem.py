@@ -130,7 +130,7 @@ class EndProblem:
         first = alone / min(self.length, 4 * max(grid.x_range[1], reach))
         # Along y the load is uniform in cells: half a cell is the finest scale.
         last = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
-        return lateral_panels(first, reach, last, self.resolution, reference, poles)
+        return lateral_panels(first, reach, last, self.resolution, reference, poles=poles)
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
         """Equation set of some axial modes at the wavenumber `lateral`; the cache holds it."""

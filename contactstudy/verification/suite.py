@@ -51,8 +51,7 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "friction": lambda full: chain(
         tribology.carter_checks(),
         tribology.slope_checks(full=full),
-        tribology.shift_checks(),
-        tribology.spence_checks(),
+        chain(tribology.shift_checks(), tribology.spence_checks()),
         tribology.kalker_checks(full=full),
         tribology.contact_program_checks(),
     ),
@@ -256,8 +255,8 @@ def plot_profiles(checks: list[Check]) -> Figure:
             label="reference",
         )
         ax.set_title("\n".join(textwrap.wrap(check.case, 48)), fontsize="small")
-        ax.set_xlabel(curve.axis)
-        ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.quantity), fontsize="small")
+        ax.set_xlabel(curve.labels[0])
+        ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.labels[1]), fontsize="small")
         ax.grid(alpha=0.3)
     if axes:
         axes[0].legend(fontsize="small")

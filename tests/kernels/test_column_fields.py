@@ -46,7 +46,7 @@ def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_field_of_uniform_cells(load: Load, extent: str) -> None:
-    grid = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     cells = np.random.default_rng(0).random(grid.shape)
     cells[:, :3] = 0
     # Displacements of a row without end are differences of large numbers.
@@ -77,7 +77,7 @@ GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
-    uniform = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    uniform = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
     cells = np.random.default_rng(1).random(graded.shape)
     spread = np.repeat(cells, np.diff(GRADED), axis=0)
@@ -97,8 +97,13 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    fine = FineCells(cells, cells, graded, EXTENTS[extent], load.sign_x)
-    uniform = Grid((0.0, LENGTH), (float(fine.y_edges[0]), float(fine.y_edges[-1])), 20, 9 * fine.cells.shape[1])
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image=load.sign_x)
+    uniform = Grid(
+        x_range=(0.0, LENGTH),
+        y_range=(float(fine.y_edges[0]), float(fine.y_edges[-1])),
+        cells_x=20,
+        cells_y=9 * fine.cells.shape[1],
+    )
     smooth = fine.along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
@@ -116,9 +121,9 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
     across = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
     cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * across
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
-    fine = FineCells(cells, cells, graded, ends)
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
-    uniform = Grid((0.0, scale * LENGTH), y_range, 100, 9 * fine.cells.shape[1])
+    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
     along_x = fine.columns([uniform.x_edges])
     spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
@@ -141,7 +146,7 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    steps = FineCells(1e-3 * cells, 1e-3 * cells, graded, EXTENTS[extent], image).steps
+    steps = FineCells(load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image).steps
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
@@ -230,7 +235,7 @@ def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1
         cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
     load = (PRESSURE if unit < 1 else 1.0) * cells
-    return FineCells(load, load, grid, extent, image)
+    return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
 
 
 def around(x: float, own: FineCells, narrow: float = 0.0) -> _Surroundings:
@@ -310,7 +315,7 @@ def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None
     """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
-    own = FineCells(PRESSURE * np.ones(grid.shape), PRESSURE * np.ones(grid.shape), grid)
+    own = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
     on = around(2.0, own, narrow).inserted
     for towards in (-np.inf, np.inf):
         beside = around(float(np.nextafter(2.0, towards)), own, narrow).inserted
@@ -367,7 +372,7 @@ def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) 
 
 
 def seen(y: FloatArray, parts: int | None) -> list[Layer]:
-    grid = Grid((0.0, 1.0), (-0.75, 1.25), 4, 8)
+    grid = Grid(x_range=(0.0, 1.0), y_range=(-0.75, 1.25), cells_x=4, cells_y=8)
     along_y, numbers = AlongY(grid, y, 1, 6), np.array([1])
     z = np.array([0.1, 0.2])
     return along_y.uniform(z, numbers) if parts is None else along_y.layers(z, numbers, fine=bool(parts))

@@ -20,7 +20,7 @@ INFLUENCE = Influence.of(STRESS_CORNERS[Load.NORMAL], 0.3, Load.NORMAL, STRESS_P
 
 
 def test_unaligned_positions_have_the_field_of_each_alone() -> None:
-    grid = Grid((0.0, 8.0), (-2.0, 2.0), 80, 16)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
     together, *alone = (
@@ -71,7 +71,7 @@ def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -
         assert np.abs(above - below).max() < 1e-5
 
 
-GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
+GRID = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
 Z = np.array([0.0, 0.05, 0.4])
 
 
@@ -135,7 +135,7 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
     each: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
     """Of the halves alone no wavenumber is zero."""
-    grid = Grid((0.0, 2.0), (-1.0, 1.0), cells_x, 16)
+    grid = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=cells_x, cells_y=16)
     half = np.random.default_rng(0).random(grid.shape)
     half[(cells_x + 1) // 2 :] = 0.0
     x = np.atleast_1d(grid.x[rows])

@@ -142,7 +142,9 @@ def solve_complementarity(
             break
     pressure = resultants.restored(state.pressure)
     motion = tuple(float(amount) for amount in state.motion)
-    return ContactIterate(pressure, motion, state.applications, converged, tuple(history))
+    return ContactIterate(
+        pressure=pressure, motion=motion, applications=state.applications, converged=converged, history=tuple(history)
+    )
 
 
 class _State:

@@ -213,17 +213,17 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
         tolerance=settings.tolerance,
     )
     return Contact(
-        shape,
-        settings,
-        pressure,
-        np.where(np.isfinite(opening), opening, np.inf),
-        displacement - motions.body.height(grid.x),
-        approach,
-        tilt,
-        iterate.applications,
-        iterate.converged and certificate.holds(settings.tolerance),
-        motions,
-        certificate,
+        shape=shape,
+        settings=settings,
+        pressure=pressure,
+        gap=np.where(np.isfinite(opening), opening, np.inf),
+        displacement=displacement - motions.body.height(grid.x),
+        approach=approach,
+        tilt=tilt,
+        iterations=iterate.applications,
+        converged=iterate.converged and certificate.holds(settings.tolerance),
+        motions=motions,
+        certificate=certificate,
     )
 
 
@@ -245,11 +245,12 @@ def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referr
 
     def solve(motion: RigidMotion, start: FloatArray | None) -> ContactIterate:
         problem = ContactProblem(
-            grid,
-            shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
-            shape.prescribed.resultants(grid),
-            shape.coupled_friction,
-            *settings,
+            grid=grid,
+            gap=shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
+            resultants=shape.prescribed.resultants(grid),
+            friction=shape.coupled_friction,
+            tolerance=settings.tolerance,
+            max_iterations=settings.max_iterations,
         )
         return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)
 
