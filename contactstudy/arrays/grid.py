@@ -22,7 +22,7 @@ ON_TOP = 0.02  # relative error of stresses on the top under a pressure of cells
 MOST_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Grid:
     """Rectangular cells that tile ``x_min..x_max`` by ``y_min..y_max``; `from_edges` makes cells of different widths.
 
@@ -49,7 +49,7 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
-    _inner: tuple[float, ...] = field(default=(), repr=False, kw_only=True)
+    _inner: tuple[float, ...] = field(default=(), repr=False)
     """Edges between cells of different widths; empty for uniform cells."""
 
     def __post_init__(self) -> None:

@@ -8,7 +8,7 @@ this cell; a load that ends without falling, as at a sharp end, ends in a step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ NARROW = 0.5
 too little force into a last cell with a smaller loaded part, and too much into its neighbour."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SmoothLoad:
     """Loads along rows of cells as smooth functions."""
 
@@ -92,9 +92,7 @@ class SmoothLoad:
         sign, first, middle, last = (
             np.where(empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
         )
-        shape = SmoothLoad(
-            edges=self.edges, sign=sign, first=first, middle=middle, last=last, knot=self.knot, joined=self.joined
-        )
+        shape = replace(self, sign=sign, first=first, middle=middle, last=last)
         total, centroid = cells * widths, self.edges[:-1] + moment / force
         # Joined cells form a group with one ratio; other groups contain one cell.
         before = np.pad(self.joined[:, :-1], ((0, 0), (1, 0)))
@@ -250,7 +248,7 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
     )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Row:
     """Rows of cells in one direction; their loads end at the last loaded cells."""
 

@@ -40,7 +40,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class AxialModes:
     """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them."""
 
@@ -181,7 +181,7 @@ def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -
     return factor, parity * doubled * decay / (1 - parity * decay)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SingleMirrorModes(AxialModes):
     """Axial wavenumbers of one parity when loads are mirrored once; all lie on the ray."""
 

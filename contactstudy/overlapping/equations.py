@@ -137,7 +137,7 @@ class AuxiliaryLoads(NamedTuple):
     face_load: ComplexArray  # (depth, column): normal stress freed on the faces of V, times the quadrature's weights
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EquationSet:
     """The equation set for one wavenumber along y and one parity, factorised."""
 

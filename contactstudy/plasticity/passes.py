@@ -82,7 +82,7 @@ class State(NamedTuple):
     converged: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Passage:
     """A pass over some cells of the cross-section."""
 
@@ -178,7 +178,7 @@ NEAR_YIELD = 0.9  # Least von Mises stress over the yield stress of the cells th
 SMALL_STRAIN = 0.05  # Largest plastic strain of small-strain theory, with the contact stresses of a flat body
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Section:
     """The cross-section: elastic stresses (6, position, cell) at falling y, residual stress of plastic strain."""
 

@@ -274,14 +274,7 @@ def side_geometry(case: Case) -> SideView:
     x = along + ends[0] + 0.5 * roller.length
     clipped = bool((drop * magnification > deepest).any())
     return SideView(
-        x=x,
-        generatrix=generatrix,
-        roller=ends,
-        body=(low, high),
-        limits=limits,
-        height=height,
-        magnification=magnification,
-        clipped=clipped,
+        x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, clipped=clipped
     )
 
 

@@ -52,7 +52,7 @@ Cells = Literal["refined", "chosen", "given"]
 """Origin of the cells: refined to an accuracy, chosen for a rough surface, or given by the caller."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CaseContact:
     """Contact of a case."""
 

@@ -87,7 +87,7 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[
     return Cube(("case",), (len(cases),), labels), [(index,) for index in range(len(cases))]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PlannedCase:
     """One case of a study before it is solved."""
 

@@ -190,7 +190,7 @@ class ContactCase:
         return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PassesCase:
     """Passes of Hertz' line contact of half-width and peak pressure 1 over an elastic-plastic half-plane."""
 

@@ -51,7 +51,8 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
     "friction": lambda full: chain(
         tribology.carter_checks(),
         tribology.slope_checks(full=full),
-        chain(tribology.shift_checks(), tribology.spence_checks()),
+        tribology.shift_checks(),
+        tribology.spence_checks(),
         tribology.kalker_checks(full=full),
         tribology.contact_program_checks(),
     ),

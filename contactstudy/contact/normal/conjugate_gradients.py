@@ -93,7 +93,7 @@ class Resultants:
         return 0.0 if self.lever is None else abs(float((pressure * self.lever).sum() / pressure.sum()))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ContactIterate:
     """Where the iteration ended."""
 

@@ -134,7 +134,7 @@ class Settings(NamedTuple):
     max_iterations: int = 500
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Contact:
     """Solution of a contact."""
 

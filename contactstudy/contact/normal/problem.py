@@ -43,7 +43,7 @@ class ContactOperator(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ContactProblem:
     """A contact to solve, checked."""
 

@@ -56,7 +56,7 @@ class Sample(NamedTuple):
     pressure: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class EndLaw:
     """Law of the pressure at a singular end."""
 
@@ -85,17 +85,15 @@ class EndLaw:
             exponent = float(optimum.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # pressed on too few columns
-            outermost = (1 - exponent) * row[0] * width**exponent
-            return EndLaw(
-                kind=self.kind, exponent=exponent, intensity=float(outermost), intensity_error=np.inf, fitted=fitted
-            )
+            outermost = float((1 - exponent) * row[0] * width**exponent)
+            return replace(self, exponent=exponent, intensity=outermost, intensity_error=np.inf, fitted=fitted)
         share = 1.0 if exponent == RIGID else ELASTIC_SHARE
         error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if 0 < room < NEAREST * width:  # the columns do not resolve the law
             error = np.inf
         elif FARTHEST * width > LEAST_ROOM * room:
             error += NARROW_ERROR * fits[0]
-        return EndLaw(kind=self.kind, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
+        return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
 
 
 def elastic_exponent(edge: float, face: float) -> float:
@@ -188,7 +186,7 @@ CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0
 WIDEST_BLEND = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CornerLaw:
     """Logarithmic pressure at a convex corner."""
 
@@ -227,13 +225,8 @@ def corner_law(
     if not np.isfinite(logs).all():
         return CornerLaw(x=x, slope=slope, intensity=intensity, distance=np.nan, distance_error=np.inf)
     distance = float(np.exp(logs[0]))
-    return CornerLaw(
-        x=x,
-        slope=slope,
-        intensity=intensity,
-        distance=distance,
-        distance_error=distance * abs(float(np.expm1(logs[1] - logs[0]))),
-    )
+    error = distance * abs(float(np.expm1(logs[1] - logs[0])))
+    return CornerLaw(x=x, slope=slope, intensity=intensity, distance=distance, distance_error=error)
 
 
 def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:

@@ -81,7 +81,7 @@ Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
 """From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedColumns:
     """Columns of a refined contact."""
 
@@ -147,7 +147,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: Floa
         theta *= SHRINK
 
 
-@dataclass(eq=False)
+@dataclass(kw_only=True, eq=False)
 class _Refinement:
     """Where the refinement stands."""
 

@@ -63,7 +63,7 @@ class CoulombProblem:
         return max(float(np.hypot(*self.rigid_slip(amplitudes)).max(initial=0.0)), np.finfo(float).tiny)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CoulombSolution:
     """Tractions under Coulomb's law."""
 

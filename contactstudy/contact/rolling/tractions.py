@@ -61,7 +61,7 @@ FEWEST_CELLS = 6
 PARTS = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RollingCells:
     """Cells of a contact in steady rolling along +y."""
 
