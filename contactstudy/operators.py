@@ -23,7 +23,6 @@ from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.threads import one_blas_thread
 
@@ -33,7 +32,7 @@ LOADS = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load
 COMPONENTS = {"z": Load.NORMAL, "x": Load.ALONG_X, "y": Load.ALONG_Y}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Overlapping:
     """Operators of the two auxiliary bodies of a body with free ends: the half-space H and the slab V.
 
@@ -261,4 +260,4 @@ def stress(
     direction = LOADS[checks.known_name("load", load, LOADS)]
     positions = field_positions(body, grid, x, y, z)
     with one_blas_thread():
-        return StressOperator(body, grid, Points(*positions.axes), direction)
+        return StressOperator(body, grid, positions.points, direction)

@@ -16,11 +16,11 @@ from scipy import ndimage
 
 from contactstudy.arrays.grid import ON_TOP, Grid
 from contactstudy.arrays.peaks import interpolate_about, peak_width
+from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.fields.loads import Loads
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.stress import von_mises_of
 
 AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width

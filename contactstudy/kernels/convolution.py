@@ -117,7 +117,7 @@ class GridTransform:
 NEGLIGIBLE = 1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CentredConvolution:
     """Convolution of a load with the kernels of an influence at one depth."""
 
@@ -209,11 +209,11 @@ def centred_field(
     columns: IntArray,
     z: FloatArray,
     *,
-    mirrored: bool,
-    length: float,
+    extent: tuple[float, float],
 ) -> FloatArray:
     """Field (component, row, column, z) at cell centres; rows and columns count from the first cell of the load."""
-    # With a mirror the load begins at end I; `length` is the distance to the mirror at end II.
+    # The load begins at end I unless that is infinitely far away, as end II then is, too.
+    mirrored, length = bool(np.isfinite(extent[0])), extent[1]
     cells_x, cells_y = load.shape
     reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
     if not mirrored:

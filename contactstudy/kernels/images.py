@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 
@@ -147,7 +148,7 @@ def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[Floa
     return span * points, np.asarray(matrix.T, dtype=np.float64)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Influence:
     """Components of a field around a unit load on one cell; compared by value, as part of a cached request."""
 
@@ -207,9 +208,7 @@ def far_images(
     influence: Influence,
     grid: Grid,
     first: int,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field of all images of a load except the nearest; `first` is its first column along y in the grid."""
@@ -220,7 +219,7 @@ def far_images(
     behind = max(first + load.shape[1] - grid.cells_y, 0)
     centres = grid.y_range[0] + grid.dy * (np.arange(-before, grid.cells_y + behind) + 0.5)
     (nodes_load, from_load), (nodes_y, to_y), (depths, to_z) = (
-        interpolation_points(axis, length) for axis in (centres, y, z)
+        interpolation_points(axis, length) for axis in (centres, points.y, points.z)
     )
     loaded = slice(before + first, before + first + load.shape[1])
     if from_load is not None:
@@ -236,7 +235,7 @@ def far_images(
         kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
         for row in range(nodes_y.size):
             field[:, :, row, depth] = np.tensordot(kernel[..., number[row]], gathered, axes=2)
-    to_x = images.values(x - low)
+    to_x = images.values(points.x - low)
     field = np.tensordot(field, to_x, axes=(1, 1))
     if to_z is not None:
         field = np.tensordot(field, to_z, axes=(2, 1))

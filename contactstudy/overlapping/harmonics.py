@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contactstudy.arrays.points import Points
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet, real_product
-from contactstudy.overlapping.field import Harmonics, Points, end_fields
+from contactstudy.overlapping.field import Harmonics, end_fields
 from contactstudy.overlapping.problem import EndProblem
 
 
@@ -108,11 +109,8 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
 )
 
 
-def end_displacement(
-    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float
-) -> dict[Load, FloatArray]:
+def end_displacement(problem: EndProblem, points: Points, *, reference: float) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z), times ``2 G``, of the free ends beside the half-space with all mirrored loads."""
-    points = Points(x, y, z)
     (field,) = end_fields(problem, DISPLACEMENT, [points], reference=reference if np.isfinite(reference) else None)
     return field
 

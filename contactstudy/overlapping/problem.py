@@ -43,7 +43,7 @@ third of it a tenth."""
 _equation_set = cached("equation sets", lambda system: system.nbytes)(EquationSet.build)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EndProblem:
     """A distribution of load on the top of a body with one end or two, acting in one direction or in several."""
 
@@ -157,7 +157,7 @@ def parity_parts(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
     return {parity: part for parity, part in parts.items() if np.abs(part).max() > least}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class View:
     """A load and positions in one set of axial modes; from end II when `flipped`."""
 

@@ -8,10 +8,10 @@ import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, stress_field
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import stresses_at
-from contactstudy.overlapping.field import Points
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]

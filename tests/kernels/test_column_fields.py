@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (
@@ -52,8 +53,8 @@ def test_field_of_uniform_cells(load: Load, extent: str) -> None:
     # Displacements of a row without end are differences of large numbers.
     for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
         for y in (grid.y, np.array([0.1, 0.33])):
-            expected = half_space_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
-            found = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            expected = half_space_field(cells, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+            found = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
             assert found.shape == expected.shape
             assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
 
@@ -66,7 +67,9 @@ def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
         grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
         ends = (EXTENTS[extent][0] + place, EXTENTS[extent][1] + place)
         cells = np.random.default_rng(2).random(grid.shape)
-        fields.append(columns_field(cells, None, stresses_of(load), grid, place + X, np.array([0.1]), Z, extent=ends))
+        fields.append(
+            columns_field(cells, None, stresses_of(load), grid, Points(place + X, np.array([0.1]), Z), extent=ends)
+        )
     assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
 
 
@@ -82,8 +85,8 @@ def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) 
     cells = np.random.default_rng(1).random(graded.shape)
     spread = np.repeat(cells, np.diff(GRADED), axis=0)
     influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
-    expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
-    found = columns_field(cells, None, influence, graded, X, y, Z, extent=EXTENTS[extent])
+    expected = half_space_field(spread, influence, uniform, Points(X, y, Z), extent=EXTENTS[extent])
+    found = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
     assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
 
 
@@ -108,8 +111,8 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
-        expected = half_space_field(spread, influence, uniform, x, y, z, extent=EXTENTS[extent])
-        found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS[extent])
+        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=EXTENTS[extent])
+        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS[extent])
         assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
@@ -128,8 +131,8 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
     spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
-        expected = half_space_field(spread, influence, uniform, x, y, z, extent=ends)
-        found = columns_field(cells, cells, influence, graded, x, y, z, extent=ends)
+        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)
+        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=ends)
         assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
 
 
@@ -158,9 +161,9 @@ def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
     cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
     influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
     x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
-    together = columns_field(cells, cells, influence, graded, x, y, z, extent=extent)
+    together = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
     for number in (0, 1, 8, 24):
-        alone = columns_field(cells, cells, influence, graded, x, y, z[number : number + 1], extent=extent)
+        alone = columns_field(cells, cells, influence, graded, Points(x, y, z[number : number + 1]), extent=extent)
         # Nearer to the top than the others see it, columns are split into more.
         assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
 
@@ -172,14 +175,18 @@ def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
     point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
     force = float((cells * graded.widths[:, None]).sum() * graded.dy)
     influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
-    found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS["none"])
-    expected = columns_field(np.full((1, 1), force / 0.01), None, influence, point, x, y, z, extent=EXTENTS["none"])
+    found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS["none"])
+    expected = columns_field(
+        np.full((1, 1), force / 0.01), None, influence, point, Points(x, y, z), extent=EXTENTS["none"]
+    )
     assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
 
 
 def test_nothing_loaded_leaves_nothing() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
-    field = half_space_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
+    field = half_space_field(
+        np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
+    )
     assert field.shape == (6, X.size, grid.y.size, Z.size)
     assert not field.any()
 
@@ -199,8 +206,10 @@ def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray],
     grid, cells = loaded
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
-    there = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
-    back = columns_field(cells[::-1], None, influence, backwards, LENGTH - X[::-1], y, Z, extent=EXTENTS[extent])
+    there = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+    back = columns_field(
+        cells[::-1], None, influence, backwards, Points(LENGTH - X[::-1], y, Z), extent=EXTENTS[extent]
+    )
     sign = np.array(influence.sign_along_x)[:, None, None, None]
     assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
 
@@ -214,7 +223,7 @@ def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, Flo
     s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
     wide, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
     field = columns_field(
-        cells, None, stresses_of(Load.NORMAL), grid, 1.0 + wide, wide, np.array([depth]), extent=EXTENTS["none"]
+        cells, None, stresses_of(Load.NORMAL), grid, Points(1.0 + wide, wide, np.array([depth])), extent=EXTENTS["none"]
     )[2, :, :, 0]
     carried = -float(steps @ field @ steps)
     total = float((cells * grid.widths[:, None]).sum() * grid.dy)

@@ -9,11 +9,11 @@ import pytest
 from scipy import integrate
 
 from contactstudy import Grid, Material
+from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_square
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution

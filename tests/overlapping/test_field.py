@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import field
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Points, end_fields
+from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS, end_displacement, end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -94,7 +95,7 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     def fields(cells: FloatArray) -> list[FloatArray]:
         problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
         (stress,) = end_stress(problem, [place], 80.0)
-        displacement = end_displacement(problem, *place, reference=10 * length)
+        displacement = end_displacement(problem, Points(*place), reference=10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
     parts = [fields(cells) for cells in (hertz, tilted, rough, spot)]
