@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.bodies.models import FiniteLengthSpace, HalfSpace
 from contactstudy.checks import FloatArray
@@ -26,12 +27,11 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import closed_forms
-from contactstudy.verification.check import Check, compare
+from contactstudy.verification.check import Check, Reference
 from contactstudy.verification.free_ends import pressure_of
 from contactstudy.verification.problems import (
     LINE_LOAD,
@@ -95,11 +95,11 @@ class Table:
             index = self.values.index(self.used)
             for quantity, errors in self.errors.items():
                 case = f"{self.title}; {self.setting} {self.used:g}"
-                yield compare(case, f"{quantity}, error", self.source, errors[index], 0.0, self.tolerance)
+                yield Reference(case, self.source).compare(f"{quantity}, error", errors[index], 0.0, self.tolerance)
         if self.order is not None:
             shortfall = min(0.0, self.mean_order - self.order)
             quantity = f"order in the {self.setting}, at least {self.order:g}, shortfall"
-            yield compare(self.title, quantity, self.source, shortfall, 0.0, 0.0)
+            yield Reference(self.title, self.source).compare(quantity, shortfall, 0.0, 0.0)
 
 
 def point_contact() -> Table:
@@ -109,7 +109,7 @@ def point_contact() -> Table:
     _, peak, approach = closed_forms.hertz_point(4 / 3, 1.0, 1.0)
     for count in cells:
         gap = on_cells(lambda x, y: 0.5 * (x**2 + y**2), (-1.5, 1.5), (-1.5, 1.5), (count, count))
-        contact = solve_contact(body, gap, 4 / 3, settings=ContactSettings(tolerance=1e-8))
+        contact = solve_contact(body, gap, load=4 / 3, settings=ContactSettings(tolerance=1e-8))
         middle = contact["pressure"].sel(y=0, method="nearest")
         exact = peak * np.sqrt(np.maximum(1 - middle["x"] ** 2, 0))
         errors.append((abs(float(contact["approach"]) - approach), float(abs(middle - exact).mean()) / peak))
@@ -137,7 +137,7 @@ def stress_grid() -> Table:
     errors = []
     for count in cells:
         load = pressure_of(case, count)
-        stress = stress_field(body, load, case.friction, *points.values(), inside_cells=load)
+        stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
         difference = np.abs(components(stress) - expected)
         errors.append((float(difference.max()), float(difference.mean())))
     largest, mean = zip(*errors, strict=True)
@@ -162,7 +162,7 @@ def contact_grid() -> Table:
     def solved(count: int) -> FloatArray:
         gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-1.75, 1.75), (8 * count, 7 * count // 2 + 1 - count % 2))
         load = (
-            solve_contact(body, gap, 8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"].sum("y")
+            solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"].sum("y")
             * 3.5
             / gap["y"].size
         )
@@ -220,12 +220,15 @@ QUADRATURE_CASE = "smooth load on both ends, L = 8a"
 @lru_cache(maxsize=4)
 def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     """Stresses that the free ends add, and the displacement, with the given settings of the quadratures."""
-    grid = Grid((0.0, 8.0), (-1.0, 1.0), 32, 24)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to(quartic(grid.y), grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
     stress = end_stress(
-        EndProblem(8.0, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, resolution), [Points(*points)]
+        EndProblem(
+            length=8.0, poisson=0.3, cells=pressure, loads=(Load.NORMAL, Load.ALONG_Y), grid=grid, resolution=resolution
+        ),
+        [Points(*points)],
     )[0]
     operator = SurfaceOperator.of(body, grid, resolution=resolution)
     return np.stack([stress[load] for load in stress]), operator({Load.NORMAL: pressure})
@@ -241,7 +244,9 @@ def quadrature_checks() -> Iterator[Check]:
     """Errors that the quadratures leave with the settings in use."""
     source = "every setting of the quadratures finer"
     for quantity, error in zip(("stresses / p0", "E* u_z / (p0 a)"), _quadrature_errors(Resolution()), strict=True):
-        yield compare(QUADRATURE_CASE, f"{quantity}, error with the settings in use", source, error, 0.0, 2e-5)
+        yield Reference(QUADRATURE_CASE, source).compare(
+            f"{quantity}, error with the settings in use", error, 0.0, 2e-5
+        )
 
 
 def quadrature_tables() -> Iterator[Table]:
@@ -266,7 +271,7 @@ def window() -> Table:
 
     def solved(half: float) -> FloatArray:
         gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-half, half), (64, round(32 * half)))
-        pressure = solve_contact(body, gap, 8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"]
+        pressure = solve_contact(body, gap, load=8 * LINE_LOAD, settings=ContactSettings(tolerance=1e-8))["pressure"]
         return pressure.sel(y=slice(-1.3, 1.3)).values
 
     best = solved(7.0)

@@ -23,7 +23,6 @@ from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.threads import one_blas_thread
 
@@ -33,7 +32,7 @@ LOADS = {"pressure": Load.NORMAL, "traction_x": Load.ALONG_X, "traction_y": Load
 COMPONENTS = {"z": Load.NORMAL, "x": Load.ALONG_X, "y": Load.ALONG_Y}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Overlapping:
     """Operators of the two auxiliary bodies of a body with free ends: the half-space H and the slab V.
 
@@ -65,8 +64,8 @@ class Overlapping:
     --------
     >>> import numpy as np
     >>> from contactstudy import Grid, Material, QuarterSpace
-    >>> grid = Grid((0.0, 2.0), (-1.0, 1.0), 8, 8)
-    >>> method = Overlapping(QuarterSpace(material=Material(1.0, 0.3)), grid, z=[0.5])
+    >>> grid = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=8, cells_y=8)
+    >>> method = Overlapping(body=QuarterSpace(material=Material(1.0, 0.3)), grid=grid, z=[0.5])
     >>> pressure = np.ones(64)
     >>> bool((method.P_h1 @ pressure > pressure).all()), bool((method.P_v1 @ pressure < 0).all())
     (True, True)
@@ -199,7 +198,8 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     --------
     >>> import numpy as np
     >>> from contactstudy import Grid, HalfSpace, Material
-    >>> operator = surface_displacement(HalfSpace(material=Material(1.0, 0.3)), Grid((0, 1), (0, 1), 4, 4))
+    >>> grid = Grid(x_range=(0, 1), y_range=(0, 1), cells_x=4, cells_y=4)
+    >>> operator = surface_displacement(HalfSpace(material=Material(1.0, 0.3)), grid)
     >>> dense = operator @ np.eye(16)
     >>> bool(np.allclose(dense, dense.T))
     True
@@ -249,7 +249,8 @@ def stress(
     --------
     >>> import numpy as np
     >>> from contactstudy import Grid, HalfSpace, Material
-    >>> operator = stress(HalfSpace(material=Material(1.0, 0.3)), Grid((0, 1), (0, 1), 4, 4), y=[0.5], z=[0.1])
+    >>> grid = Grid(x_range=(0, 1), y_range=(0, 1), cells_x=4, cells_y=4)
+    >>> operator = stress(HalfSpace(material=Material(1.0, 0.3)), grid, y=[0.5], z=[0.1])
     >>> operator.shape
     (24, 16)
     """
@@ -259,4 +260,4 @@ def stress(
     direction = LOADS[checks.known_name("load", load, LOADS)]
     positions = field_positions(body, grid, x, y, z)
     with one_blas_thread():
-        return StressOperator(body, grid, Points(*positions.axes), direction)
+        return StressOperator(body, grid, positions.points, direction)

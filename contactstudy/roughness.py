@@ -71,7 +71,7 @@ def self_affine(
 
     Examples
     --------
-    >>> grid = Grid((0.0, 1e-3), (-0.5e-3, 0.5e-3), 64, 64)
+    >>> grid = Grid(x_range=(0.0, 1e-3), y_range=(-0.5e-3, 0.5e-3), cells_x=64, cells_y=64)
     >>> rough = self_affine(grid, rms_height=0.2e-6, hurst=0.8, longest=0.5e-3, shortest=50e-6, seed=1)
     >>> rough.dims, round(1e6 * float(np.sqrt((rough**2).mean())), 12)
     (('x', 'y'), 0.2)
@@ -206,9 +206,9 @@ def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
 
     Examples
     --------
-    >>> cells = Grid((0.0, 4.0), (0.0, 2.0), 4, 2)
+    >>> cells = Grid(x_range=(0.0, 4.0), y_range=(0.0, 2.0), cells_x=4, cells_y=2)
     >>> slope = _height_map(cells, np.repeat(cells.x[:, None], 2, axis=1), "made up")
-    >>> heights_on(Grid((1.0, 3.0), (0.5, 1.5), 2, 1), slope).tolist()
+    >>> heights_on(Grid(x_range=(1.0, 3.0), y_range=(0.5, 1.5), cells_x=2, cells_y=1), slope).tolist()
     [[1.5], [2.5]]
     """
     values, cells = labelled_cells("roughness", in_si("roughness", heights, "m"))

@@ -87,8 +87,8 @@ def find_best(task: Task, body: Body) -> xr.Dataset:
     designs_of_models = cs.design.best_profile(
         task.case(1.0, body, task.design_pressure, 0.0),
         task.profile,
-        {"delta": task.bounds},
-        over_p0,
+        bounds={"delta": task.bounds},
+        measure=over_p0,
         max_pressures=task.pressures,
         tilts=task.tilts,
         accuracy=task.accuracy,

@@ -72,7 +72,7 @@ def wear_roller(task: Task) -> xr.Dataset:
     case = task.case()
     area = 2 * np.pi * task.radius * task.length
     distances = [0.0, *(area * depth / (task.coefficient * case.normal_load) for depth in task.mean_depths)]
-    return wear_in(case, task.coefficient, distances)
+    return wear_in(case, task.coefficient, distance=distances)
 
 
 def profiles(task: Task, worn: xr.Dataset) -> dict[str, cs.profiles.Profile]:

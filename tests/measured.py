@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
+import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, Study, solve, solve_contact, stress_field
 from contactstudy.study.setup import build_setup
@@ -89,7 +90,7 @@ def ends() -> Iterator[tuple[str, str]]:
     """What free ends change, in one number each."""
     gap = on_cells(lambda x, y: y**2 + 0 * x, (0, 8), (-2, 2), (129, 65))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
-    along = solve_contact(body, gap, 8 * LINE_LOAD)["pressure"].max("y")
+    along = solve_contact(body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
     yield (
         "rigid cylinder on a body of its own length (8a): pressure at the end, in the middle",
         f"{float(along[0]):.3f} p0, {float(along[64]):.3f} p0",
@@ -97,7 +98,7 @@ def ends() -> Iterator[tuple[str, str]]:
     for count in (64, 129):
         on_half = on_cells(lambda x, y: y**2 + 0 * x, (-0.5, 8.5), (-2, 2), (round(count * 9 / 8), 65))
         on_half = on_half.where(abs(on_half["x"] - 4) < 4, np.inf)
-        peak = float(solve_contact(HalfSpace(material=unit_material()), on_half, 8 * LINE_LOAD)["pressure"].max())
+        peak = float(solve_contact(HalfSpace(material=unit_material()), on_half, load=8 * LINE_LOAD)["pressure"].max())
         yield f"... the half-space model's pressure there with {count} cells", f"{peak:.2f} p0"
 
 
@@ -106,7 +107,7 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
     plan = Study.from_toml(Path(__file__).parents[1] / "studies" / "edge_effect.toml").plan()
     setup = build_setup(next(c.parameters for c in plan if c.parameters.get("e_over_a") == 1.0))
     case = setup.case
-    at = [setup.options[name] for name in ("x", "y", "z")]
+    at = {name: setup.options[name] for name in ("x", "y", "z")}
 
     def timed(work: Callable[[], T]) -> tuple[float, T]:
         began = time.perf_counter()
@@ -119,11 +120,16 @@ def parts_of_the_main_job() -> Iterator[tuple[str, str]]:
         f"{result.sizes['x']} x {result.sizes['y']} cells",
     )
     yield "contact settled to 1 %, and the traction left on the ends", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.0, *at, inside_cells=result["pressure"]))
-    yield f"six stresses at {' x '.join(str(len(axis)) for axis in at)} points", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.1, *at, inside_cells=result["pressure"]))
+    pressure = result["pressure"]
+
+    def stresses(friction: float) -> xr.Dataset:
+        return stress_field(case.body, pressure, friction=friction, **at, inside_cells=pressure)
+
+    seconds, _ = timed(lambda: stresses(0.0))
+    yield f"six stresses at {' x '.join(str(len(axis)) for axis in at.values())} points", f"{seconds:.1f} s"
+    seconds, _ = timed(lambda: stresses(0.1))
     yield "... with friction, the first time", f"{seconds:.1f} s"
-    seconds, _ = timed(lambda: stress_field(case.body, result["pressure"], 0.2, *at, inside_cells=result["pressure"]))
+    seconds, _ = timed(lambda: stresses(0.2))
     yield "... with any further friction", f"{seconds:.2f} s"
 
 

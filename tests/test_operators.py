@@ -23,7 +23,7 @@ from contactstudy.operators import LOADS, Overlapping, stress, surface_displacem
 STEEL = Material(210e9, 0.3)
 BODIES = [HalfSpace(material=STEEL), QuarterSpace(material=STEEL), FiniteLengthSpace(length=2.0, material=STEEL)]
 GRIDS = [
-    Grid((0.0, 2.0), (-1.5, 1.5), 8, 6),
+    Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6),
     Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6),
 ]
 
@@ -78,7 +78,7 @@ def test_surface_displacement(body, grid: Grid, load: str, component: str) -> No
 def test_equivalent_loads(load: str) -> None:
     body, grid = BODIES[2], GRIDS[1]
     cells = np.random.default_rng(3).random(grid.shape)
-    method = Overlapping(body, grid, [0.2, 0.5], load)
+    method = Overlapping(body=body, grid=grid, z=[0.2, 0.5], load=load)
     loads = equivalent_loads(body, **arguments(grid, cells, load), z=[0.2, 0.5])
     for name in ("P_h1", "P_v1", "P_v2"):
         operator = getattr(method, name)
@@ -91,8 +91,8 @@ def test_refused() -> None:
     with pytest.raises(InvalidInputError, match="single-mirror"):
         surface_displacement(single, GRIDS[0])
     with pytest.raises(InvalidInputError, match="body"):
-        Overlapping(BODIES[0], GRIDS[0])
+        Overlapping(body=BODIES[0], grid=GRIDS[0])
     with pytest.raises(InvalidInputError, match="end II"):
-        Overlapping(BODIES[1], GRIDS[0]).P_v2  # noqa: B018
+        Overlapping(body=BODIES[1], grid=GRIDS[0]).P_v2  # noqa: B018
     with pytest.raises(InvalidInputError, match="load"):
         stress(BODIES[0], GRIDS[0], load="friction")

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 from contactstudy import Grid, InvalidInputError
 from contactstudy.roughness import read_height_map, self_affine
 
-GRID = Grid((0.0, 1e-3), (-0.2e-3, 0.2e-3), 250, 100)
+GRID = Grid(x_range=(0.0, 1e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=250, cells_y=100)
 VALUES = {"rms_height": 0.2e-6, "hurst": 0.8, "longest": 0.4e-3, "shortest": 20e-6, "seed": 1}
 
 
@@ -36,7 +36,7 @@ def test_height_has_the_rms_and_the_band_asked_for(rms: float, hurst: float, see
 
 @pytest.mark.parametrize("hurst", [0.3, 0.8, 1.0])
 def test_spectrum_falls_with_the_hurst_exponent(hurst: float) -> None:
-    grid = Grid((0.0, 1.0), (0.0, 2.0), 256, 512)
+    grid = Grid(x_range=(0.0, 1.0), y_range=(0.0, 2.0), cells_x=256, cells_y=512)
     height = self_affine(grid, rms_height=1.0, hurst=hurst, longest=0.5, shortest=0.02, seed=3)
     frequency, power = spectrum(height, grid)
     inside = (frequency > 2.0) & (frequency < 50.0)
@@ -45,7 +45,7 @@ def test_spectrum_falls_with_the_hurst_exponent(hurst: float) -> None:
 
 
 def test_surface_is_isotropic_and_gaussian() -> None:
-    grid = Grid((0.0, 1.0), (0.0, 1.0), 512, 512)
+    grid = Grid(x_range=(0.0, 1.0), y_range=(0.0, 1.0), cells_x=512, cells_y=512)
     height = self_affine(grid, rms_height=1.0, hurst=0.8, longest=0.1, shortest=0.01, seed=5).values
     slopes = [np.mean(np.diff(height, axis=axis) ** 2) for axis in (0, 1)]
     assert slopes[0] == pytest.approx(slopes[1], rel=0.05)

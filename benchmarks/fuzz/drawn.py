@@ -100,7 +100,9 @@ class Drawn:
 def regrid(grid: Grid, edges: np.ndarray, y_range: tuple[float, float]) -> Grid:
     """As many cells between other edges, uniform if they were."""
     if grid.uniform:
-        return Grid((float(edges[0]), float(edges[-1])), y_range, grid.cells_x, grid.cells_y)
+        return Grid(
+            x_range=(float(edges[0]), float(edges[-1])), y_range=y_range, cells_x=grid.cells_x, cells_y=grid.cells_y
+        )
     return Grid.between(edges, y_range, grid.cells_y)
 
 
@@ -202,7 +204,7 @@ def _with_cells(chance: Random, case: Case, refined: bool | None) -> Drawn:
         cells_x = max(6, min(40, round((last - first) / a * chance.uniform(2.0, 5.0))))
         if chance.random() < 0.1:
             cells_x = 2 * chance.randint(1, 4)
-        return Drawn(case, Grid((first, last), window, cells_x, cells_y))
+        return Drawn(case, Grid(x_range=(first, last), y_range=window, cells_x=cells_x, cells_y=cells_y))
     return Drawn(case, Grid.from_edges(_graded(chance, first, last, chance.randint(6, 30)), window, cells_y))
 
 

@@ -187,9 +187,11 @@ def superposition(solved: Solved) -> bool:
     friction = chance.uniform(-1.0, 1.0)
     points = inner_points(solved)
     inside = {"inside_cells": chance.choice([pressure, "uniform"]), **points}
-    fields = [stacked(stress_field(case.body, load, friction, **inside)) for load in (pressure, other, pressure_sum)]
+    fields = [
+        stacked(stress_field(case.body, load, friction=friction, **inside)) for load in (pressure, other, pressure_sum)
+    ]
     close("stresses of a sum", fields[0] + 0.5 * fields[1], fields[2], peak, 1e-9)
-    frictionless, full = (stacked(stress_field(case.body, pressure, f, **inside)) for f in (0.0, 1.0))
+    frictionless, full = (stacked(stress_field(case.body, pressure, friction=f, **inside)) for f in (0.0, 1.0))
     close("stresses with friction", frictionless + friction * (full - frictionless), fields[0], peak, 1e-9)
     sunk = [surface_displacement(case.body, load, friction).values for load in (pressure, other, pressure_sum)]
     close("displacements of a sum", sunk[0] + 0.5 * sunk[1], sunk[2], float(np.abs(sunk[2]).max()), 1e-9)
@@ -250,9 +252,9 @@ def equilibrium(solved: Solved) -> bool:
         if abs(depth - change) < 2 * step:
             depth = change + 2 * step
     position = [low + chance.uniform(0.1, 0.9) * (high - low), chance.uniform(-1.0, 1.0) * a, depth]
-    axes = [[centre - step, centre, centre + step] for centre in position]
+    axes = {axis: [centre - step, centre, centre + step] for axis, centre in zip("xyz", position, strict=True)}
     pressure = solved.result["pressure"]
-    field = stacked(stress_field(case.body, pressure, case.friction, *axes, inside_cells=pressure))
+    field = stacked(stress_field(case.body, pressure, friction=case.friction, **axes, inside_cells=pressure))
     stress_rows = np.stack(
         [
             field[:, 2, 1, 1] - field[:, 0, 1, 1],
@@ -286,10 +288,10 @@ def loads_on_the_top(solved: Solved) -> bool:
         field = stress_field(
             case.body,
             pressure,
-            case.friction,
-            [grid.x[i]],
-            [grid.y[j]],
-            [0.0],
+            friction=case.friction,
+            x=[grid.x[i]],
+            y=[grid.y[j]],
+            z=[0.0],
             inside_cells=pressure if smooth else "uniform",
         )
         # A smooth load keeps the force of a cell; in its middle it may differ, up to the steepest that a cell can hold.
@@ -315,11 +317,12 @@ def same_points_among_others(solved: Solved) -> bool:
     case, grid, chance = solved.drawn.case, solved.grid, solved.chance
     pressure = solved.result["pressure"]
     depth = [chance.uniform(0.2, 2.0) * case.hertz_half_width]
-    alone = stacked(stress_field(case.body, pressure, case.friction, z=depth, inside_cells=pressure))
+    alone = stacked(stress_field(case.body, pressure, friction=case.friction, z=depth, inside_cells=pressure))
     aside = [
         np.sort(np.append(position, position[0] + 0.31 * (position[1] - position[0]))) for position in (grid.x, grid.y)
     ]
-    stresses = stacked(stress_field(case.body, pressure, case.friction, *aside, depth, inside_cells=pressure))
+    points = {"x": aside[0], "y": aside[1], "z": depth, "inside_cells": pressure}
+    stresses = stacked(stress_field(case.body, pressure, friction=case.friction, **points))
     index = np.ix_(range(6), *(np.arange(position.size) != 1 for position in aside))
     close("stresses among others", stresses[index], alone, solved.peak, QUADRATURE)
     return True
@@ -339,7 +342,7 @@ def free_ends(solved: Solved) -> bool:
     depths = [magnitude(chance, 0.25, 4.0) * size for _ in range(2)]
     across = [chance.uniform(*grid.y_range) for _ in range(3)]
     pressure = solved.result["pressure"]
-    field = stress_field(case.body, pressure, case.friction, ends, across, depths, inside_cells=pressure)
+    field = stress_field(case.body, pressure, friction=case.friction, x=ends, y=across, z=depths, inside_cells=pressure)
     end_traction = (
         max(float(np.abs(field[name].values).max()) for name in ("sigma_xx", "tau_xy", "tau_xz")) / solved.peak
     )
@@ -397,7 +400,9 @@ def largest_stress(solved: Solved) -> bool:
     positions = {"x": grid.x[columns], "y": grid.y[rows], "z": depths}
     # On refined cells random cases slide.
     pressure = result["pressure"]
-    field = stress_field(case.body, pressure, case.friction, **positions, inside_cells=pressure)["von_mises"].values
+    field = stress_field(case.body, pressure, friction=case.friction, **positions, inside_cells=pressure)[
+        "von_mises"
+    ].values
     field[..., 0][~inside[np.ix_(columns, rows)]] = 0.0
     require(field.max() <= most, f"a von Mises stress of {field.max() / most:.4g} of the stated largest")
     return True
@@ -419,7 +424,7 @@ def single_plane(solved: Solved) -> bool:
     case, pressure = solved.drawn.case, solved.result["pressure"]
     depths = case.hertz_half_width * np.array([0.2, 0.5, 1.0])
     field = stress_field(
-        case.body, pressure, case.friction, solved.grid.x, [0.0], depths, inside_cells=pressure
+        case.body, pressure, friction=case.friction, x=solved.grid.x, y=[0.0], z=depths, inside_cells=pressure
     ).assign(hertz_max_pressure=case.hertz_max_pressure)
     try:
         fatigue.lundberg_palmgren(field)

@@ -127,8 +127,8 @@ def contact(case: Case, gap: xr.DataArray) -> xr.Dataset:
     return solve_contact(
         case.body,
         gap,
-        case.normal_load,
-        case.friction,
+        load=case.normal_load,
+        friction=case.friction,
         counterbody=case.counterbody,
         settings=ContactSettings(coupled=case.coupled, load_position=case.load_position, tolerance=TOLERANCE),
     )

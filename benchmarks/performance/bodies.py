@@ -24,7 +24,7 @@ MEMORY_BAR = 2000.0  # megabytes
 
 def building(repeats: int, _: Report) -> Iterator[Row]:
     """Operator of a body with ends, and the time of a second case."""
-    grid = Grid((0.0, 8 * HALF_WIDTH), (-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), 128, 64)
+    grid = Grid(x_range=(0.0, 8 * HALF_WIDTH), y_range=(-1.5 * HALF_WIDTH, 1.5 * HALF_WIDTH), cells_x=128, cells_y=64)
     body = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
     surface_operator(body, grid)
     works: dict[str, Callable[[], object]] = {
@@ -52,7 +52,7 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
         "half-space": HalfSpace(material=STEEL),
         "finite-length": FiniteLengthSpace(length=length, material=STEEL),
     }
-    grid = Grid((0.0, length), (-window / 2, window / 2), 128, 128)
+    grid = Grid(x_range=(0.0, length), y_range=(-window / 2, window / 2), cells_x=128, cells_y=128)
     line = 1e9 * np.sqrt(np.maximum(1 - (grid.y / HALF_WIDTH) ** 2, 0.0)) * np.ones((128, 1))
     # As wide an ellipse: its edge on the cells is another one in every section, so nothing is a product of x and y.
     axial = 2 * grid.x[:, None] / length - 1
@@ -61,7 +61,7 @@ def stresses(repeats: int, _: Report) -> Iterator[Row]:
     def field(body: Body, friction: float, load: np.ndarray, cold: bool) -> xr.Dataset:
         pressure = xr.DataArray(load * nudge(), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         # Kernels are kept by depth: other depths have none.
-        return stress_field(body, pressure, friction, z=z * nudge() if cold else z, inside_cells=pressure)
+        return stress_field(body, pressure, friction=friction, z=z * nudge() if cold else z, inside_cells=pressure)
 
     def timed(friction: float, load: np.ndarray, cold: bool) -> dict[str, float]:
         works: dict[str, Callable[[], object]] = {

@@ -161,7 +161,7 @@ def iterations(_: int, report: Report) -> Iterator[Row]:
         counts = []
         for name, problem in cases.items():
             contact = solve_contact(
-                problem.body, problem.labelled(), problem.load, settings=ContactSettings(tolerance=tolerance)
+                problem.body, problem.labelled(), load=problem.load, settings=ContactSettings(tolerance=tolerance)
             )
             if not bool(contact["converged"]):
                 report.remark(f"not converged: {name} at {tolerance:g}")

@@ -33,7 +33,7 @@ def contact_of(problem: Problem, tolerance: float = 1e-6, *, stretch: float = 1.
     return solve_contact(
         problem.body,
         problem.labelled(stretch),
-        problem.nudged_load(),
+        load=problem.nudged_load(),
         settings=ContactSettings(tolerance=tolerance, max_iterations=5000),
     )
 

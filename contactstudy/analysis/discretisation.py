@@ -69,9 +69,8 @@ def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     >>> from contactstudy import Case, FiniteLengthSpace, Grid, Material, Roller, solve
     >>> body = FiniteLengthSpace(length=0.5e-3, material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9)
-    >>> fine, coarse = (
-    ...     solve(case, Grid((0, 0.5e-3), (-13e-5, 13e-5), *cells), stresses=False) for cells in [(64, 64), (32, 32)]
-    ... )
+    >>> cells = (Grid(x_range=(0, 0.5e-3), y_range=(-13e-5, 13e-5), cells_x=n, cells_y=n) for n in (64, 32))
+    >>> fine, coarse = (solve(case, grid, stresses=False) for grid in cells)
     >>> result = discretisation_error(fine, coarse)
     >>> round(float(result.peak_pressure) / 1.5e9, 2), float(result.peak_pressure_error) < 0.01 * 1.5e9
     (1.02, True)

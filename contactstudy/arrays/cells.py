@@ -79,7 +79,7 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
                 error.parameter, error.value, error.allowed, "cells of different widths need a coordinate x_width (x)"
             ) from None
         return Grid.between(_edges_from_end(centres, extent), y_range, cells_y)
-    return Grid(x_range, y_range, cells_x, cells_y)
+    return Grid(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y)
 
 
 def _edges_from_end(centres: FloatArray, extent: tuple[float, float]) -> FloatArray:

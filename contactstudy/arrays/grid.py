@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -22,7 +22,7 @@ ON_TOP = 0.02  # relative error of stresses on the top under a pressure of cells
 MOST_CELLS = 10**8  # largest number of cells; more suggest a wrong unit
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Grid:
     """Rectangular cells that tile ``x_min..x_max`` by ``y_min..y_max``; `from_edges` makes cells of different widths.
 
@@ -40,7 +40,7 @@ class Grid:
 
     Examples
     --------
-    >>> grid = Grid((0.0, 4.0), (-1.0, 1.0), 4, 2)
+    >>> grid = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=2)
     >>> grid.x.tolist(), grid.y.tolist(), grid.cell_area
     ([0.5, 1.5, 2.5, 3.5], [-0.5, 0.5], 1.0)
     """
@@ -49,7 +49,7 @@ class Grid:
     y_range: tuple[float, float]
     cells_x: int
     cells_y: int
-    _inner: tuple[float, ...] = field(default=(), repr=False, kw_only=True)
+    _inner: tuple[float, ...] = field(default=(), repr=False)
     """Edges between cells of different widths; empty for uniform cells."""
 
     def __post_init__(self) -> None:
@@ -109,7 +109,8 @@ class Grid:
             raise InvalidInputError("x_edges", f"{edges[index]:g}, {edges[index + 1]:g} m", "increasing")
         span = (float(edges[0]), float(edges[-1]))
         uniform = bool(np.abs(widths - widths.mean()).max() <= 1e-12 * widths.mean())
-        return cls(span, y_range, widths.size, cells_y, _inner=() if uniform else tuple(edges[1:-1].tolist()))
+        inner = () if uniform else tuple(edges[1:-1].tolist())
+        return cls(x_range=span, y_range=y_range, cells_x=widths.size, cells_y=cells_y, _inner=inner)
 
     def check_growth(self, cells: BoolArray) -> None:
         """Raise if neighbours among some cells along x differ by more than an estimated error allows."""
@@ -131,7 +132,7 @@ class Grid:
         (x_range, cells_x), (y_range, cells_y) = (
             uniform_range(name, centres) for name, centres in (("x", x), ("y", y))
         )
-        return cls(x_range, y_range, cells_x, cells_y)
+        return cls(x_range=x_range, y_range=y_range, cells_x=cells_x, cells_y=cells_y)
 
     @property
     def uniform(self) -> bool:
@@ -199,10 +200,10 @@ class Grid:
     def coarsened(self) -> Grid:
         """Return the grid of cells of twice the size; a little more where a number of cells is odd."""
         if self.uniform:
-            return Grid(self.x_range, self.y_range, self.cells_x // 2, self.cells_y // 2)
+            return replace(self, cells_x=self.cells_x // 2, cells_y=self.cells_y // 2)
         # Pairs of cells may exceed the steepest grading: they serve an initial guess.
         inner = self._inner[1::2]
-        return Grid(self.x_range, self.y_range, len(inner) + 1, self.cells_y // 2, _inner=inner)
+        return replace(self, cells_x=len(inner) + 1, cells_y=self.cells_y // 2, _inner=inner)
 
 
 def growing_edges(distance: float, width: float) -> FloatArray:

@@ -67,7 +67,7 @@ class Axis:
         return np.asarray(BSpline(self.knots, np.eye(count), self.degree)(points, nu=derivative))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EnergySpline:
     """Strain energy: the exponential of a spline without tilt, and a product of splines that a tilt adds."""
 
@@ -101,7 +101,8 @@ class EnergySpline:
             (np.kron(first(u, i), second(t, j)) / size.reshape(-1, 1), (value / size).ravel())
             for (i, j), value, size in equations
         ]
-        return cls(first, second, scale, level, _solved(rows).reshape(first(u).shape[1], -1))
+        added = _solved(rows).reshape(first(u).shape[1], -1)
+        return cls(approach_axis=first, tilt_axis=second, largest_tilt=scale, level=level, added=added)
 
     def __call__(self, approach: FloatArray, tilt: FloatArray) -> Motion:
         """Load, moment and stiffness at pairs of approach and tilt, of one shape."""

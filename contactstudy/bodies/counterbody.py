@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -43,7 +43,7 @@ class Counterbody:
             return _moved(grid, -self.start)
         if grid.uniform:
             cells = max(4, round(self.body.length / grid.dx))
-            return Grid((0.0, self.body.length), grid.y_range, cells, grid.cells_y)
+            return Grid(x_range=(0.0, self.body.length), y_range=grid.y_range, cells_x=cells, cells_y=grid.cells_y)
         edges, stop = grid.x_edges - self.start, self.body.length
         tolerance = ALIGNED * grid.widths.min()
         for end in (0.0, stop):
@@ -85,5 +85,5 @@ class Counterbody:
 def _moved(grid: Grid, shift: float) -> Grid:
     """Return the same cells elsewhere along x."""
     if grid.uniform:
-        return Grid((grid.x_range[0] + shift, grid.x_range[1] + shift), grid.y_range, *grid.shape)
+        return replace(grid, x_range=(grid.x_range[0] + shift, grid.x_range[1] + shift))
     return Grid.between(grid.x_edges + shift, grid.y_range, grid.cells_y)

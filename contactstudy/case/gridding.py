@@ -120,7 +120,7 @@ def choose_grid(
         counts[0] = min(
             candidates, key=lambda cells: float(np.abs(ends * cells - np.round(ends * cells)).max().round(3))
         )
-    return Grid(x_range, (-half_window, half_window), *counts)
+    return Grid(x_range=x_range, y_range=(-half_window, half_window), cells_x=counts[0], cells_y=counts[1])
 
 
 def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> Iterator[Grid]:

@@ -89,9 +89,9 @@ DEFAULTS = ContactSettings()  # the default settings
 def solve_contact(
     body: Body,
     gap: xr.DataArray,
+    *,
     load: float | None = None,
     friction: Friction | xr.DataArray = 0.0,
-    *,
     approach: float | Sequence[float] | None = None,
     counterbody: Counterbody | None = None,
     surface: LinearOperator | None = None,
@@ -179,8 +179,8 @@ def solve_contact(
             solve_contact,
             body,
             gap,
-            load,
-            friction,
+            load=load,
+            friction=friction,
             counterbody=counterbody,
             surface=surface,
             motion=motion,
@@ -213,14 +213,14 @@ def solve_contact(
         if coupled or not isinstance(motion, Sliding):
             raise InvalidInputError("motion, coupled", (motion, coupled), "full sliding, uncoupled, with surface")
     shape = Shape(
-        body,
-        grid,
-        ArrayKey(clearance),
-        Prescribed(load, settings.load_position, approach).checked(clearance, grid),
-        counterbody,
+        body=body,
+        grid=grid,
+        gap=ArrayKey(clearance),
+        prescribed=Prescribed(load, settings.load_position, approach).checked(clearance, grid),
+        counterbody=counterbody,
         # Friction that does not bend the surface does not change the pressure: one contact serves all of a sweep.
-        on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
-        surface,
+        coupled_friction=on_cells if coupled and isinstance(motion, Sliding) and isinstance(on_cells, float) else 0.0,
+        surface=surface,
     )
     iteration = Settings(settings.tolerance, settings.max_iterations)
     x, y = gap["x"].values, gap["y"].values

@@ -305,9 +305,9 @@ NO_STRESSES: Mapping[str, object] = MappingProxyType({"stresses": False})
 def best_profile(
     case: Case,
     profile: Callable[..., Profile],
+    *,
     bounds: Mapping[str, tuple[float, float]],
     measure: Measure = "peak_pressure",
-    *,
     loads: Sequence[float] | FloatArray | None = None,
     max_pressures: Sequence[float] | FloatArray | None = None,
     tilts: Sequence[float] | FloatArray | None = None,
@@ -367,7 +367,8 @@ def best_profile(
     >>> from contactstudy import HalfSpace, Material, Roller, profiles
     >>> body = HalfSpace(material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9)
-    >>> best = best_profile(case, profiles.Lundberg, {"amplitude": (0.02e-6, 1e-6)}, accuracy=0.05, evaluations=9)
+    >>> bounds = {"amplitude": (0.02e-6, 1e-6)}
+    >>> best = best_profile(case, profiles.Lundberg, bounds=bounds, accuracy=0.05, evaluations=9)
     >>> bool(best.flat_from[0] <= best.optimum[0] <= best.flat_to[0])
     True
     """

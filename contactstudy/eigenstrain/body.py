@@ -61,7 +61,7 @@ def towards_face(start: float, face: float, first: float) -> FloatArray:
     return np.concatenate([near, start + face - np.append(start, near[:-1])[::-1]])
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EigenstrainBody:
     """A body, and cells of (x, z) with uniform eigenstrains."""
 

@@ -168,7 +168,7 @@ def top_image(case: CaseFields, scale: Scale, limits: Span) -> Image:
     """Return the pressure on the top of the body."""
     _, y = case.cells
     spans = (limits, (float(y[0]), float(y[-1])))
-    return _image(case.pressure, case.cells, spans, case.pressure_limit, scale, "xy")
+    return _image(case.pressure, case.cells, spans, case.pressure_limit, scale, names="xy")
 
 
 def plane_image(
@@ -189,7 +189,7 @@ def plane_image(
     if horizontal == "x":
         spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
     axes = (points[horizontal], points[vertical])
-    image = _image(values, axes, (spans[0], spans[1]), case.stress_limit(name), scale, horizontal + vertical)
+    image = _image(values, axes, (spans[0], spans[1]), case.stress_limit(name), scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
     return image._replace(position=f" at {normal} = {position / scale.length:.3g} {unit}")
 

@@ -448,7 +448,7 @@ class _Program:
             matrix,
             right,
             [clarabel.SecondOrderConeT(5)] * count,
-            settings,
+            settings=settings,
         )
         solution = solver.solve()
         return np.asarray(solution.x)[1 + free :], float(solution.obj_val_dual)

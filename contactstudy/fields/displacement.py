@@ -6,15 +6,15 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.kernels.field import half_space_displacement
+from contactstudy.kernels.field import displacement_influence, half_space_field
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_displacement
 
 COMPONENTS = ("u_x", "u_y", "u_z")
@@ -23,11 +23,11 @@ COMPONENTS = ("u_x", "u_y", "u_z")
 def displacement_field(
     body: Body,
     pressure: xr.DataArray,
+    *,
     friction: float = 0.0,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
-    *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
     inside_cells: str | xr.DataArray = UNIFORM,
@@ -76,11 +76,9 @@ def displacement_field(
     >>> bool(np.allclose(displacement.u_z.sel(z=0.0), surface_displacement(body, pressure)))
     True
     """
-    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells)
-    positions = field_positions(body, prescribed.grid, x, y, z, prescribed.labels)
-    displacement = displacement_under(
-        body, prescribed.loads, prescribed.grid, Points(*positions.axes), prescribed.shape
-    )
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells=inside_cells)
+    positions = field_positions(body, prescribed.grid, x, y, z, labels=prescribed.labels)
+    displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
     reference = REFERENCE_LENGTHS * body.unbounded_row
     if np.isfinite(reference):
@@ -99,7 +97,9 @@ def displacement_under(
         sizes = (axis.size for axis in points)
         fields: dict[Load, FloatArray] = dict.fromkeys(directions, np.zeros((3, *sizes)))
         for part in body.parts:
-            for load, field in _part_displacement(body, part, directions, cells, grid, points, shape).items():
+            for load, field in _part_displacement(
+                body, part, directions, cells, grid, points=points, shape=shape
+            ).items():
                 fields[load] = fields[load] + part.weight * field
         return {load: [field] for load, field in fields.items()}
 
@@ -118,15 +118,15 @@ def _part_displacement(
 ) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z) of one part of a body, before its weight."""
     material, extent = body.material, part.extent
-    reference = REFERENCE_LENGTHS * (extent[1] - extent[0])
-    fields = {
-        load: half_space_displacement(
-            load, cells, material, grid, *points, extent=extent, reference=reference, shape=shape
-        )
-        for load in loads
-    }
+    length = extent[1] - extent[0]
+    reference = REFERENCE_LENGTHS * length
+    fields = {}
+    for load in loads:
+        influence = displacement_influence(load, material.poisson, length, reference)
+        field = half_space_field(cells, influence, grid, points, extent=extent, shape=shape)
+        fields[load] = field / (4 * np.pi * material.shear_modulus)
     if part.freed and cells.any():
-        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads)
-        for load, from_ends in end_displacement(problem, *points, reference=reference).items():
+        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=loads)
+        for load, from_ends in end_displacement(problem, points, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields

@@ -116,6 +116,12 @@ def overlapping_operators(
     cells = np.zeros(grid.shape) if cells is None else cells
     resolution = Resolution().for_loads((load,))
     problem = EndProblem(
-        freed.length, body.material.poisson, cells, (load,), grid, resolution, mirrored_once=freed.mirrored_once
+        length=freed.length,
+        poisson=body.material.poisson,
+        cells=cells,
+        loads=(load,),
+        grid=grid,
+        resolution=resolution,
+        mirrored_once=freed.mirrored_once,
     )
     return OverlappingOperators.of(problem, LoadPositions(grid.x, grid.y, depths), reference=_reference(body))

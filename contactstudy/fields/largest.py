@@ -16,11 +16,11 @@ from scipy import ndimage
 
 from contactstudy.arrays.grid import ON_TOP, Grid
 from contactstudy.arrays.peaks import interpolate_about, peak_width
+from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.fields.loads import Loads
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.stress import von_mises_of
 
 AXIAL_OFFSETS = np.array([-0.8, -0.4, 0.0, 0.4, 0.8])  # points along x around a peak, over its width
@@ -138,7 +138,9 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
             samples.append(
-                _nearest_cells(grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, width * DEPTHS)
+                _nearest_cells(
+                    grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, depths=width * DEPTHS
+                )
             )
     middle, half_width = _section(pressure[int(line.argmax())], grid)
     columns = np.flatnonzero(pressure.any(axis=1))
@@ -149,7 +151,7 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
     x = np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
     samples.append(
         _nearest_cells(
-            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, half_width * AXIS_DEPTHS
+            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, depths=half_width * AXIS_DEPTHS
         )
     )
     return Search(grid, extent, off_rim, border, samples)

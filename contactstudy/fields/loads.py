@@ -79,8 +79,17 @@ def end_problem(
     """Problem of the ends that a load on cells leaves, on the fine cells of a `shape` inside them."""
     finest = finest_cell(grid)
     if shape is not None:
-        cells, grid = FineCells(cells, shape, grid, (0.0, freed.length)).end_load()
-    return EndProblem(freed.length, poisson, cells, loads, grid, Resolution(), freed.mirrored_once, finest)
+        cells, grid = FineCells(load=cells, shape=shape, grid=grid, extent=(0.0, freed.length)).end_load()
+    return EndProblem(
+        length=freed.length,
+        poisson=poisson,
+        cells=cells,
+        loads=loads,
+        grid=grid,
+        resolution=Resolution(),
+        mirrored_once=freed.mirrored_once,
+        finest=finest,
+    )
 
 
 UNIFORM = "uniform"  # value of `inside_cells` for loads that are uniform in each cell

@@ -59,7 +59,7 @@ class PartOperator:
             check_ends(part, responses)
             with one_blas_thread():
                 reference = reference_distance(part.extent)
-                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
+                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution=resolution)
                 ends = EndCorrection.on(grid, end_kernel(request))
         spectra = {response: _spectrum(response, material, part.extent, grid) for response in responses}
         return cls(part.extent, grid, spectra, ends)
@@ -217,13 +217,13 @@ class ColumnsOperator:
         """Operator of a part of a body made of `material`, for pairs of displacement and load."""
         edges, reference = grid.x_edges, reference_distance(part.extent)
         check_ends(part, responses)
-        columns = ColumnsRequest(edges, grid.dy, grid.cells_y, part.extent, reference)
+        columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=grid.cells_y, extent=part.extent, reference=reference)
         with one_blas_thread():
             kernels = {
                 response: kernel_factor(material) * columns.kernel(response, material.poisson) for response in responses
             }
             if part.freed:
-                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution)
+                request = EndRequest.of(part.freed, material, grid, tuple(responses), reference, resolution=resolution)
                 ends = end_kernel(request)
                 for response, kernel in kernels.items():
                     ends.add_to(kernel, response, edges)

@@ -12,6 +12,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import numbers_in_si
 from contactstudy.bodies.models import Body, Extent
 from contactstudy.checks import BoolArray, FloatArray
@@ -36,9 +37,9 @@ class FieldPositions(NamedTuple):
     label_y: FloatArray
 
     @property
-    def axes(self) -> tuple[FloatArray, FloatArray, FloatArray]:
-        """The three axes."""
-        return self.x, self.y, self.z
+    def points(self) -> Points:
+        """Positions without labels."""
+        return Points(self.x, self.y, self.z)
 
     def dataset(self, fields: Mapping[str, FloatArray]) -> xr.Dataset:
         """Label fields (x, y, z)."""

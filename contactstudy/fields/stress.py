@@ -10,6 +10,7 @@ import xarray as xr
 from scipy.sparse.linalg import LinearOperator
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES, describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, cached
@@ -20,7 +21,7 @@ from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.kernels.field import half_space_stress
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points, UnitFields, unit_fields
+from contactstudy.overlapping.field import UnitFields, unit_fields
 from contactstudy.overlapping.harmonics import STRESS, end_stress
 from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -30,11 +31,11 @@ from contactstudy.stress import von_mises
 def stress_field(
     body: Body,
     pressure: xr.DataArray,
+    *,
     friction: float = 0.0,
     x: Positions | None = None,
     y: Positions | None = None,
     z: Positions = (0.0,),
-    *,
     traction_x: xr.DataArray | None = None,
     traction_y: xr.DataArray | None = None,
     inside_cells: str | xr.DataArray = UNIFORM,
@@ -87,8 +88,8 @@ def stress_field(
     >>> abs(float(stress.sigma_xx[0, 0, 0])) < 1e-5, round(float(stress.sigma_zz[1, 0, 0]), 3)
     (True, -0.954)
     """
-    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells)
-    positions = field_positions(body, prescribed.grid, x, y, z, prescribed.labels)
+    prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y, inside_cells=inside_cells)
+    positions = field_positions(body, prescribed.grid, x, y, z, labels=prescribed.labels)
     return stress_dataset(body, prescribed.loads, prescribed.grid, positions, prescribed.shape)
 
 
@@ -96,7 +97,7 @@ def stress_dataset(
     body: Body, loads: Loads, grid: Grid, positions: FieldPositions, shape: FloatArray | None
 ) -> xr.Dataset:
     """Stresses under `loads` on the cells of `grid`, labelled."""
-    (stresses,) = stresses_at(body, loads, grid, [Points(*positions.axes)], shape)
+    (stresses,) = stresses_at(body, loads, grid, [positions.points], shape)
     return _labelled(body, grid, stresses, positions)
 
 
@@ -126,7 +127,7 @@ def stresses_at(
     shape_cells = None if shape is None else ArrayKey(shape)
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
-        return _unit_stress(body, grid, directions, ArrayKey(cells), keys, shape_cells)
+        return _unit_stress(body, grid, directions, ArrayKey(cells), keys, shape=shape_cells)
 
     return superposed(loads, unit_fields)
 
@@ -143,7 +144,9 @@ def _unit_stress(
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
     fields: dict[Load, list[FloatArray]] = {}
     for part in body.parts:
-        for load, added in _part_stress(part, body.material.poisson, grid, loads, cells, point_sets, shape).items():
+        for load, added in _part_stress(
+            part, body.material.poisson, grid, loads, cells, keys=point_sets, shape=shape
+        ).items():
             fields[load] = [a + b for a, b in zip(fields[load], added, strict=True)] if load in fields else added
     return fields
 
@@ -159,9 +162,9 @@ def _mirrored_stress(
     shape: ArrayKey | None,
 ) -> FloatArray:
     """Stresses (6, x, y, z) in the half-space; the stresses under a pressure are shared by all frictions."""
-    axes = [axis.values for axis in points]
+    axes = Points(*(axis.values for axis in points))
     values = None if shape is None else shape.values
-    return half_space_stress(load, cells.values, poisson, grid, *axes, extent=extent, shape=values)
+    return half_space_stress(load, cells.values, poisson, grid, axes, extent=extent, shape=values)
 
 
 def _part_stress(
@@ -176,12 +179,13 @@ def _part_stress(
     """Stresses of one part of a body, times its weight."""
     point_sets = [Points(*(axis.values for axis in key)) for key in keys]
     mirrored = {
-        load: [_mirrored_stress(load, poisson, part.extent, grid, cells, key, shape) for key in keys] for load in loads
+        load: [_mirrored_stress(load, poisson, part.extent, grid, cells, points=key, shape=shape) for key in keys]
+        for load in loads
     }
     fields: dict[Load, list[FloatArray]] = {load: [] for load in loads}
     if part.freed and cells.values.any():
         shape_cells = None if shape is None else shape.values
-        problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads)
+        problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
         reference = reference_distance(part.extent)
         for number, (points, by_load) in enumerate(
             zip(point_sets, end_stress(problem, point_sets, reference), strict=True)
@@ -228,7 +232,7 @@ def contact_stresses(
     residual = _residual(loads, stresses[-1]) if ends.size else 0.0
     largest = largest_stress(search, stresses[: len(search.samples)], stress)
     located = positions(largest)
-    points = Points(*located.axes)
+    points = located.points
     field = stress(points)
     largest = largest_with_points(largest, points, field, search, stress)
     return ContactStresses(_labelled(body, grid, field, located), residual, largest)
@@ -273,12 +277,20 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
                 unit = np.zeros(grid.shape)
                 unit[cell, 0] = part.weight
                 self._half_space[cell] += half_space_stress(
-                    load, unit, poisson, grid, points.x, unique * grid.dy, points.z, extent=part.extent
+                    load, unit, poisson, grid, points._replace(y=unique * grid.dy), extent=part.extent
                 )
             if part.freed:
                 length, mirrored_once = part.freed
                 resolution = Resolution().for_loads((load,))
-                problem = EndProblem(length, poisson, np.zeros(grid.shape), (load,), grid, resolution, mirrored_once)
+                problem = EndProblem(
+                    length=length,
+                    poisson=poisson,
+                    cells=np.zeros(grid.shape),
+                    loads=(load,),
+                    grid=grid,
+                    resolution=resolution,
+                    mirrored_once=mirrored_once,
+                )
                 reference = reference_distance(part.extent)
                 grows = load.sign_x < 0 and np.isfinite(reference)
                 for amplitudes, filters in unit_fields(problem, STRESS, points, reference=reference if grows else None):

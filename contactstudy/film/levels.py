@@ -297,7 +297,7 @@ def film_on_level(
     """
     cells, joined, window = cells_of(film, level, places)
     with one_blas_thread():
-        return _solved(film, cells, joined, window, settings, start)
+        return _solved(film, cells, joined, window, settings, start=start)
 
 
 def _solved(

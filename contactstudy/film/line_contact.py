@@ -147,12 +147,12 @@ def solve_line(
     number = 8 * load / np.pi
     pressure = solution.fluid_pressure[0]
     return LineFilm(
-        number * float(np.interp(0.0, y, height)),
-        number * float(height[cell] - slope**2 / (4 * bend)),
-        y,
-        pressure,
-        height,
-        float((pressure * y * cells.lengths).sum()),
-        0.5 * float((0.5 * (height[1:] + height[:-1]) * np.diff(pressure)).sum()),  # eq. (415)
-        solution,
+        central=number * float(np.interp(0.0, y, height)),
+        least=number * float(height[cell] - slope**2 / (4 * bend)),
+        y=y,
+        pressure=pressure,
+        film=height,
+        moment=float((pressure * y * cells.lengths).sum()),
+        rolling=0.5 * float((0.5 * (height[1:] + height[:-1]) * np.diff(pressure)).sum()),  # eq. (415)
+        solution=solution,
     )

@@ -321,14 +321,14 @@ class _Iteration:
         sums = problem.resultants @ state.pressure.ravel() - problem.prescribed
         residual = np.where(cavitated, fluid_pressure.ravel(), outflow / film.value.ravel())
         return _Linearised(
-            flow._replace(outflow=outflow),
-            np.concatenate([residual, sums / problem.load]),
-            sparse.csr_array(by_pressure),
-            sparse.csr_array(by_distance),
-            cavitated,
-            fluid_pressure,
-            asperities.value,
-            film.value,
+            flow=flow._replace(outflow=outflow),
+            residual=np.concatenate([residual, sums / problem.load]),
+            by_pressure=sparse.csr_array(by_pressure),
+            by_distance=sparse.csr_array(by_distance),
+            cavitated=cavitated,
+            fluid_pressure=fluid_pressure,
+            asperity_pressure=asperities.value,
+            film=film.value,
         )
 
     def converge(self, state: FilmState, step: float, mass: FloatArray | None) -> FilmSolution:
@@ -366,20 +366,20 @@ class _Iteration:
         load_error = float(np.abs(linearised.residual[full.size :]).max())
         tolerance = self.settings.tolerance
         return FilmSolution(
-            state,
-            np.maximum(linearised.fluid_pressure, 0.0),
-            linearised.asperity_pressure,
-            linearised.film,
-            linearised.flow.through,
-            outflow.reshape(shape),
-            linearised.cavitated.reshape(shape),
-            residual,
-            load_error,
-            max(inflow, below),
-            float(np.abs(state.mismatch).max()) / problem.central_film,
-            self.newton_steps,
-            self.linear_steps,
-            max(residual, inflow, below) <= tolerance
+            state=state,
+            fluid_pressure=np.maximum(linearised.fluid_pressure, 0.0),
+            asperity_pressure=linearised.asperity_pressure,
+            film=linearised.film,
+            flow=linearised.flow.through,
+            outflow=outflow.reshape(shape),
+            cavitated=linearised.cavitated.reshape(shape),
+            residual=residual,
+            load_error=load_error,
+            complementarity_error=max(inflow, below),
+            mismatch=float(np.abs(state.mismatch).max()) / problem.central_film,
+            newton_steps=self.newton_steps,
+            linear_steps=self.linear_steps,
+            converged=max(residual, inflow, below) <= tolerance
             and max(load_error, float(np.abs(state.mismatch).max()) / problem.central_film) <= tolerance,
         )
 

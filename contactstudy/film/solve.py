@@ -223,7 +223,15 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
         places = (films.first_x, films.last_x) if films.first_x < films.last_x else film.contact_ends
     assert solved is not None
     assert previous is not None
-    return _Refined(solved, previous, errors, error, first + len(changes) + 1, *steps)
+    return _Refined(
+        finest=solved,
+        films=previous,
+        errors=errors,
+        error=error,
+        levels=first + len(changes) + 1,
+        newton_steps=steps[0],
+        linear_steps=steps[1],
+    )
 
 
 def _film_error(film: FilmCase, failure: StepFailedError, level: int, places: tuple[float, ...]) -> FilmError:
@@ -255,15 +263,15 @@ def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
     sides = [_least(cells.x[side], least[side]) for side in (first, last)]
     lowest = min(sides)
     return Films(
-        float(np.interp(middle, cells.x, centre)),
-        float(np.interp(middle, cells.x, least)),
-        sides[0].value,
-        sides[1].value,
-        lowest.value,
-        sides[0].position,
-        sides[1].position,
-        lowest.position,
-        float(np.interp(lowest.position, cells.x, at_y)),
+        central=float(np.interp(middle, cells.x, centre)),
+        middle=float(np.interp(middle, cells.x, least)),
+        first=sides[0].value,
+        last=sides[1].value,
+        least=lowest.value,
+        first_x=sides[0].position,
+        last_x=sides[1].position,
+        least_x=lowest.position,
+        least_y=float(np.interp(lowest.position, cells.x, at_y)),
     )
 
 

@@ -221,7 +221,7 @@ def flash_temperature(
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = frictional_heat(case, solution, grid)
 
-    temperatures = _temperatures(case, grid, heat, pressure, body, roller, share)
+    temperatures = _temperatures(case, grid, heat, pressure, body, roller=roller, share=share)
     into_body, into_roller = temperatures.into_body, heat.density - temperatures.into_body
     area = grid.weights * grid.cell_area
     heated = heat.density != 0
@@ -233,7 +233,7 @@ def flash_temperature(
     values = {name: (("x", "y"), field) for name, field in fields.items()}
     scalars = _largest(grid, temperatures.rises)
     (wider, density), (_, means) = (_on_wider_cells(grid, values) for values in (heat.density, pressure))
-    on_half = _temperatures(case, wider, heat._replace(density=density), means, body, roller, share)
+    on_half = _temperatures(case, wider, heat._replace(density=density), means, body, roller=roller, share=share)
     change = abs(_largest(wider, on_half.rises)["max_temperature_rise"] - scalars["max_temperature_rise"])
     scalars["max_temperature_rise_error"] = change + scalars["max_temperature_rise"] * _pressure_error(solution)
     scalars["friction_power"] = heat.power

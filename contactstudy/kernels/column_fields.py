@@ -16,6 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.corner_sums import (
@@ -157,15 +158,15 @@ def split_columns(
         layers, beyond = lateral.uniform(z, np.arange(z.size)), lateral.uniform(depths, depth_indices)
         uniform = _Uniform(mirrored(grid.x_edges, extent), with_images(load, image, extent))
         jumps = list(_uniform_jumps(x, layers, beyond, uniform, reach))
-        return SplitColumns(layers, beyond, to_z, jumps, first, load)
-    fine = FineCells(cells.values, shape.values, grid, extent, image)
+        return SplitColumns(layers=layers, beyond=beyond, to_z=to_z, jumps=jumps, first=first, load=load)
+    fine = FineCells(load=cells.values, shape=shape.values, grid=grid, extent=extent, image=image)
     lateral = AlongY(grid, y, fine.first, fine.count)
     fine_depths = fine.fine_depths(z)
     layers = lateral.layers(z, np.flatnonzero(~fine_depths), fine=False)
     layers += lateral.layers(z, np.flatnonzero(fine_depths), fine=True)
     beyond = lateral.layers(depths, depth_indices, fine=False)
-    jumps = list(_shaped_jumps(x, layers, beyond, fine, NARROW * float(z.min()), reach))
-    return SplitColumns(layers, beyond, to_z, jumps, fine.first, fine.cells)
+    jumps = list(_shaped_jumps(x, layers, beyond, fine, NARROW * float(z.min()), reach=reach))
+    return SplitColumns(layers=layers, beyond=beyond, to_z=to_z, jumps=jumps, first=fine.first, load=fine.cells)
 
 
 class _Uniform(NamedTuple):
@@ -184,7 +185,7 @@ def _uniform_jumps(
         column = int(np.clip(np.searchsorted(edges, position, side="right") - 1, 0, edges.size - 2))
         low, high = _Surroundings(edges[column : column + 1], column, column).within(edges, position, reach)
         near = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
-        yield near, _far_jumps(edges, [loads] * len(beyond), beyond, position, low, high)
+        yield near, _far_jumps(edges, [loads] * len(beyond), beyond, position, low=low, high=high)
 
 
 def _far_jumps(
@@ -222,7 +223,7 @@ def _shaped_jumps(
                 columns.jumps(edges[low : high + 1], low, whole[low:high], fine_loads[first:stop], layer)
                 for whole, fine_loads, layer in zip(base, inserted, layers, strict=True)
             ]
-            yield near, _far_jumps(edges, far, beyond, position, low, high)
+            yield near, _far_jumps(edges, far, beyond, position, low=low, high=high)
 
 
 class _Surroundings(NamedTuple):
@@ -307,16 +308,15 @@ def columns_field(
     shape: FloatArray | None,
     influence: Influence,
     grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     *,
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field in the half-space under a load and all its mirror images, as `half_space_field`."""
+    x, y, z = points
     axes = (ArrayKey(x), ArrayKey(y), ArrayKey(z))
     key = None if shape is None else ArrayKey(shape)
-    columns = split_columns(ArrayKey(load), key, grid, extent, influence.load.sign_x, axes)
+    columns = split_columns(ArrayKey(load), key, grid, extent, influence.load.sign_x, axes=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     far_field = np.zeros((influence.components, x.size, y.size, columns.depths))
     for i, (position, (near, sides)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
@@ -325,7 +325,7 @@ def columns_field(
             _add(far_field[:, i], influence, columns.beyond, side, position)
     field += far_field if columns.to_z is None else far_field @ columns.to_z.T
     if np.isfinite(extent).all():
-        field += far_images(columns.load, influence, grid, columns.first, x, y, z, extent)
+        field += far_images(columns.load, influence, grid, columns.first, points, extent=extent)
     return field
 
 

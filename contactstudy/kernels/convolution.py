@@ -117,7 +117,7 @@ class GridTransform:
 NEGLIGIBLE = 1e-13  # odd wavenumbers of a load that is symmetric about mid-length, over the largest amplitude. Speed.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CentredConvolution:
     """Convolution of a load with the kernels of an influence at one depth."""
 
@@ -183,7 +183,7 @@ def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     x: FloatArray = request.dx * np.arange(request.shape[0] + 1.0)
     y: FloatArray = request.dy * np.arange(request.shape[1] + 1.0)
     influence = request.influence
-    spectrum = influence.kernel(x, y, request.dx, request.dy, request.length, request.depth)
+    spectrum = influence.kernel(x, y, request.dx, request.dy, length=request.length, depth=request.depth)
     for axis, signs in ((1, influence.sign_along_x), (2, influence.sign_along_y)):
         moved = spectrum.swapaxes(axis, 2)
         even = np.array(signs) > 0
@@ -209,11 +209,11 @@ def centred_field(
     columns: IntArray,
     z: FloatArray,
     *,
-    mirrored: bool,
-    length: float,
+    extent: tuple[float, float],
 ) -> FloatArray:
     """Field (component, row, column, z) at cell centres; rows and columns count from the first cell of the load."""
-    # With a mirror the load begins at end I; `length` is the distance to the mirror at end II.
+    # The load begins at end I unless that is infinitely far away, as end II then is, too.
+    mirrored, length = bool(np.isfinite(extent[0])), extent[1]
     cells_x, cells_y = load.shape
     reach_y = max(int(columns.max()), cells_y - 1 - int(columns.min()))
     if not mirrored:
@@ -232,6 +232,14 @@ def centred_field(
             transformed = 0.5 * transformed[::2]
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):
-        convolution = CentredConvolution(influence, *cell, length, mirrored, shape, depth)
+        convolution = CentredConvolution(
+            influence=influence,
+            dx=cell[0],
+            dy=cell[1],
+            length=length,
+            mirrored=mirrored,
+            shape=shape,
+            depth=depth,
+        )
         convolution.fill(field[:, :, number], transformed, rows, columns)
     return field.swapaxes(2, 3)

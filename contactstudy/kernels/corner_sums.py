@@ -41,7 +41,7 @@ BLOCK = 16_384  # corners and depths per evaluation. Speed: the values fit into 
 MERGED_WIDTH = 0.04  # width of merged columns over their distance. Accuracy: 1e-5 of the pressure.
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Layer:
     """Points at some depths with equal offsets from the cells along y, and these cells."""
 
@@ -73,7 +73,14 @@ class Layer:
             count, cells = count + 2 * NEIGHBOURS, cells + NEIGHBOURS
         lowest = int(cells.min()) - count
         offsets: FloatArray = column.offset + step * np.arange(lowest, int(cells.max()) + 1.0)
-        return cls(column.points, cells - int(cells.min()), numbers, EvenOffsets(offsets, z), edges, parts)
+        return cls(
+            points=column.points,
+            offset_indices=cells - int(cells.min()),
+            numbers=numbers,
+            corners=EvenOffsets(offsets, z),
+            edges=edges,
+            parts=parts,
+        )
 
     def loads(self, load: ShapedLoad) -> FloatArray:
         """Return loads of columns (column, y) on the cells of the layer."""
@@ -96,7 +103,7 @@ def divide_edges(edges: FloatArray, parts: int) -> FloatArray:
     return np.linspace(edges[0], edges[-1], parts * (edges.size - 1) + 1)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Jumps:
     """Nonzero mixed jumps of a load at the edges along x: array (edge, corner), backwards along y."""
 
@@ -121,7 +128,7 @@ class Jumps:
         if layer.offset_indices.size <= FEW_POINTS and corners.index is not None:
             folded = np.stack([corners.folded(backwards, start) for start in layer.offset_indices.tolist()], axis=1)
             folded = folded.reshape(-1, 2 * layer.offset_indices.size)
-        return cls(edges[loaded], backwards, folded, size, least)
+        return cls(edges=edges[loaded], values=backwards, folded=folded, size=size, least=least)
 
     def field(self, influence: Influence, corners: EvenOffsets, x: float, starts: IntArray) -> FloatArray:
         """Field (component, depth, point) at `x` of the corners from the offset indices `starts` on."""
@@ -129,7 +136,7 @@ class Jumps:
         step = max(1, BLOCK // max(1, distances.size * corners.along_y.size))
         spectrum = None if starts.size <= FEW_POINTS else fft.rfft(self.values, self.size, axis=1).conj()
         parts = [
-            self._at_depths(influence, corners, corners.z[start : start + step], distances, starts, spectrum)
+            self._at_depths(influence, corners, corners.z[start : start + step], distances, starts, spectrum=spectrum)
             for start in range(0, corners.z.size, step)
         ]
         return np.concatenate(parts, axis=1)

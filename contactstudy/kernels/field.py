@@ -12,7 +12,7 @@ import numpy as np
 from scipy import fft
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.bodies.material import Material
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field
@@ -34,9 +34,7 @@ def half_space_field(
     load: FloatArray,
     influence: Influence,
     grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     *,
     extent: tuple[float, float],
     shape: FloatArray | None = None,
@@ -44,6 +42,7 @@ def half_space_field(
     """Field (component, x, y, z) of the half-space under a load and all its mirror images in the ends of `extent`."""
     # The pressure `shape` determines the distribution of the load inside the cells; None: uniform.
     # In memory the depth precedes y, as in all fields.
+    x, y, z = points
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     if not load.any():
         return field
@@ -57,13 +56,14 @@ def half_space_field(
                 aligned[row.points] = True
     if not aligned.all():
         with one_blas_thread():
-            field[:, ~aligned] = columns_field(load, shape, influence, grid, x[~aligned], y, z, extent=extent)
+            points = Points(x[~aligned], y, z)
+            field[:, ~aligned] = columns_field(load, shape, influence, grid, points, extent=extent)
     if not aligned.any():
         return field
     if shape is None:
-        field[:, aligned] = _uniform_field(load, influence, grid, x[aligned], y, z, extent)
+        field[:, aligned] = _uniform_field(load, influence, grid, Points(x[aligned], y, z), extent)
         return field
-    fine = FineCells(load, shape, grid, extent, influence.load.sign_x)
+    fine = FineCells(load=load, shape=shape, grid=grid, extent=extent, image=influence.load.sign_x)
     components = np.arange(influence.components)
     near, near_x = fine.fine_depths(z), fine.fine_depths_x(z)
     for fine_x in (True, False):
@@ -71,7 +71,7 @@ def half_space_field(
         if deep.any():
             cells, coarse = fine.coarse_load(fine_x=fine_x)
             field[np.ix_(components, aligned, np.arange(y.size), deep)] = _uniform_field(
-                cells, influence, coarse, x[aligned], y, z[deep], extent
+                cells, influence, coarse, Points(x[aligned], y, z[deep]), extent
             )
         shallow = near & (near_x == fine_x)
         for column in aligned_points(y, float(grid.y[0]), grid.dy) if shallow.any() else ():
@@ -79,7 +79,7 @@ def half_space_field(
             if not fine_x:
                 cells, refined = fine.coarsen_x(cells, refined)
             field[np.ix_(components, aligned, column.points, shallow)] = _uniform_field(
-                cells, influence, refined, x[aligned], y[column.points], z[shallow], extent
+                cells, influence, refined, Points(x[aligned], y[column.points], z[shallow]), extent
             )
     return field
 
@@ -88,12 +88,11 @@ def _uniform_field(
     load: FloatArray,
     influence: Influence,
     grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field at points with equal offsets from uniform cells, by fast convolution."""
+    x, y, z = points
     in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
     periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
@@ -110,9 +109,8 @@ def _uniform_field(
             (grid.dx, grid.dy),
             rows[0].cells,
             columns[0].cells,
-            z,
-            mirrored=in_first,
-            length=extent[1] if periodic else np.inf,
+            z=z,
+            extent=extent,
         )
     start = grid.x[0]
     if in_first:  # the mirrored load precedes the load
@@ -120,7 +118,9 @@ def _uniform_field(
         start -= grid.cells_x * grid.dx
     elif in_second:
         load = np.concatenate([load, image * load[::-1]])
-    cells = _LoadedCells(load, influence, grid.dx, grid.dy, extent[1] if periodic else np.inf)
+    cells = _LoadedCells(
+        load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=extent[1] if periodic else np.inf
+    )
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
         for row in aligned_points(x, float(start), grid.dx):
@@ -128,7 +128,7 @@ def _uniform_field(
     return field
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _LoadedCells:
     """A load on uniform cells and its mirror image; the period is twice the length."""
 
@@ -179,7 +179,7 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
     """Kernel at uniform offsets `x`; offsets that include 0 are evaluated on one side and reflected."""
 
     def evaluate(offsets: FloatArray) -> FloatArray:
-        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, cells.length, depth)
+        return cells.influence.kernel(offsets, y, cells.dx, cells.dy, length=cells.length, depth=depth)
 
     steps = x / cells.dx
     before = round(-float(steps[0]))
@@ -200,41 +200,18 @@ def half_space_stress(
     cells: FloatArray,
     poisson: float,
     grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     *,
     extent: tuple[float, float],
     shape: FloatArray | None = None,
 ) -> FloatArray:
     """Stresses xx, yy, zz, xy, xz, yz (6, x, y, z) of the half-space under a load and its mirror images, Pa."""
     influence = Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
-    return half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
+    return half_space_field(cells, influence, grid, points, extent=extent, shape=shape)
 
 
 DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))
 """Parities along x and along y of the components x, y, z under a pressure."""
-
-
-def half_space_displacement(
-    load: Load,
-    cells: FloatArray,
-    material: Material,
-    grid: Grid,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
-    *,
-    extent: tuple[float, float],
-    reference: float,
-    shape: FloatArray | None = None,
-) -> FloatArray:
-    """Displacements (3, x, y, z) of the half-space under a load and its mirror images, metres."""
-    # With two mirrors relative to the top at the distance `reference` along y: they grow like a logarithm.
-    nu, length = material.poisson, extent[1] - extent[0]
-    influence = displacement_influence(load, nu, length, reference)
-    field = half_space_field(cells, influence, grid, x, y, z, extent=extent, shape=shape)
-    return field / (4 * np.pi * material.shear_modulus)
 
 
 def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:

@@ -29,7 +29,7 @@ FLAT = 3e-3  # neglected deviation of a shape from its mean in the cell, over th
 SPARE = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class FineCells:
     """A load on the cells of a grid as a smooth function, and as its means on finer cells."""
 
@@ -70,7 +70,7 @@ class FineCells:
         """The shape as a load."""
         if np.array_equal(self.load, self.shape):
             return self
-        cells = FineCells(self.shape, self.shape, self.grid, self.extent, self.image)
+        cells = FineCells(load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image=self.image)
         for name in ("first", "count"):
             object.__setattr__(cells, name, getattr(self, name))
         return cells

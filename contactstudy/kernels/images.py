@@ -15,6 +15,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 
@@ -45,7 +46,7 @@ def mirrored_kernel(
 ) -> FloatArray:
     """`cell_kernel` of a load and all its images at distances ``2 length``; offsets along x up to ``length``."""
     # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``.
-    images = image_kernel(corner, x, y, dx, dy, length, nearest=2 * length)
+    images = image_kernel(corner, x, y, dx, dy, length=length, nearest=2 * length)
     return cell_kernel(corner, x, y, dx, dy) + images
 
 
@@ -115,7 +116,7 @@ class FarImages:
         )
         total = np.zeros(())
         for distances, nearest, sign in rows:
-            kernel = image_kernel(corner, distances.ravel(), y, width, dy, self.length, nearest=nearest) / width
+            kernel = image_kernel(corner, distances.ravel(), y, width, dy, length=self.length, nearest=nearest) / width
             kernel = kernel + dy * level[..., None, None]
             total = total + sign * kernel.reshape(*kernel.shape[:-2], *distances.shape, y.size)
         return total
@@ -147,7 +148,7 @@ def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[Floa
     return span * points, np.asarray(matrix.T, dtype=np.float64)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Influence:
     """Components of a field around a unit load on one cell; compared by value, as part of a cached request."""
 
@@ -173,12 +174,12 @@ class Influence:
         """Influence of a load in any direction, from the parities along x and y of the components under a pressure."""
         along_x, along_y = under_pressure
         return cls(
-            corner,
-            poisson,
-            load,
-            tuple(load.sign_x * sign for sign in along_x),
-            tuple(load.sign_y * sign for sign in along_y),
-            (0.0,) * len(along_x) if image_level is None else image_level,
+            corner=corner,
+            poisson=poisson,
+            load=load,
+            sign_along_x=tuple(load.sign_x * sign for sign in along_x),
+            sign_along_y=tuple(load.sign_y * sign for sign in along_y),
+            image_level=(0.0,) * len(along_x) if image_level is None else image_level,
         )
 
     @property
@@ -194,7 +195,7 @@ class Influence:
         """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
         if np.isinf(length):
             return cell_kernel(self.corner_at(depth), x, y, dx, dy)
-        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length)
+        kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length)
         return np.asarray(kernel + dx * dy * np.array(self.image_level)[:, None, None])
 
 
@@ -207,9 +208,7 @@ def far_images(
     influence: Influence,
     grid: Grid,
     first: int,
-    x: FloatArray,
-    y: FloatArray,
-    z: FloatArray,
+    points: Points,
     extent: tuple[float, float],
 ) -> FloatArray:
     """Field of all images of a load except the nearest; `first` is its first column along y in the grid."""
@@ -220,7 +219,7 @@ def far_images(
     behind = max(first + load.shape[1] - grid.cells_y, 0)
     centres = grid.y_range[0] + grid.dy * (np.arange(-before, grid.cells_y + behind) + 0.5)
     (nodes_load, from_load), (nodes_y, to_y), (depths, to_z) = (
-        interpolation_points(axis, length) for axis in (centres, y, z)
+        interpolation_points(axis, length) for axis in (centres, points.y, points.z)
     )
     loaded = slice(before + first, before + first + load.shape[1])
     if from_load is not None:
@@ -236,7 +235,7 @@ def far_images(
         kernel = images.influence(corner, offsets, grid.dy, np.array(influence.image_level))
         for row in range(nodes_y.size):
             field[:, :, row, depth] = np.tensordot(kernel[..., number[row]], gathered, axes=2)
-    to_x = images.values(x - low)
+    to_x = images.values(points.x - low)
     field = np.tensordot(field, to_x, axes=(1, 1))
     if to_z is not None:
         field = np.tensordot(field, to_z, axes=(2, 1))

@@ -8,7 +8,7 @@ this cell; a load that ends without falling, as at a sharp end, ends in a step.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -31,7 +31,7 @@ NARROW = 0.5
 too little force into a last cell with a smaller loaded part, and too much into its neighbour."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SmoothLoad:
     """Loads along rows of cells as smooth functions."""
 
@@ -61,7 +61,9 @@ class SmoothLoad:
         first, last = faces[:, :-1].copy(), faces[:, 1:].copy()
         middle, knot = np.zeros(loads.shape), np.full(loads.shape, 0.5)
         fixed, joined = np.zeros(loads.shape, bool), np.zeros(loads.shape, bool)
-        forwards = _Row(loads, sign, widths, first, middle, last, knot, fixed)
+        forwards = _Row(
+            loads=loads, sign=sign, widths=widths, first=first, middle=middle, last=last, knot=knot, fixed=fixed
+        )
         for cell_row, cell in forwards.shape_ends(spilling=spilling):
             joined[cell_row, cell] = True
         backwards = forwards.reversed()
@@ -71,7 +73,7 @@ class SmoothLoad:
         np.subtract(1.0, knot, out=knot)
         free = ~fixed & (loads > 0)
         middle[free] = _middle(loads[free], first[free], last[free])
-        return cls(edges, sign, first, middle, last, knot, joined)
+        return cls(edges=edges, sign=sign, first=first, middle=middle, last=last, knot=knot, joined=joined)
 
     @property
     def cell_means(self) -> FloatArray:
@@ -90,7 +92,7 @@ class SmoothLoad:
         sign, first, middle, last = (
             np.where(empty, 1.0, values) for values in (self.sign, self.first, self.middle, self.last)
         )
-        shape = SmoothLoad(self.edges, sign, first, middle, last, self.knot, self.joined)
+        shape = replace(self, sign=sign, first=first, middle=middle, last=last)
         total, centroid = cells * widths, self.edges[:-1] + moment / force
         # Joined cells form a group with one ratio; other groups contain one cell.
         before = np.pad(self.joined[:, :-1], ((0, 0), (1, 0)))
@@ -246,7 +248,7 @@ def moment_loads(edges: FloatArray, moments: FloatArray) -> MomentLoads:
     )
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Row:
     """Rows of cells in one direction; their loads end at the last loaded cells."""
 
@@ -262,14 +264,14 @@ class _Row:
     def reversed(self) -> _Row:
         """Return the same arrays in the opposite direction."""
         return _Row(
-            self.loads[:, ::-1],
-            self.sign[:, ::-1],
-            self.widths[::-1],
-            self.last[:, ::-1],
-            self.middle[:, ::-1],
-            self.first[:, ::-1],
-            self.knot[:, ::-1],
-            self.fixed[:, ::-1],
+            loads=self.loads[:, ::-1],
+            sign=self.sign[:, ::-1],
+            widths=self.widths[::-1],
+            first=self.last[:, ::-1],
+            middle=self.middle[:, ::-1],
+            last=self.first[:, ::-1],
+            knot=self.knot[:, ::-1],
+            fixed=self.fixed[:, ::-1],
         )
 
     def shape_ends(self, *, spilling: bool) -> list[tuple[IntArray, IntArray]]:

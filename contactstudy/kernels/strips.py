@@ -40,7 +40,7 @@ from contactstudy.kernels.patch import TINY
 Function = Callable[[FloatArray, FloatArray], FloatArray]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Strip:
     """Kernel of a strip of load along y, at ``X >= 0`` and ``Y > 0``, with its integrals."""
 
@@ -222,7 +222,7 @@ class Lateral:
         return np.asarray(difference.T @ (ends[:, None] * np.sin(phase)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ColumnsRequest:
     """Edges, cells and mirrors of columns."""
 

@@ -40,7 +40,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping.quadrature import Resolution, ray_nodes
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class AxialModes:
     """Axial wavenumbers of one parity; compared by value, because equation sets are kept for them."""
 
@@ -146,14 +146,20 @@ def axial_modes(length: float, lateral: float, shortest: float, resolution: Reso
     if lateral * length > SEPARATE_ENDS:
         reach = DECAY_LENGTHS / lateral
         ray, weights = ray_nodes(0.5 / reach, last, resolution)
-        return [AxialModes(np.inf, 0, np.zeros(0), ray, weights, reach)]
+        return [AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=ray, weights=weights, reach=reach)]
     spacing = np.pi / length
     # Between two modes of either parity, half a spacing from the nearest: the ray's integrand has its poles there.
     start = (resolution.modes - 0.5) * spacing  # eq. (32)
     ray, weights = ray_nodes(0.5 * spacing, last, resolution)
     numbers = np.arange(resolution.modes)
     return [
-        AxialModes(length, parity, spacing * numbers[numbers % 2 == remainder], start + ray, weights)
+        AxialModes(
+            length=length,
+            parity=parity,
+            discrete=spacing * numbers[numbers % 2 == remainder],
+            ray=start + ray,
+            weights=weights,
+        )
         for parity, remainder in ((1, 0), (-1, 1))
     ]
 
@@ -175,7 +181,7 @@ def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -
     return factor, parity * doubled * decay / (1 - parity * decay)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SingleMirrorModes(AxialModes):
     """Axial wavenumbers of one parity when loads are mirrored once; all lie on the ray."""
 
@@ -232,4 +238,7 @@ def modes_between_ends(
         return axial_modes(length, lateral, shortest, resolution)
     last = max(resolution.reach / shortest, 4 * lateral)
     ray, weights = ray_nodes(lateral / 36, last, resolution)
-    return [SingleMirrorModes(length, parity, np.zeros(0), ray, weights) for parity in (1, -1)]
+    return [
+        SingleMirrorModes(length=length, parity=parity, discrete=np.zeros(0), ray=ray, weights=weights)
+        for parity in (1, -1)
+    ]

@@ -137,7 +137,7 @@ class AuxiliaryLoads(NamedTuple):
     face_load: ComplexArray  # (depth, column): normal stress freed on the faces of V, times the quadrature's weights
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EquationSet:
     """The equation set for one wavenumber along y and one parity, factorised."""
 
@@ -166,7 +166,16 @@ class EquationSet:
         top = modes.load_on_top(core, depth, lateral, poisson)
         end = core * (4 / np.pi / k * modes.on_end)
         matrix = np.diag(1 / scale) - real_product(end, top)  # eq. (27)
-        return cls(modes, lateral, poisson, depth, scale, core, top, Factorisation(matrix))
+        return cls(
+            modes=modes,
+            lateral=lateral,
+            poisson=poisson,
+            depth=depth,
+            scale=scale,
+            core=core,
+            top=top,
+            factorisation=Factorisation(matrix),
+        )
 
     @property
     def nbytes(self) -> int:

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from contactstudy.arrays.points import Points
 from contactstudy.checks import BoolArray, ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import DECAY_LENGTHS
@@ -26,7 +27,7 @@ from contactstudy.threads import one_blas_thread
 POSITION_DIGITS = 12  # digits of positions over the length that are equal by symmetry. Accuracy.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Harmonics:
     """A field of H under the equivalent load and of V under the face loads, for one wavenumber along y."""
 
@@ -46,18 +47,10 @@ class Harmonics:
         return len(self.even_in_y) + len(self.odd_in_y)
 
 
-class Points(NamedTuple):
-    """Positions of a field: the tensor product of `x`, `y` and `z`, metres."""
-
-    x: FloatArray
-    y: FloatArray
-    z: FloatArray
-
-
 JOINT_POINTS = 2000  # largest number of positions times depths for a joint evaluation of all tensor products. Speed.
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Folded:
     """Positions of the sum over wavenumbers: few, by their distance from the nearest end, off the loaded corner."""
 
@@ -87,7 +80,8 @@ class _Folded:
         has_corner = bool(on_corner[0].size and on_corner[1].size)
         z = np.append(points.z, offset) if has_corner else points.z
         corner = on_corner if has_corner else None
-        return cls(x, points.y, z, where, positions > 0.5 * length, interpolation, corner)
+        beyond = positions > 0.5 * length
+        return cls(x=x, y=points.y, z=z, where=where, beyond=beyond, interpolation=interpolation, corner=corner)
 
     @property
     def distance(self) -> FloatArray:
@@ -309,14 +303,14 @@ def _amplitudes(
         together = view.x.size * depths.size <= JOINT_POINTS
         for number, lateral in enumerate(columns.nodes):
             system, loads = problem.auxiliary_loads(view, float(lateral), number, shortest)
-            fields = _evaluate(harmonics, system, loads, view, slice(None), depths) if together else None
+            fields = _evaluate(harmonics, system, loads, view, slice(None), z=depths) if together else None
             for amplitude, (_, z), start, stop, selected in zip(
                 amplitudes, points, starts, stops, view_rows, strict=False
             ):
                 if not selected.size:
                     continue
                 if fields is None:
-                    field = _evaluate(harmonics, system, loads, view, selected, z)
+                    field = _evaluate(harmonics, system, loads, view, selected, z=z)
                 else:
                     field = fields[:, selected, stop - z.size : stop]
                 by_load = field.reshape(*field.shape[:3], count, -1)

@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from contactstudy.arrays.points import Points
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet, real_product
-from contactstudy.overlapping.field import Harmonics, Points, end_fields
+from contactstudy.overlapping.field import Harmonics, end_fields
 from contactstudy.overlapping.problem import EndProblem
 
 
@@ -100,15 +101,16 @@ def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> t
 
 
 STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
-    _stress_of_equivalent_load, _stress_of_face_load, even_in_y=[0, 1, 2, 4], odd_in_y=[3, 5], odd_along_x=[3, 4]
+    of_equivalent_load=_stress_of_equivalent_load,
+    of_face_load=_stress_of_face_load,
+    even_in_y=[0, 1, 2, 4],
+    odd_in_y=[3, 5],
+    odd_along_x=[3, 4],
 )
 
 
-def end_displacement(
-    problem: EndProblem, x: FloatArray, y: FloatArray, z: FloatArray, *, reference: float
-) -> dict[Load, FloatArray]:
+def end_displacement(problem: EndProblem, points: Points, *, reference: float) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z), times ``2 G``, of the free ends beside the half-space with all mirrored loads."""
-    points = Points(x, y, z)
     (field,) = end_fields(problem, DISPLACEMENT, [points], reference=reference if np.isfinite(reference) else None)
     return field
 
@@ -160,5 +162,9 @@ def _displacement_of_face_load(
 
 
 DISPLACEMENT = Harmonics(  # components along x, y, z
-    _displacement_of_equivalent_load, _displacement_of_face_load, even_in_y=[0, 2], odd_in_y=[1], odd_along_x=[0]
+    of_equivalent_load=_displacement_of_equivalent_load,
+    of_face_load=_displacement_of_face_load,
+    even_in_y=[0, 2],
+    odd_in_y=[1],
+    odd_along_x=[0],
 )

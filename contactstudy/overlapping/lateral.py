@@ -10,7 +10,7 @@ the window and the positions: fields of loads add up.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -36,7 +36,7 @@ MOMENT_ORDER, MOMENT_PHASE = 16, 10.0
 """Gauss nodes, and the phase that they follow, for the integrals of powers. Accuracy."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LateralPanel:
     """Part of the integral over the wavenumber along y."""
 
@@ -81,7 +81,7 @@ class LateralPanel:
         return np.array(even), np.array(odd)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class LateralColumns:
     """A load within one panel, as few functions of x ("columns")."""
 
@@ -98,7 +98,7 @@ class LateralColumns:
     def unit(cls, panel: LateralPanel, along_x: FloatArray, parities: IntArray) -> LateralColumns:
         """Columns `along_x` (cell, column) at the nodes of a panel, for operators that filter along y themselves."""
         empty = np.zeros((panel.nodes.size, parities.size, 0))
-        return cls(panel.nodes, along_x[:, None, :], parities, empty, empty)
+        return cls(nodes=panel.nodes, along_x=along_x[:, None, :], parities=parities, even=empty, odd=empty)
 
     def synthesis(self, load: Load, parity: int) -> tuple[FloatArray, FloatArray]:
         """`even` and `odd` of one parity for a load in one direction: arrays (node column, y)."""
@@ -119,7 +119,9 @@ class LateralColumns:
             parities.append(np.full(loaded.sum(), parity))
             positions.append(np.eye(loaded.size)[loaded])
         even, odd = np.split(np.tile(np.concatenate(positions), (self.nodes.size, 1, 1)), 2, axis=2)
-        return LateralColumns(self.nodes, np.concatenate(along_x, axis=2), np.concatenate(parities), even, odd)
+        return replace(
+            self, along_x=np.concatenate(along_x, axis=2), parities=np.concatenate(parities), even=even, odd=odd
+        )
 
 
 def lateral_panels(
@@ -136,21 +138,25 @@ def lateral_panels(
     count = max(1, int(np.ceil(np.log(last / first) / np.log(resolution.lateral_ratio))))
     edges = first * (last / first) ** (np.arange(count + 1) / count)
     nodes, weights = panel_nodes(np.array([0.0, first]), order)
-    panels = [LateralPanel(nodes, nodes, weights)]
+    panels = [LateralPanel(nodes=nodes, fine=nodes, weights=weights)]
     for low, high in pairwise(edges):
         # Amplitudes are smooth over the logarithm of the wavenumber.
         places, weights = panel_nodes(np.log([low, high]), order)
         nodes = np.exp(places)
         if high * np.log(high / low) * reach <= PHASE_PER_NODE * order:
-            panels.append(LateralPanel(nodes, nodes, weights * nodes))
+            panels.append(LateralPanel(nodes=nodes, fine=nodes, weights=weights * nodes))
             continue
         pieces = int(np.ceil((high - low) * reach / (PHASE_PER_NODE * resolution.lateral_order)))
         fine, weights = panel_nodes(np.linspace(low, high, pieces + 1), resolution.lateral_order)
-        panels.append(LateralPanel(nodes, fine, weights, lagrange(places, np.log(fine))))
+        panels.append(
+            LateralPanel(nodes=nodes, fine=fine, weights=weights, interpolation=lagrange(places, np.log(fine)))
+        )
     if reference is not None:
         count = poles + TERMS[poles]
         samples = first * np.arange(1.0, count + 1) / count
-        panels[0] = LateralPanel(samples, samples, np.ones_like(samples), reference=reference, poles=poles)
+        panels[0] = LateralPanel(
+            nodes=samples, fine=samples, weights=np.ones_like(samples), reference=reference, poles=poles
+        )
     return panels
 
 
@@ -175,7 +181,11 @@ def lateral_columns(
     if not along_x:
         return None
     columns = LateralColumns(
-        panel.fine, np.stack(along_x, axis=-1), np.array(parities), np.stack(even, axis=1), np.stack(odd, axis=1)
+        nodes=panel.fine,
+        along_x=np.stack(along_x, axis=-1),
+        parities=np.array(parities),
+        even=np.stack(even, axis=1),
+        odd=np.stack(odd, axis=1),
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
@@ -201,7 +211,9 @@ def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolati
         np.concatenate([np.tensordot(factor, waves[:, selected], axes=2) for selected, factor in factors], axis=1)
         for waves in (columns.even, columns.odd)
     )
-    return LateralColumns(nodes, np.concatenate(along_x, axis=1)[:, None, :], column_parities, even, odd)
+    return LateralColumns(
+        nodes=nodes, along_x=np.concatenate(along_x, axis=1)[:, None, :], parities=column_parities, even=even, odd=odd
+    )
 
 
 def cosine_moments(first: float, y: FloatArray, reference: float, terms: int = 1) -> FloatArray:

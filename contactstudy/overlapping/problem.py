@@ -43,7 +43,7 @@ third of it a tenth."""
 _equation_set = cached("equation sets", lambda system: system.nbytes)(EquationSet.build)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class EndProblem:
     """A distribution of load on the top of a body with one end or two, acting in one direction or in several."""
 
@@ -130,7 +130,7 @@ class EndProblem:
         first = alone / min(self.length, 4 * max(grid.x_range[1], reach))
         # Along y the load is uniform in cells: half a cell is the finest scale.
         last = self.resolution.lateral_reach / max(shortest, 0.5 * self.finest_size)
-        return lateral_panels(first, reach, last, self.resolution, reference, poles)
+        return lateral_panels(first, reach, last, self.resolution, reference, poles=poles)
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
         """Equation set of some axial modes at the wavenumber `lateral`; the cache holds it."""
@@ -157,7 +157,7 @@ def parity_parts(cells: FloatArray, sign_x: int) -> dict[int, FloatArray]:
     return {parity: part for parity, part in parts.items() if np.abs(part).max() > least}
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class View:
     """A load and positions in one set of axial modes; from end II when `flipped`."""
 

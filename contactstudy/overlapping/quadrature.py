@@ -63,7 +63,7 @@ START, LOWEST = 0.3, -2.8
 Accuracy: below it lies 1e-7 of that scale."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Resolution:
     """Settings of the quadratures behind the equivalent loads; the defaults leave errors below 2e-5 of a load.
 

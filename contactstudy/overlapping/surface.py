@@ -85,7 +85,17 @@ class EndRequest(NamedTuple):
             step=STEEPER * resolution.step,
             lateral_nodes=resolution.lateral_nodes + MORE_NODES,
         )
-        return cls(freed, material, grid.dy, grid.cells_y, grid.x_range[1], finest, responses, reference, resolution)
+        return cls(
+            freed=freed,
+            material=material,
+            dy=grid.dy,
+            cells_y=grid.cells_y,
+            span=grid.x_range[1],
+            finest=finest,
+            responses=responses,
+            reference=reference,
+            resolution=resolution,
+        )
 
     @property
     def parities(self) -> tuple[int, ...]:
@@ -197,7 +207,7 @@ def end_kernel(request: EndRequest) -> EndKernel:
     shared_samples: dict[float, FloatArray] = {}  # samples at wavenumbers that kernels with either pole share
     for poles in sorted({_poles(response) for response in request.responses}):
         first = ALONE[poles] / min(length, 4 * max(request.span, window))
-        panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles)
+        panels = lateral_panels(first, 0.5 * window, last, request.resolution, reference, poles=poles)
         responses = [response for response in request.responses if _poles(response) == poles]
         numbers = [request.responses.index(response) for response in responses]
         size, parities = positions.size, len(request.parities)

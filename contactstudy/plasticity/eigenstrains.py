@@ -105,7 +105,9 @@ def eigenstrain_stress(
     low, high = body.extent
     if (axes["x"] < low).any() or (axes["x"] > high).any() or (axes["z"] < 0).any():
         raise InvalidInputError("x, z", "a position outside", f"inside the body, x from {low:g} to {high:g} m")
-    cells = EigenstrainBody(body.material, body.extent, edges["x"], edges["z"], SPLITS, DEGREE)
+    cells = EigenstrainBody(
+        material=body.material, extent=body.extent, x_edges=edges["x"], z_edges=edges["z"], splits=SPLITS, degree=DEGREE
+    )
     solution = cells.solve(strain)
     sunk, dragged = solution.top_displacement(axes["x"])
     result = xr.Dataset(
@@ -149,4 +151,4 @@ def cross_section(body: Body, x: FloatArray, z: FloatArray) -> EigenstrainBody:
         if np.isfinite(face) and edge != face:
             where = "the top" if name == "z" else f"the free end at {face:g} m"
             raise InvalidInputError(name, f"{edge:g} m, where the outer cell ends", f"positions that reach to {where}")
-    return EigenstrainBody(body.material, body.extent, x_edges, z_edges)
+    return EigenstrainBody(material=body.material, extent=body.extent, x_edges=x_edges, z_edges=z_edges)

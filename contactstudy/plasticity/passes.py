@@ -82,7 +82,7 @@ class State(NamedTuple):
     converged: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Passage:
     """A pass over some cells of the cross-section."""
 
@@ -178,7 +178,7 @@ NEAR_YIELD = 0.9  # Least von Mises stress over the yield stress of the cells th
 SMALL_STRAIN = 0.05  # Largest plastic strain of small-strain theory, with the contact stresses of a flat body
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class _Section:
     """The cross-section: elastic stresses (6, position, cell) at falling y, residual stress of plastic strain."""
 
@@ -230,11 +230,19 @@ class _Section:
         places = int(next_fast_len(int(3.0 * y.size), real=True))
         periodic = PeriodicLayers(self.body.material, edges, places, float(y[1] - y[0]))
         box = np.unique(columns, return_inverse=True)[1], layers - first
-        material, shear = self.material, self.body.material.shear_modulus
-        hardening = material.isotropic_hardening, material.kinematic_hardening
-        strength = self.yield_stress[cells]
-        influences = self.residual(cells), self.layers, periodic, places, box
-        return Passage(elastic, *influences, strength, shear, *hardening, tolerance)
+        return Passage(
+            elastic=elastic,
+            residual=self.residual(cells),
+            layers=self.layers,
+            along=periodic,
+            places=places,
+            box=box,
+            yield_stress=self.yield_stress[cells],
+            shear_modulus=self.body.material.shear_modulus,
+            isotropic=self.material.isotropic_hardening,
+            kinematic=self.material.kinematic_hardening,
+            tolerance=tolerance,
+        )
 
     def residual_state(self, strain: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
         """Residual stresses (6, x, z) everywhere, and displacements z and y of the top."""
@@ -351,7 +359,9 @@ def residual_stress(
                 "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
             )
         state = after
-        states.append(_to_dataset(section, dims, state, residual, displaced, grown).expand_dims(pass_number=[number]))
+        states.append(
+            _to_dataset(section, dims, state, residual, displaced, grown=grown).expand_dims(pass_number=[number])
+        )
         # Stress of a pass' flow, over the tolerance times the yield stress, below which the state is stationary
         if 3 * body.material.shear_modulus * grown <= 2.0 * tolerance * section.yield_stress.min():
             break
@@ -379,7 +389,7 @@ def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[
     if not np.isfinite(values).all():
         raise InvalidInputError("stress", "values that are not finite", "finite stresses")
     elastic = values.reshape(*values.shape[:2], -1)
-    section = _Section(body, material, x, y[order], z, elastic)
+    section = _Section(body=body, material=material, x=x, y=y[order], z=z, elastic=elastic)
     # A line contact has one column along x, without ends.
     check_solved_for(stress, body, "stress", only=("body.material",) if section.layered else ())
     if not section.layered:

@@ -83,8 +83,8 @@ def plot_axial_pressure(
 def plot_comparison(
     results: Mapping[str, xr.Dataset],
     variable: str = "pressure",
-    ax: Axes | None = None,
     *,
+    ax: Axes | None = None,
     si: bool = False,
     centred: bool | None = None,
 ) -> Axes:
@@ -163,8 +163,8 @@ def _middle_of_contact(case: xr.Dataset) -> float:
 def plot_depth(
     dataset: xr.Dataset,
     variables: Sequence[str] = ("von_mises", "maximum_shear"),
-    ax: Axes | None = None,
     *,
+    ax: Axes | None = None,
     x: float | None = None,
     y: float = 0.0,
     si: bool = False,

@@ -198,7 +198,7 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
     unit = units(entries[0].case, si=False)
     for ax, (end_distance, case) in zip(axes, entries, strict=True):
-        plot_stress_plane(case, "von_mises", 0.0, ax, levels=levels, colorbar=False)
+        plot_stress_plane(case, "von_mises", y=0.0, ax=ax, levels=levels, colorbar=False)
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")
     axes[0].set_xlim(0.0, min(distance, max(float(x.max()) for x, _, _ in planes)))
     axes[-1].set_xlabel(unit.axis("x"))

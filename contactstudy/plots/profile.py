@@ -20,7 +20,7 @@ POINTS = 4001
 
 
 def plot_profile(
-    profile: Profile, length: float, ax: Axes | None = None, *, deepest: float | None = None, **style: Any
+    profile: Profile, length: float, *, ax: Axes | None = None, deepest: float | None = None, **style: Any
 ) -> Axes:
     """Draw the generatrix of a roller, with the drop downwards.
 
@@ -72,7 +72,7 @@ def plot_profile(
 
 
 def plot_profiles(
-    profiles: Mapping[str, Profile], length: float, ax: Axes | None = None, *, deepest: float | None = None
+    profiles: Mapping[str, Profile], length: float, *, ax: Axes | None = None, deepest: float | None = None
 ) -> Axes:
     """Compare the generatrices of rollers of one length.
 
@@ -107,7 +107,7 @@ def plot_profiles(
     if not profiles:
         raise InvalidInputError("profiles", dict(profiles), "at least one profile")
     for (name, profile), style in zip(profiles.items(), line_styles(len(profiles)), strict=True):
-        ax = plot_profile(profile, length, ax, deepest=deepest, label=fold_text(name, LEGEND_WIDTH), **style)
+        ax = plot_profile(profile, length, ax=ax, deepest=deepest, label=fold_text(name, LEGEND_WIDTH), **style)
     assert ax is not None
     ax.legend(frameon=False, fontsize="small", ncols=2)
     return ax

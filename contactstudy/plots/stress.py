@@ -46,9 +46,9 @@ def _plane_arrays(
 def plot_stress_plane(
     dataset: xr.Dataset,
     variable: str = "von_mises",
+    *,
     y: float | None = None,
     ax: Axes | None = None,
-    *,
     x: float | None = None,
     z: float | None = None,
     levels: Any = None,
@@ -148,8 +148,8 @@ def mark_largest(ax: Axes, case: xr.Dataset, variable: str, plane: dict[str, flo
 def plot_end_face(
     dataset: xr.Dataset,
     variable: str = "von_mises",
-    ax: Axes | None = None,
     *,
+    ax: Axes | None = None,
     end: str = "first",
     side: float = 1.0,
     distance: float | None = None,

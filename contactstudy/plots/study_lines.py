@@ -104,7 +104,7 @@ def plot_study_lines(
     values_beside = most_solved(dataset[names[0]], axes_of_study, selection or {})
     marks: dict[str, dict[str, Any]] = {}
     for ax, name in zip(panels.flat, names, strict=True):
-        marks |= _draw_panel(ax, dataset, name, x, hue, values_beside)
+        marks |= _draw_panel(ax, dataset, name, x, hue, values_beside=values_beside)
     figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * rows * max(map(_extra_lines, panels.flat)))
     if hue is not None:
         _draw_legend(figure, panels[0, 0], dataset[hue], hue)
@@ -232,8 +232,8 @@ def _zipped_parameters(values: xr.DataArray, name: str) -> list[str]:
 def plot_traction_curve(
     dataset: xr.Dataset,
     hue: str | None = None,
-    ax: Axes | None = None,
     *,
+    ax: Axes | None = None,
     creepage: str = "longitudinal_creepage",
     selection: Mapping[str, Any] | None = None,
 ) -> Axes:

@@ -25,8 +25,8 @@ MOST_NUMBERS = 80  # cells up to which every cell has its value as text
 def plot_study_map(
     dataset: xr.Dataset,
     variable: str | xr.DataArray,
-    ax: Axes | None = None,
     *,
+    ax: Axes | None = None,
     x: str = "e_over_a",
     y: str = "friction",
     selection: Mapping[str, Any] | None = None,

@@ -191,7 +191,7 @@ def _profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     drop = checked_drop(roller.profile, _along(roller, 0.47), roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
     deepest = 3 * crown if crown > 0 else None
-    plot_profile(roller.profile, roller.length, figure.subplots(), deepest=deepest, color=BLUE)
+    plot_profile(roller.profile, roller.length, ax=figure.subplots(), deepest=deepest, color=BLUE)
     return "Profile of the roller: drop from the cylinder, downwards."
 
 
@@ -208,7 +208,7 @@ def _cap_remark(result: xr.Dataset, stress: xr.DataArray) -> str:
 
 def _axial_plane(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress in the plane of the axis."""
-    plot_stress_plane(result, "von_mises", 0.0, figure.subplots(), si=True)
+    plot_stress_plane(result, "von_mises", y=0.0, ax=figure.subplots(), si=True)
     remark = _cap_remark(result, result["von_mises"])
     return f"Von Mises stress in the plane y = 0, along the roller.{remark}"
 
@@ -273,7 +273,9 @@ def side_geometry(case: Case) -> SideView:
     generatrix = np.minimum(np.where(np.isfinite(drop), drop * magnification, deepest), deepest)
     x = along + ends[0] + 0.5 * roller.length
     clipped = bool((drop * magnification > deepest).any())
-    return SideView(x, generatrix, ends, (low, high), limits, height, magnification, clipped)
+    return SideView(
+        x, generatrix, ends, (low, high), limits, height=height, magnification=magnification, clipped=clipped
+    )
 
 
 def _magnification(crown: float, height: float) -> float:

@@ -164,7 +164,15 @@ def _row(anchor: str, entry: Entry, values: list[str], names: list[str]) -> Row:
     assessment = assess(_record(entry)) if entry.numbers else None
     answer, reason = (assessment.overall, assessment.verdict) if assessment else ("", "")
     numbers = [_number(entry.numbers, name) for name in names]
-    return Row(anchor, values, numbers, entry.status, reason if answer == NO else entry.reason, answer, reason)
+    return Row(
+        anchor,
+        values,
+        numbers,
+        entry.status,
+        note=reason if answer == NO else entry.reason,
+        answer=answer,
+        reason=reason,
+    )
 
 
 def _number(scalars: Mapping[str, float], name: str) -> str:

@@ -168,7 +168,7 @@ def _row(case: xr.Dataset, name: str, meaning: str, remark: str | None = None) -
         elif value == 0 and error == 0 and name.startswith("end_"):
             remark = OPEN_END
     text = with_error(value, None if np.isnan(error) else error, units)
-    return Quantity(name, meaning, value, error, units, text, remark)
+    return Quantity(name, meaning, value, error, units, text=text, remark=remark)
 
 
 def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
@@ -179,7 +179,7 @@ def _peak_pressure(case: xr.Dataset) -> Iterator[Quantity]:
     elif "peak_pressure" in case or "pressure" in case:
         value = stated if "peak_pressure" in case else float(case["pressure"].max())
         text = quantity(value, "Pa")
-        yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text, CELL_MEAN)
+        yield Quantity("peak_pressure", "largest pressure", value, np.nan, "Pa", text=text, remark=CELL_MEAN)
 
 
 def _intensity(case: xr.Dataset, suffix: str, end: str) -> Quantity:
@@ -189,7 +189,7 @@ def _intensity(case: xr.Dataset, suffix: str, end: str) -> Quantity:
     exponent = float(case[f"end_exponent_{suffix}"])
     text = intensity_text(value, error, exponent)
     remark = f"p = K / d^{exponent:.3g} at the distance d from the end"
-    return Quantity(name, f"intensity K at {end}", value, error, f"Pa m^{exponent:.3g}", text, remark)
+    return Quantity(name, f"intensity K at {end}", value, error, f"Pa m^{exponent:.3g}", text=text, remark=remark)
 
 
 def intensity_text(value: float, error: float, exponent: float) -> str:
@@ -215,7 +215,7 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
             return
         case = case if singular else case.assign(peak(case).data_vars)
     if singular:
-        yield Quantity(name, meaning, np.inf, np.nan, "Pa", quantity(np.inf, "Pa"), SINGULAR)
+        yield Quantity(name, meaning, np.inf, np.nan, "Pa", text=quantity(np.inf, "Pa"), remark=SINGULAR)
         return
     yield _row(case, name, meaning)
     for axis, coordinate in zip(AXES, ("position x", "position y", "depth"), strict=True):
@@ -285,7 +285,9 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
             units = variable_of(f"{name}_y", parts[1].attrs).units
             value = float(size.max())
             text = quantity(value, units) + ("" if units == "m" or name == "traction" else " per distance rolled")
-            yield Quantity(f"largest_{name}", meaning, value, np.nan, units, text, f"of a cell, {NOT_ESTIMATED}")
+            yield Quantity(
+                f"largest_{name}", meaning, value, np.nan, units, text=text, remark=f"of a cell, {NOT_ESTIMATED}"
+            )
 
 
 def _mark(case: xr.Dataset, name: str) -> str:

@@ -52,7 +52,7 @@ Cells = Literal["refined", "chosen", "given"]
 """Origin of the cells: refined to an accuracy, chosen for a rough surface, or given by the caller."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CaseContact:
     """Contact of a case."""
 
@@ -102,7 +102,9 @@ def refined_case_contact(case: Case, accuracy: float, tolerance: float) -> CaseC
         contact = tractions.contact
     if case.approach is not None:
         values["normal_load_error"] = approach_load_error(solution)
-    return CaseContact(_with_load(case, contact), "refined", contact, tractions, values)
+    return CaseContact(
+        case=_with_load(case, contact), cells="refined", contact=contact, tractions=tractions, values=values
+    )
 
 
 def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | None, tolerance: float) -> CaseContact:
@@ -123,7 +125,7 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         tractions = frictional_contact(contact.shape, contact.settings, request)
         tractions.warn_unless_converged()
         contact = tractions.contact
-    return CaseContact(_with_load(case, contact), cells, contact, tractions)
+    return CaseContact(case=_with_load(case, contact), cells=cells, contact=contact, tractions=tractions)
 
 
 def _with_load(case: Case, contact: Contact) -> Case:
@@ -143,12 +145,12 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
         )
     gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
     shape = Shape(
-        case.body,
-        grid,
-        ArrayKey(gap),
-        prescribed_load(case).checked(gap, grid),
-        case.counterbody,
-        case.coupled_friction,
+        body=case.body,
+        grid=grid,
+        gap=ArrayKey(gap),
+        prescribed=prescribed_load(case).checked(gap, grid),
+        counterbody=case.counterbody,
+        coupled_friction=case.coupled_friction,
     )
     try:
         contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))

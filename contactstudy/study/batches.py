@@ -16,6 +16,7 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -433,7 +434,6 @@ def case_batch(
     status: str,
     message: str = "",
     warnings: Sequence[str] = (),
-    time: str = "",
     run: int = 0,
     circumstances: dict[str, Any] | None = None,
 ) -> Batch:
@@ -446,7 +446,7 @@ def case_batch(
             "parameters": [json.dumps(parameters)],
             "message": [message],
             "warnings": [json.dumps(list(warnings)) if warnings else ""],
-            "time": [time],
+            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
         },
         circumstances=circumstances or {},
     )

@@ -53,7 +53,7 @@ def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     return entries
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Study:
     """A parametric study: cases to solve, and the arrays to retain.
 

@@ -45,8 +45,8 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
         * surfaces and stresses, read when their values are needed, on the dimensions ``x_over_a`` (distance from the
           free end over the half-width), ``y_over_a`` and ``z_over_a``; ``x``, ``y`` and ``z`` contain each case's
           metres. Pressure and traction are averaged over the common cells, so that loads remain, other variables are
-          interpolated. Stresses at separate rows have ``y_field_over_a``. With ``cells="original"`` different positions are padded with NaN: dimensions
-          ``x_index``, ``x_field_index``, ...
+          interpolated. Stresses at separate rows have ``y_field_over_a``. With ``cells="original"`` different
+          positions are padded with NaN: dimensions ``x_index``, ``x_field_index``, ...
 
     Raises
     ------

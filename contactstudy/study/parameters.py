@@ -89,13 +89,13 @@ def points(name: str, value: object) -> list[float]:
     return [number(name, point) for point in listed.tolist()]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Parameter:
     """Specification of one parameter."""
 
     name: str
-    check: Check  # takes name and value; returns the value in the normalised form of identities, or raises
-    units: str  # empty for a word
+    check: Check = number  # takes name and value; returns the value in the normalised form of identities, or raises
+    units: str = ""  # empty for a word
     meaning: str  # comment of the coordinate, and the documentation
     taker: Callable[..., Any] | None = None  # takes an argument of this name, with the default
     fallback: Any = None  # default without a taker; None: required or optional
@@ -132,206 +132,252 @@ ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", 
 
 _WITH_CASE = (
     Parameter(
-        "body",
-        one_of(BODIES),
-        "",
-        "kind of elastic body",
+        name="body",
+        check=one_of(BODIES),
+        meaning="kind of elastic body",
         fallback=BODIES[0],
         note="`finite-length`, `quarter-space` (one free end, at x = 0) or `half-space`",
     ),
     Parameter(
-        "model",
-        one_of(MODELS),
-        "",
-        "model of the free ends",
+        name="model",
+        check=one_of(MODELS),
+        meaning="model of the free ends",
         fallback=MODELS[0],
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",
     ),
-    Parameter("young", number, "Pa", "Young's modulus of the body", absent="required", label="Young's modulus"),
-    Parameter("poisson", number, "1", "Poisson's ratio of the body", absent="required", label="Poisson's ratio"),
-    Parameter("radius", number, "m", "roller radius", absent="required"),
-    Parameter("roller_length", number, "m", "roller length; the body is longer by 2 e", absent="or `gamma`"),
     Parameter(
-        "gamma",
-        number,
-        "1",
-        "body length over roller radius; the roller is shorter by 2 e",
+        name="young", units="Pa", meaning="Young's modulus of the body", absent="required", label="Young's modulus"
+    ),
+    Parameter(
+        name="poisson", units="1", meaning="Poisson's ratio of the body", absent="required", label="Poisson's ratio"
+    ),
+    Parameter(name="radius", units="m", meaning="roller radius", absent="required"),
+    Parameter(name="roller_length", units="m", meaning="roller length; the body is longer by 2 e", absent="or `gamma`"),
+    Parameter(
+        name="gamma",
+        units="1",
+        meaning="body length over roller radius; the roller is shorter by 2 e",
         absent="or `roller_length`",
         label=COORDINATES["gamma"].long_name,
     ),
     Parameter(
-        "e_over_a",
-        number,
-        "1",
-        COORDINATES["e_over_a"].comment,
+        name="e_over_a",
+        units="1",
+        meaning=COORDINATES["e_over_a"].comment,
         absent="or `end_distance`",
         label=COORDINATES["e_over_a"].long_name,
         note="negative: the roller overhangs",
     ),
-    Parameter("end_distance", number, "m", "distance e of roller end and free end", absent="or `e_over_a`"),
+    Parameter(name="end_distance", units="m", meaning="distance e of roller end and free end", absent="or `e_over_a`"),
     Parameter(
-        "max_pressure",
-        number,
-        "Pa",
-        "peak pressure p0 of the Hertz line contact",
-        Case,
+        name="max_pressure",
+        units="Pa",
+        meaning="peak pressure p0 of the Hertz line contact",
+        taker=Case,
         absent="or `load`",
         label="Hertz pressure p0",
     ),
-    Parameter("load", number, "N", "normal load", Case, absent="or `max_pressure`", label="normal load"),
     Parameter(
-        "approach",
-        number,
-        "m",
-        "approach at mid-length, from first contact without tilt",
-        Case,
+        name="load", units="N", meaning="normal load", taker=Case, absent="or `max_pressure`", label="normal load"
+    ),
+    Parameter(
+        name="approach",
+        units="m",
+        meaning="approach at mid-length, from first contact without tilt",
+        taker=Case,
         absent="or `load`",
         note="load and a result: give `end_distance`, and leave out uniform cells and stress points, which are over a",
     ),
-    Parameter("friction", number, "1", "coefficient of friction", Case, label=COORDINATES["friction"].long_name),
     Parameter(
-        "profile", profile, "", "roller profile", fallback={"kind": "cylinder"}, label=COORDINATES["profile"].long_name
+        name="friction",
+        units="1",
+        meaning="coefficient of friction",
+        taker=Case,
+        label=COORDINATES["friction"].long_name,
     ),
     Parameter(
-        "roller_body",
-        one_of(ROLLER_BODIES),
-        "",
-        "roller as a rigid shape or as an elastic body",
+        name="profile",
+        check=profile,
+        meaning="roller profile",
+        fallback={"kind": "cylinder"},
+        label=COORDINATES["profile"].long_name,
+    ),
+    Parameter(
+        name="roller_body",
+        check=one_of(ROLLER_BODIES),
+        meaning="roller as a rigid shape or as an elastic body",
         fallback="rigid",
         note="`rigid`; `finite-length`, with free ends; or `half-space`",
     ),
     Parameter(
-        "roller_young",
-        number,
-        "Pa",
-        "Young's modulus of an elastic roller",
+        name="roller_young",
+        units="Pa",
+        meaning="Young's modulus of an elastic roller",
         absent="the body's",
         label="roller's Young's modulus",
     ),
     Parameter(
-        "roller_poisson",
-        number,
-        "1",
-        "Poisson's ratio of an elastic roller",
+        name="roller_poisson",
+        units="1",
+        meaning="Poisson's ratio of an elastic roller",
         absent="the body's",
         label="roller's Poisson's ratio",
     ),
     Parameter(
-        "reference_depth",
-        number,
-        "m",
-        "depth of the material line below the load to which approach and tilt refer",
+        name="reference_depth",
+        units="m",
+        meaning="depth of the material line below the load to which approach and tilt refer",
         absent="one length between free ends, else far away",
     ),
     Parameter(
-        "roller_reference_depth",
-        number,
-        "m",
-        "distance from the contact to the reference line of an elastic roller",
+        name="roller_reference_depth",
+        units="m",
+        meaning="distance from the contact to the reference line of an elastic roller",
         absent="the roller's length with free ends, else far away",
     ),
-    Parameter("tilt", number, "rad", "misalignment of the roller; positive if larger x is pressed deeper", Case),
     Parameter(
-        "load_offset",
-        number,
-        "m",
-        "position of the load, from mid-length",
+        name="tilt",
+        units="rad",
+        meaning="misalignment of the roller; positive if larger x is pressed deeper",
+        taker=Case,
+    ),
+    Parameter(
+        name="load_offset",
+        units="m",
+        meaning="position of the load, from mid-length",
         absent="the tilt is prescribed",
         note="the roller tilts until it balances",
     ),
-    Parameter("coupled", flag, "1", "whether friction displaces the surface normally", Case),
     Parameter(
-        "motion",
-        one_of(MOTIONS),
-        "",
-        "motion of the roller against the body",
+        name="coupled", check=flag, units="1", meaning="whether friction displaces the surface normally", taker=Case
+    ),
+    Parameter(
+        name="motion",
+        check=one_of(MOTIONS),
+        meaning="motion of the roller against the body",
         fallback=MOTIONS[0],
         note="`sliding` fully; `shift`, one from rest, or `rolling`, steady, both with stick and slip",
     ),
     Parameter(
-        "longitudinal_creepage",
-        number,
-        "1",
-        "velocity of the roller's surface against the body along y over the rolling speed",
+        name="longitudinal_creepage",
+        units="1",
+        meaning="velocity of the roller's surface against the body along y over the rolling speed",
         absent="0",
         note="rolling only; or `force_y`",
     ),
-    Parameter("lateral_creepage", number, "1", "the same along x", absent="0", note="rolling only; or `force_x`"),
     Parameter(
-        "spin",
-        number,
-        "rad/m",
-        "angular velocity about z over the rolling speed",
+        name="lateral_creepage", units="1", meaning="the same along x", absent="0", note="rolling only; or `force_x`"
+    ),
+    Parameter(
+        name="spin",
+        units="rad/m",
+        meaning="angular velocity about z over the rolling speed",
         absent="0",
         note="rolling only; or `moment_z`",
     ),
-    Parameter("shift_x", number, "m", "rigid shift along x", absent="0", note="shift only; or `force_x`"),
-    Parameter("shift_y", number, "m", "rigid shift along y", absent="0", note="shift only; or `force_y`"),
+    Parameter(name="shift_x", units="m", meaning="rigid shift along x", absent="0", note="shift only; or `force_x`"),
+    Parameter(name="shift_y", units="m", meaning="rigid shift along y", absent="0", note="shift only; or `force_y`"),
     Parameter(
-        "force_x", number, "N", "force on the body along x", absent="follows", note="shift or rolling; less than slides"
+        name="force_x",
+        units="N",
+        meaning="force on the body along x",
+        absent="follows",
+        note="shift or rolling; less than slides",
     ),
-    Parameter("force_y", number, "N", "force on the body along y", absent="follows", note="shift or rolling"),
     Parameter(
-        "moment_z", number, "N m", "moment on the body about the roller's middle", absent="follows", note="rolling only"
+        name="force_y", units="N", meaning="force on the body along y", absent="follows", note="shift or rolling"
     ),
     Parameter(
-        "rolling_model",
-        one_of(ROLLING_MODELS),
-        "",
-        "model of the tractions of rolling",
+        name="moment_z",
+        units="N m",
+        meaning="moment on the body about the roller's middle",
+        absent="follows",
+        note="rolling only",
+    ),
+    Parameter(
+        name="rolling_model",
+        check=one_of(ROLLING_MODELS),
+        meaning="model of the tractions of rolling",
         fallback=ROLLING_MODELS[0],
         note="`exact`; for comparison `fastsim`, strips without an influence of neighbours and free ends",
     ),
-    Parameter("lubricant", one_of(OILS), "", "oil of a film between the surfaces", absent="or `viscosity`; dry"),
-    Parameter("temperature", number, "degC", "temperature of the oil in the inlet", absent="with `lubricant`"),
-    Parameter("viscosity", positive, "Pa s", "viscosity at ambient pressure", absent="or `lubricant`; dry"),
-    Parameter("pressure_viscosity", positive, "Pa-1", "pressure-viscosity coefficient", absent="with `viscosity`"),
     Parameter(
-        "entrainment_speed", positive, "m s-1", "mean speed of both surfaces along +y", absent="required for a film"
+        name="lubricant", check=one_of(OILS), meaning="oil of a film between the surfaces", absent="or `viscosity`; dry"
     ),
-    Parameter("slide_roll_ratio", number, "1", "difference of the speeds over their mean", absent="0"),
-    Parameter("roughness_rms", positive, "m", "composite rms roughness", absent="smooth"),
+    Parameter(
+        name="temperature", units="degC", meaning="temperature of the oil in the inlet", absent="with `lubricant`"
+    ),
+    Parameter(
+        name="viscosity",
+        check=positive,
+        units="Pa s",
+        meaning="viscosity at ambient pressure",
+        absent="or `lubricant`; dry",
+    ),
+    Parameter(
+        name="pressure_viscosity",
+        check=positive,
+        units="Pa-1",
+        meaning="pressure-viscosity coefficient",
+        absent="with `viscosity`",
+    ),
+    Parameter(
+        name="entrainment_speed",
+        check=positive,
+        units="m s-1",
+        meaning="mean speed of both surfaces along +y",
+        absent="required for a film",
+    ),
+    Parameter(name="slide_roll_ratio", units="1", meaning="difference of the speeds over their mean", absent="0"),
+    Parameter(name="roughness_rms", check=positive, units="m", meaning="composite rms roughness", absent="smooth"),
 )
 _WITH_SOLVER = (
     Parameter(
-        "accuracy",
-        number,
-        "1",
-        "error over the peak to which peak, end pressures and end loads are settled",
+        name="accuracy",
+        units="1",
+        meaning="error over the peak to which peak, end pressures and end loads are settled",
         absent=f"{ACCURACY:g}",
         note="columns are refined to it; a case with parameters of uniform cells has none",
     ),
-    Parameter("cells_x", number, "1", "cells per half-width a along x", choose_grid, note="uniform cells"),
-    Parameter("cells_y", number, "1", "cells per half-width a along y", choose_grid, note="uniform cells"),
     Parameter(
-        "window",
-        number,
-        "1",
-        "half-width of the window in y over a",
-        choose_grid,
+        name="cells_x", units="1", meaning="cells per half-width a along x", taker=choose_grid, note="uniform cells"
+    ),
+    Parameter(
+        name="cells_y", units="1", meaning="cells per half-width a along y", taker=choose_grid, note="uniform cells"
+    ),
+    Parameter(
+        name="window",
+        units="1",
+        meaning="half-width of the window in y over a",
+        taker=choose_grid,
         note="uniform cells; the default is widened where the contact needs more; any other value is fixed",
     ),
     Parameter(
-        "margin",
-        number,
-        "1",
-        "distance from roller to grid edge over a, where the body goes on",
-        choose_grid,
+        name="margin",
+        units="1",
+        meaning="distance from roller to grid edge over a, where the body goes on",
+        taker=choose_grid,
         note="uniform cells",
     ),
-    Parameter("tolerance", number, "1", "tolerance of the contact iteration", solver_settings),
-    Parameter("stresses", flag, "1", "whether stresses are calculated", solver_settings),
+    Parameter(name="tolerance", units="1", meaning="tolerance of the contact iteration", taker=solver_settings),
+    Parameter(name="stresses", check=flag, units="1", meaning="whether stresses are calculated", taker=solver_settings),
     Parameter(
-        "field_x_over_a",
-        points,
-        "1",
-        "stress points: x from the free end over a",
+        name="field_x_over_a",
+        check=points,
+        units="1",
+        meaning="stress points: x from the free end over a",
         absent="from face to face",
         note="a list, or `{start, stop, count}`",
     ),
-    Parameter("field_y_over_a", points, "1", "stress points: y over a", absent="cell centres"),
-    Parameter("field_z_over_a", points, "1", "stress points: depth over a", absent="about 23 depths to 5 a"),
+    Parameter(name="field_y_over_a", check=points, units="1", meaning="stress points: y over a", absent="cell centres"),
+    Parameter(
+        name="field_z_over_a",
+        check=points,
+        units="1",
+        meaning="stress points: depth over a",
+        absent="about 23 depths to 5 a",
+    ),
 )
 PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in (*_WITH_CASE, *_WITH_SOLVER)}
 """Every parameter that a case of a study can have."""

@@ -87,7 +87,7 @@ def cube_of_cases(cases: Sequence[Mapping[str, Any]]) -> tuple[Cube, list[tuple[
     return Cube(("case",), (len(cases),), labels), [(index,) for index in range(len(cases))]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PlannedCase:
     """One case of a study before it is solved."""
 
@@ -134,7 +134,14 @@ class Plan(Sequence[PlannedCase]):
         number = range(len(self))[index]
         position = tuple(map(int, np.unravel_index(self.flat[number], self.cube.shape)))
         parameters, identity = self.parameters(number), self.ids[number].decode()
-        return PlannedCase(number, identity, parameters, self.words(number), position, self.reason(number))
+        return PlannedCase(
+            index=number,
+            id=identity,
+            parameters=parameters,
+            name=self.words(number),
+            position=position,
+            reason=self.reason(number),
+        )
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -249,7 +256,7 @@ class Plan(Sequence[PlannedCase]):
             if message := friction_doubt(friction):
                 questions.setdefault(message, checked)
         solvable = max(1, checked - len(reasons))
-        return Review(reasons, questions, checked, len(firsts), cells / solvable, points / solvable)
+        return Review(reasons, questions, checked, len(firsts), cells=cells / solvable, points=points / solvable)
 
     def setup(self, index: int) -> Setup:
         """Set up a case, or raise the reason why it cannot be solved."""

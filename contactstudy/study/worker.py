@@ -10,7 +10,6 @@ import uuid
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 from functools import cache, partial
 from itertools import groupby
 from pathlib import Path
@@ -208,7 +207,6 @@ def without_result(task: Task, job: Job, status: str, message: str = "", caught:
         status=status,
         message=message,
         warnings=sorted(set(caught)),
-        time=datetime.now(UTC).isoformat(timespec="seconds"),
         run=task.run,
         circumstances={**circumstances(), "study": task.study, "level": task.level},
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,8 +15,7 @@ from contactstudy.checks import FloatArray
 class Curve:
     """A profile behind a check, for a figure."""
 
-    axis: str
-    quantity: str
+    labels: tuple[str, str]  # position and quantity
     positions: FloatArray
     computed: FloatArray
     expected: FloatArray
@@ -56,58 +56,61 @@ class Check:
         return bool(abs(self.difference) <= self.tolerance)
 
 
-def compare(
-    case: str,
-    quantity: str,
-    source: str,
-    computed: float,
-    expected: float,
-    tolerance: float,
-    *,
-    relative: bool = False,
-    curve: Curve | None = None,
-) -> Check:
-    """Compare two numbers."""
-    difference = float(computed) - float(expected)
-    return Check(
-        case=case,
-        quantity=f"{quantity}, relative" if relative else quantity,
-        source=source,
-        computed=float(computed),
-        expected=float(expected),
-        difference=difference / expected if relative else difference,
-        tolerance=tolerance,
-        curve=curve,
-    )
+class Reference(NamedTuple):
+    """A solved problem and the source of its expected values."""
 
+    case: str
+    source: str
 
-def compare_fields(
-    case: str,
-    quantity: str,
-    source: str,
-    computed: ArrayLike,
-    expected: ArrayLike,
-    tolerance: float,
-    *,
-    median: bool = False,
-    curve: Curve | None = None,
-) -> Check:
-    """Compare two arrays: their largest difference, or its median."""
-    values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
-    distance = np.abs(values - references)
-    if np.isnan(distance).any():
-        worst = int(np.flatnonzero(np.isnan(distance))[0])
-    elif median:
-        worst = int(np.argsort(distance)[distance.size // 2])
-    else:
-        worst = int(distance.argmax())
-    return Check(
-        case=case,
-        quantity=f"{quantity}, {'median' if median else 'largest'} difference",
-        source=source,
-        computed=float(values[worst]),
-        expected=float(references[worst]),
-        difference=float(distance[worst]),
-        tolerance=tolerance,
-        curve=curve,
-    )
+    def compare(
+        self,
+        quantity: str,
+        computed: float,
+        expected: float,
+        tolerance: float,
+        *,
+        relative: bool = False,
+        curve: Curve | None = None,
+    ) -> Check:
+        """Compare two numbers."""
+        difference = float(computed) - float(expected)
+        return Check(
+            case=self.case,
+            quantity=f"{quantity}, relative" if relative else quantity,
+            source=self.source,
+            computed=float(computed),
+            expected=float(expected),
+            difference=difference / expected if relative else difference,
+            tolerance=tolerance,
+            curve=curve,
+        )
+
+    def compare_fields(
+        self,
+        quantity: str,
+        computed: ArrayLike,
+        expected: ArrayLike,
+        tolerance: float,
+        *,
+        median: bool = False,
+        curve: Curve | None = None,
+    ) -> Check:
+        """Compare two arrays: their largest difference, or its median."""
+        values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
+        distance = np.abs(values - references)
+        if np.isnan(distance).any():
+            worst = int(np.flatnonzero(np.isnan(distance))[0])
+        elif median:
+            worst = int(np.argsort(distance)[distance.size // 2])
+        else:
+            worst = int(distance.argmax())
+        return Check(
+            case=self.case,
+            quantity=f"{quantity}, {'median' if median else 'largest'} difference",
+            source=self.source,
+            computed=float(values[worst]),
+            expected=float(references[worst]),
+            difference=float(distance[worst]),
+            tolerance=tolerance,
+            curve=curve,
+        )

@@ -193,7 +193,7 @@ def rectangle(
     node, weight = np.polynomial.legendre.leggauss(64)
     xs, ys, zs = (np.asarray(c, dtype=float)[..., None, None] for c in np.broadcast_arrays(x, y, z))
     loads = half_x * half_y * np.multiply.outer(weight, weight)
-    stress = point_load(xs - half_x * node[:, None], ys - half_y * node, zs, poisson, 1.0, friction)
+    stress = point_load(xs - half_x * node[:, None], ys - half_y * node, zs, poisson, 1.0, tangential=friction)
     return {name: np.asarray((stress[name] * loads).sum(axis=(-2, -1))) for name in COMPONENTS}
 
 

@@ -23,7 +23,7 @@ from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
 from contactstudy.film.formulas import moes_line
 from contactstudy.profiles import Lundberg
-from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.check import Check, Curve, Reference
 
 # Moes' numbers M, L: central and least film H, of an inlet four half-widths long below M = 100
 TABLE = {
@@ -45,21 +45,23 @@ def line_checks(*, full: bool) -> Iterator[Check]:
         inlet = 4.0 if load < 100 else None
         line = line_contact.solve_line(load, lubricant, finest=0.1, inlet=inlet)
         case, source = f"line contact, M = {load:g}, L = {lubricant:g}", "extrapolated table"
-        yield compare(case, "central film H", source, line.central, central, 5e-3, relative=True)
-        yield compare(case, "least film H", source, line.least, least, 5e-3, relative=True)
+        yield Reference(case, source).compare("central film H", line.central, central, 5e-3, relative=True)
+        yield Reference(case, source).compare("least film H", line.least, least, 5e-3, relative=True)
         moment = abs(line.moment) / 2
-        yield compare(case, "w delta / 2 against t", "equilibrium", moment, line.rolling, 2e-2, relative=True)
+        yield Reference(case, "equilibrium").compare("w delta / 2 against t", moment, line.rolling, 2e-2, relative=True)
     for load in (50.0, 500.0) if full else (50.0,):
         line, case = line_contact.solve_line(load, 10.0), f"line contact, M = {load:g}, L = 10"
         formula = float(moes_line(load, 10.0))
-        yield compare(case, "central film H", "Moes (1992)", line.central, formula, 0.04, relative=True)
+        yield Reference(case, "Moes (1992)").compare("central film H", line.central, formula, 0.04, relative=True)
     line = line_contact.solve_line(20.0, 10.0, inlet=4.0)
     expected, source = 1.45 * 20.0**-1.5, "Biboulet and Houpert (2010)"
     case = "line contact, M = 20, L = 10"
-    yield compare(case, "rolling moment t / (p0 a^2)", source, line.rolling, expected, 0.04, relative=True)
+    yield Reference(case, source).compare("rolling moment t / (p0 a^2)", line.rolling, expected, 0.04, relative=True)
     slow = line_contact.solve_line(0.1, 0.01, finest=0.4)
     case = "line contact, M = 0.1, L = 0.01"
-    yield compare(case, "M H of rigid surfaces", "Martin (1916)", 0.1 * slow.central, 2.448, 5e-3, relative=True)
+    yield Reference(case, "Martin (1916)").compare(
+        "M H of rigid surfaces", 0.1 * slow.central, 2.448, 5e-3, relative=True
+    )
 
 
 def dry_limit_checks() -> Iterator[Check]:
@@ -69,12 +71,12 @@ def dry_limit_checks() -> Iterator[Check]:
     inner = np.abs(heavy.y) < 0.9
     y, pressure = heavy.y[inner], heavy.pressure[inner]
     hertz = np.sqrt(1 - y**2)
-    curve = Curve("y / a", "p / p0", y, pressure, hertz)
+    curve = Curve(("y / a", "p / p0"), y, pressure, hertz)
     case = "line contact, M = 2000, L = 10"
-    yield compare_fields(case, "pressure / p0, abs(y) < 0.9 a", "Hertz", pressure, hertz, 0.01, curve=curve)
+    yield Reference(case, "Hertz").compare_fields("pressure / p0, abs(y) < 0.9 a", pressure, hertz, 0.01, curve=curve)
     exponent = np.log10(heavy.central / films[200.0].central)
     case = "line contacts, M = 200 and 2000, L = 10"
-    yield compare(case, "exponent of M in the central film", "Moes (1992)", float(exponent), -0.125, 0.01)
+    yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 
 
 def crowned_film(body: Body, length: float) -> xr.Dataset:
@@ -101,14 +103,18 @@ def roller_checks(*, full: bool) -> Iterator[Check]:
     length = 16 * HALF_WIDTH
     flush = crowned_film(FiniteLengthSpace(length=length, material=STEEL), length)
     case = "crowned roller, 16 a, flush, M = 10, L = 5"
-    yield compare(case, "net outflow of a cell / (um h)", "mass balance", float(flush["mass_error"]), 0.0, 1e-6)
+    yield Reference(case, "mass balance").compare(
+        "net outflow of a cell / (um h)", float(flush["mass_error"]), 0.0, 1e-6
+    )
     area = flush["x_width"] * float(flush["y"][1] - flush["y"][0])
     load, expected = float((flush["pressure"] * area).sum()), float(flush["normal_load"])
-    yield compare(case, "sum of the pressure over the cells, N", "equilibrium", load, expected, 1e-8, relative=True)
+    yield Reference(case, "equilibrium").compare(
+        "sum of the pressure over the cells, N", load, expected, 1e-8, relative=True
+    )
     if full:
         far = crowned_film(FiniteLengthSpace(length=10 * length, material=STEEL), length)
         half = crowned_film(HalfSpace(material=STEEL), length)
         case = "crowned roller, 16 a, 72 a from both free ends"
         for name in ("central_film", "least_film"):
             computed, expected = float(far[name]), float(half[name])
-            yield compare(case, f"{name}, m", "half-space", computed, expected, 5e-3, relative=True)
+            yield Reference(case, "half-space").compare(f"{name}, m", computed, expected, 5e-3, relative=True)

@@ -16,6 +16,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -32,7 +33,7 @@ from contactstudy.overlapping.axial import axial_modes
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.stress import maximum_shear, von_mises
-from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import (
     CONTACT_CASES,
     CONTACT_FILE,
@@ -69,45 +70,33 @@ def edge_load_checks() -> Iterator[Check]:
     """Displacement under a point load on the edge."""
     for poisson in (0.0, 0.3, 0.5):
         # Cells of a fortieth of the distance; the error falls in proportion, so two distances give the limit.
-        grid = Grid((0.0, 0.16), (-4.1, 4.1), 8, 41)
+        grid = Grid(x_range=(0.0, 0.16), y_range=(-4.1, 4.1), cells_x=8, cells_y=41)
         distance = np.abs(grid.y)[None, :]
         ratio = _scaled_displacement(poisson, grid, (0, 20), distance)[0, 20:]
         # Displacement along the edge under a point load on it, over the half-space's; for every Poisson's ratio
-        yield compare(
-            f"point load on the edge, nu = {poisson:g}",
-            "u_z along the edge over the half-space's",
-            EXACT_LIMIT,
-            float(2 * ratio[20] - ratio[10]),
-            3.362954,
-            0.01,
+        yield Reference(f"point load on the edge, nu = {poisson:g}", EXACT_LIMIT).compare(
+            "u_z along the edge over the half-space's", float(2 * ratio[20] - ratio[10]), 3.362954, 0.01
         )
     for poisson, expected in ALONG_NORMAL.items():
-        grid = Grid((0.0, 8.2), (-0.45, 0.45), 82, 9)
+        grid = Grid(x_range=(0.0, 8.2), y_range=(-0.45, 0.45), cells_x=82, cells_y=9)
         ratio = _scaled_displacement(poisson, grid, (0, 4), grid.x[:, None])[:, 4]
-        yield compare(
-            f"point load on the edge, nu = {poisson:g}",
-            "u_z along the inward normal over the half-space's",
-            COMPUTED,
-            float(2 * ratio[80] - ratio[40]),
-            expected,
-            0.01,
+        yield Reference(f"point load on the edge, nu = {poisson:g}", COMPUTED).compare(
+            "u_z along the inward normal over the half-space's", float(2 * ratio[80] - ratio[40]), expected, 0.01
         )
 
 
 def extra_deflection_checks() -> Iterator[Check]:
     """Deflection at a point load at a distance from the edge."""
     for poisson, expected in EXTRA_DEFLECTION.items():
-        grid = Grid((0.0, 4.8), (-0.45, 0.45), 48, 9)
+        grid = Grid(x_range=(0.0, 4.8), y_range=(-0.45, 0.45), cells_x=48, cells_y=9)
         load = point_pressure(grid, 40, 4)
         material = unit_material(poisson)
         quarter, half = (
             float(surface_displacement(body, load)[40, 4])
             for body in (QuarterSpace(material=material), HalfSpace(material=material))
         )
-        yield compare(
-            f"point load at 40 cells from the edge, nu = {poisson:g}",
+        yield Reference(f"point load at 40 cells from the edge, nu = {poisson:g}", COMPUTED).compare(
             "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)",
-            COMPUTED,
             (quarter - half) * 2 * np.pi * grid.x[40],
             expected,
             5e-4,
@@ -127,8 +116,8 @@ def resultant_checks() -> Iterator[Check]:
         top = 1 + 0.5 * np.pi * float(np.interp(1e-3, np.abs(modes.ray[small]), on_top.real[small]))
         end = -0.5 * np.pi * float(np.interp(1e-3, system.depth, scaled / system.scale))
         case = f"equivalent loads of a unit load, nu = {poisson:g}"
-        yield compare(case, "resultant on the top", EXACT_LIMIT, top, TOP_RESULTANT, 5e-3)
-        yield compare(case, "resultant on the end", EXACT_LIMIT, end, END_RESULTANT, 5e-3)
+        yield Reference(case, EXACT_LIMIT).compare("resultant on the top", top, TOP_RESULTANT, 5e-3)
+        yield Reference(case, EXACT_LIMIT).compare("resultant on the end", end, END_RESULTANT, 5e-3)
 
 
 def corner_checks() -> Iterator[Check]:
@@ -138,21 +127,14 @@ def corner_checks() -> Iterator[Check]:
     pressure = on_cells(lambda x, y: (x < 5) + 0 * y, (0, 6), (-width, width), (48, 12))
     stress = stress_field(body, pressure, x=[0.05], y=[0.0], z=[0.05]).isel(x=0, y=0, z=0)
     case = "uniform pressure on a long strip up to the edge, 0.05 from the corner"
-    yield compare_fields(
-        case,
+    yield Reference(case, "uniaxial compression, " + EXACT_LIMIT).compare_fields(
         "sigma_xx, sigma_zz, tau_xz / p",
-        "uniaxial compression, " + EXACT_LIMIT,
         [stress["sigma_xx"], stress["sigma_zz"], stress["tau_xz"]],
         [0.0, -1.0, 0.0],
         0.02,
     )
-    yield compare(
-        case,
-        "von Mises stress / p",
-        "p sqrt(1 - nu + nu^2), " + EXACT_LIMIT,
-        float(von_mises(stress)),
-        float(np.sqrt(1 - poisson + poisson**2)),
-        0.02,
+    yield Reference(case, "p sqrt(1 - nu + nu^2), " + EXACT_LIMIT).compare(
+        "von Mises stress / p", float(von_mises(stress)), float(np.sqrt(1 - poisson + poisson**2)), 0.02
     )
 
 
@@ -163,10 +145,8 @@ def antiplane_checks() -> Iterator[Check]:
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
     near = system.depth > 1e-3  # below the wavelength along y there is always some
     scale = np.abs(system.source(Load.NORMAL, spectrum)[near]).max()
-    yield compare_fields(
-        "traction along y that does not vary along y",
+    yield Reference("traction along y that does not vary along y", EXACT_LIMIT).compare_fields(
         "load asked of the end, over that for an equal pressure",
-        EXACT_LIMIT,
         system.source(Load.ALONG_Y, spectrum)[near] / scale,
         0.0,
         1e-4,
@@ -190,13 +170,15 @@ def johnson_checks() -> Iterator[Check]:
     ):
         shear = maximum_shear(stress_field(body, pressure, x=[x], y=[0.0], z=z, inside_cells=pressure)).values.ravel()
         source = f"Johnson (1985) 4.2, 3.4: {largest:.3f} p0 at {depth:g}a"
-        yield compare(case, "largest shear on the axis / p0", source, float(shear.max()), largest, 1e-3)
-        yield compare(case, "its depth / a", source, float(z[shear.argmax()]), depth, 0.015)
+        yield Reference(case, source).compare("largest shear on the axis / p0", float(shear.max()), largest, 1e-3)
+        yield Reference(case, source).compare("its depth / a", float(z[shear.argmax()]), depth, 0.015)
     around = np.linspace(1.0, 1.3, 31)
     radial = stress_field(body, circle, x=around, y=[0.0], z=[0.0], inside_cells=circle)["sigma_xx"].max()
     tension = (1 - 2 * POISSON) / 3
     source = "Johnson (1985) 3.43: (1 - 2 nu) p0 / 3 at the edge"
-    yield compare("circular Hertz pressure", "largest radial tension / p0", source, float(radial), tension, 5e-3)
+    yield Reference("circular Hertz pressure", source).compare(
+        "largest radial tension / p0", float(radial), tension, 5e-3
+    )
 
 
 def wedge_stress(angle: FloatArray) -> FloatArray:
@@ -222,14 +204,14 @@ def wedge_checks() -> Iterator[Check]:
         "tau_xz": radial * np.cos(angle) * np.sin(angle),
         "tau_yz": zero,
     }
-    yield compare_fields(
-        "line load P on the edge of a quarter space, a and more away",
+    yield Reference(
+        "line load P on the edge of a quarter space, a and more away", "Michell (1900); Timoshenko and Goodier, wedge"
+    ).compare_fields(
         "six stresses a / P",
-        "Michell (1900); Timoshenko and Goodier, wedge",
         components(stress),
         components(exact),
         0.02,
-        curve=Curve("z / a", "sigma_zz a / P, x = 0", z, stress["sigma_zz"].values[0], exact["sigma_zz"][0]),
+        curve=Curve(("z / a", "sigma_zz a / P, x = 0"), z, stress["sigma_zz"].values[0], exact["sigma_zz"][0]),
     )
 
 
@@ -248,14 +230,10 @@ def mirror_checks() -> Iterator[Check]:
             float(surface_displacement(QuarterSpace(material=material, model=model), load)[0].max())
             for model in ("exact", "mirror")
         )
-        yield compare(
+        yield Reference(
             f"narrow load up to the edge, half-width 0.03 of its length, nu = {poisson:g}",
-            "error of the largest edge displacement of a mirrored load",
             "Guilbault (2011), second-hand: against finite elements",
-            mirror / exact - 1,
-            expected,
-            0.01,
-        )
+        ).compare("error of the largest edge displacement of a mirrored load", mirror / exact - 1, expected, 0.01)
 
 
 FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the checks, with error and unit
@@ -275,26 +253,25 @@ def pressure_of(case: LoadCase, cells_y: int = CELLS_Y) -> xr.DataArray:
 def stress_checks(name: str) -> Iterator[Check]:
     """Stresses under a prescribed load at all stored depths: largest and median difference of six components."""
     case, below = LOAD_CASES[name], load_reference(STRESS_FILE, name)
-    points = {axis: below[axis].values.astype(float) for axis in "xyz"}
+    points: dict[str, Any] = {axis: below[axis].values.astype(float) for axis in "xyz"}
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
     load = pressure_of(case, FINER.get(name, CELLS_Y))
-    stress = stress_field(body, load, case.friction, *points.values(), inside_cells=load)
+    stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
     computed = np.array([stress[component].values for component in STRESSES])
     expected = np.array([below[component].transpose("x", "y", "z").values for component in STRESSES])
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
     profile = {"x": 0.0, "y": 0.75}
     curve = Curve(
-        "z / a",
-        "sigma_yy / p0, x = 0, y = 0.75a",
+        ("z / a", "sigma_yy / p0, x = 0, y = 0.75a"),
         points["z"],
         stress["sigma_yy"].sel(profile).values,
         below["sigma_yy"].sel(profile).values,
     )
     quantity = f"six stresses / p0, z >= {float(below['z'].min()):g}a"
     source = FINITE_ELEMENTS.format(below.attrs["error_estimate"], "p0")
-    yield compare_fields(label, quantity, source, computed, expected, 1e-3, curve=curve)
+    yield Reference(label, source).compare_fields(quantity, computed, expected, 1e-3, curve=curve)
     source = FINITE_ELEMENTS.format(below.attrs["error_estimate_median"], "p0")
-    yield compare_fields(label, quantity, source, computed, expected, 2e-4, median=True)
+    yield Reference(label, source).compare_fields(quantity, computed, expected, 2e-4, median=True)
 
 
 def displacement_checks(name: str) -> Iterator[Check]:
@@ -303,20 +280,15 @@ def displacement_checks(name: str) -> Iterator[Check]:
     young = unit_material(case.poisson).young
     # Cell centres on the reference's points y, and x interpolated between them.
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    grid = Grid((0.0, case.length), (-1.3125, 1.3125), round(32 * case.length), 105)
+    grid = Grid(x_range=(0.0, case.length), y_range=(-1.3125, 1.3125), cells_x=round(32 * case.length), cells_y=105)
     sunk = surface_displacement(body, on_grid(lambda g: case.pressure(g.x, g.y), grid), case.friction)
     inside = expected.sel(x=slice(0.5 * grid.dx, case.length - 0.5 * grid.dx))
     interpolated = sunk.interp(x=inside["x"], y=inside["y"], method="cubic")
     middle = float(sunk.interp(x=0.5 * case.length, y=0.0, method="cubic"))
     error = float(expected.attrs["error_estimate"])
-    yield compare_fields(
-        f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}",
-        "E u_z / (p0 a), relative to the middle",
-        FINITE_ELEMENTS.format(error, "p0 a"),
-        young * (interpolated - middle),
-        inside,
-        1e-3,
-    )
+    yield Reference(
+        f"{name}: L = {case.length:g}a, {case.g}, f = {case.friction:g}", FINITE_ELEMENTS.format(error, "p0 a")
+    ).compare_fields("E u_z / (p0 a), relative to the middle", young * (interpolated - middle), inside, 1e-3)
 
 
 def contact_checks(name: str) -> Iterator[Check]:
@@ -325,9 +297,11 @@ def contact_checks(name: str) -> Iterator[Check]:
     At a sharp end inside the face neither solution resolves the singular pressure: wider tolerance within a / 2.
     """
     case, stored = CONTACT_CASES[name], load_reference(CONTACT_FILE, name)
-    grid = Grid((0.0, case.length), (-1.75, 1.75), round(CONTACT_CELLS * case.length), 113)
+    grid = Grid(
+        x_range=(0.0, case.length), y_range=(-1.75, 1.75), cells_x=round(CONTACT_CELLS * case.length), cells_y=113
+    )
     body = FiniteLengthSpace(length=case.length, material=unit_material(case.poisson))
-    contact = solve_contact(body, on_grid(lambda g: case.gap(g.x, g.y), grid), case.load)
+    contact = solve_contact(body, on_grid(lambda g: case.gap(g.x, g.y), grid), load=case.load)
     under = contact["pressure"].sel(x=slice(case.start, case.stop))
     x = under["x"].values
     edges = np.append(x - 0.5 * grid.dx, x[-1] + 0.5 * grid.dx)
@@ -339,25 +313,25 @@ def contact_checks(name: str) -> Iterator[Check]:
         f"{name}: contact, L = {case.length:g}a, roller from {case.distance:g}a",
     )
     label += f", crown {case.crown:g}" if case.crown else ""
-    curve = Curve("x / a", "p / p0 at y = 0", x, computed, expected)
+    curve = Curve(("x / a", "p / p0 at y = 0"), x, computed, expected)
     singular = case.distance > 0 and not case.crown
     away = slice(1, -1)
     quantity = "pressure / p0 at y = 0, away from the last cell"
     tolerance = 0.05 if singular else 0.01
-    yield compare_fields(label, quantity, source, computed[away], expected[away], tolerance, curve=curve)
+    yield Reference(label, source).compare_fields(quantity, computed[away], expected[away], tolerance, curve=curve)
     if singular:
         far = slice(CONTACT_CELLS // 2, -CONTACT_CELLS // 2)
         quantity = "pressure / p0 at y = 0, 0.5a and more from the roller's end"
-        yield compare_fields(label, quantity, source, computed[far], expected[far], 0.01)
+        yield Reference(label, source).compare_fields(quantity, computed[far], expected[far], 0.01)
         load = stored["line_load"].values
         near = slice(None, CONTACT_CELLS // 2)
         computed_load = float(under.isel(x=near).sum()) * grid.cell_area
         expected_load = float((_cell_means(stored["x"].values, load, edges)[near]).sum()) * grid.dx
         quantity = "load on the roller's last 0.5a / (p0 a^2)"
-        yield compare_fields(label, quantity, source, computed_load, expected_load, 0.03)
+        yield Reference(label, source).compare_fields(quantity, computed_load, expected_load, 0.03)
     else:
         quantity = "pressure / p0 at y = 0 in the last cell"
-        yield compare_fields(label, quantity, source, computed[[0, -1]], expected[[0, -1]], 0.03)
+        yield Reference(label, source).compare_fields(quantity, computed[[0, -1]], expected[[0, -1]], 0.03)
 
 
 def _cell_means(nodes: FloatArray, values: FloatArray, edges: FloatArray) -> FloatArray:

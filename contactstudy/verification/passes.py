@@ -13,7 +13,7 @@ from contactstudy.bodies import FiniteLengthSpace, HalfSpace, Material
 from contactstudy.checks import FloatArray
 from contactstudy.fatigue import shakedown, shakedown_limit
 from contactstudy.plasticity import ElasticPlastic, eigenstrain_stress, residual_stress
-from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.closed_forms import hertz_strip, rectangle_in_half_plane, von_mises
 from contactstudy.verification.problems import PASSES_CASES, PASSES_FILE, PassesCase, load_reference
 
@@ -31,7 +31,7 @@ QUICK_CASES = ("settling", "settling_sliding")  # Passes of the quick level
 def line_contact(friction: float) -> xr.Dataset:
     """Hertz' line contact of half-width and peak pressure 1 in plane strain, Poisson's ratio 0.3, from the top down."""
     y, z = np.linspace(-5.0, 5.0, 161), np.linspace(0.0, 1.75, 71)
-    stress = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction)
+    stress = hertz_strip(y[:, None], z, 1.0, 1.0, 0.3, friction=friction)
     fields = {name: (("x", "y", "z"), values[None]) for name, values in stress.items()}
     return xr.Dataset(fields, {"x": [0.0], "y": y, "z": z}).assign(hertz_max_pressure=1.0)
 
@@ -56,13 +56,17 @@ def shakedown_checks() -> Iterator[Check]:
     plane, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
     first, limit = float(plane["first_yield_limit"]), float(axial["shakedown_limit"])
     on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
-    yield compare(case, f"{quantity} at first yield", "McEwen (1949)", first, 1 / on_axis, 2e-3, relative=True)
-    yield compare(case, f"{quantity} at shakedown", "Johnson (1962)", limit, 4.0, 2e-3, relative=True)
+    yield Reference(case, "McEwen (1949)").compare(
+        f"{quantity} at first yield", first, 1 / on_axis, 2e-3, relative=True
+    )
+    yield Reference(case, "Johnson (1962)").compare(f"{quantity} at shakedown", limit, 4.0, 2e-3, relative=True)
     for friction in (0.4, 0.6):
         top = shakedown(line_contact(friction)).isel(x=0, z=0)
         case = f"top of a line contact, friction {friction:g}"
         for name, expected in zip(("first_yield_stress", "shakedown_stress"), on_top(friction), strict=True):
-            yield compare(case, f"{name} / p0", "closed form, one-dimensional search", float(top[name]), expected, 1e-3)
+            yield Reference(case, "closed form, one-dimensional search").compare(
+                f"{name} / p0", float(top[name]), expected, 1e-3
+            )
 
 
 def residual_checks() -> Iterator[Check]:
@@ -80,12 +84,14 @@ def residual_checks() -> Iterator[Check]:
     stress = eigenstrain_stress(body, strains, at_x, at_z, x_edges=edges[0], z_edges=edges[1])
     source = "Muskhelishvili's forces in a half-plane, on the sides of the rectangle"
     expected = rectangle_in_half_plane(
-        at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), eigenstrain, STIFF.young, STIFF.poisson
+        at_x[:, None], at_z, (-0.3, 0.3), (0.5, 1.1), eigenstrain, young=STIFF.young, poisson=STIFF.poisson
     )
     size = np.abs(expected).max()
     for name, right in zip(("sigma_xx", "sigma_yy", "sigma_zz", "tau_xz"), expected, strict=True):
         case = "eigenstrain in a rectangle of a half-space"
-        yield compare_fields(case, f"{name} over the largest stress", source, stress[name] / size, right / size, 1e-4)
+        yield Reference(case, source).compare_fields(
+            f"{name} over the largest stress", stress[name] / size, right / size, 1e-4
+        )
     between = FiniteLengthSpace(length=1.0, material=STIFF)
     deep = np.array([0.0, 0.2, 0.5, 1.0, 2.0, 4.0, 6.0])
     x, z = np.array([0.125, 0.375, 0.625, 0.875]), 0.5 * (deep[1:] + deep[:-1])
@@ -94,11 +100,11 @@ def residual_checks() -> Iterator[Check]:
     stress = eigenstrain_stress(between, heat, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
     largest = max(float(abs(stress[name]).max()) for name in STRESSES) / STIFF.young
     case = "eigenstrains xx and zz all over a body between ends"
-    yield compare(case, "largest stress / E", "it fits together", largest, 0.0, 1e-5)
+    yield Reference(case, "it fits together").compare("largest stress / E", largest, 0.0, 1e-5)
     stretched = xr.Dataset({"plastic_strain_yy": uniform}, {"x": x, "z": z})
     stress = eigenstrain_stress(between, stretched, x=[0.05, 0.4], z=[0.02, 0.3], z_edges=deep)
     axial = float(stress["sigma_yy"].mean()) / STIFF.young
-    yield compare("eigenstrain yy all over it", "sigma_yy / E", "Hooke's law", axial, -1.0, 1e-5)
+    yield Reference("eigenstrain yy all over it", "Hooke's law").compare("sigma_yy / E", axial, -1.0, 1e-5)
 
 
 def passing_checks() -> Iterator[Check]:
@@ -108,16 +114,20 @@ def passing_checks() -> Iterator[Check]:
     case, source = "passes of a line contact without friction", "Melan; Johnson's p0 = 4 k"
     below = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 1.03)
     flow = residual_stress(contact, body, below, passes=5)["plastic_flow"].values
-    yield compare(case, "flow of the last pass over the first's, 3 % below", source, flow[-1] / flow[0], 0.0, 1e-3)
+    yield Reference(case, source).compare(
+        "flow of the last pass over the first's, 3 % below", flow[-1] / flow[0], 0.0, 1e-3
+    )
     above = ElasticPlastic(yield_stress=np.sqrt(3.0) / 4 * 0.97, kinematic_hardening=5.0)
     flow = residual_stress(contact, body, above, passes=5)["plastic_flow"].values
-    yield compare(case, "flow of the fifth pass over the fourth's, 3 % above", source, flow[-1] / flow[-2], 1.0, 0.05)
+    yield Reference(case, source).compare(
+        "flow of the fifth pass over the fourth's, 3 % above", flow[-1] / flow[-2], 1.0, 0.05
+    )
 
 
 def over_half_plane(case: PassesCase, z: FloatArray) -> xr.Dataset:
     """Roll a stored case, at depths over the half-width."""
     y = np.linspace(-4.0, 4.0, 129)
-    stress = hertz_strip(y[:, None], z, 1.0, 1.0, case.poisson, case.friction)
+    stress = hertz_strip(y[:, None], z, 1.0, 1.0, case.poisson, friction=case.friction)
     fields = {name: (("x", "y", "z"), values[None]) for name, values in stress.items()}
     contact = xr.Dataset(fields, {"x": [0.0], "y": y, "z": z})
     hardening = STIFF.young * case.kinematic_hardening
@@ -141,11 +151,11 @@ def finite_element_checks(name: str) -> Iterator[Check]:
         computed, expected = after[component].values / size, residual[component].values / size
         source = f"{origin} {residual[component].attrs['error_estimate'] / size:.0e}"
         quantity = f"residual {component} over the largest"
-        curve = Curve("z / a", quantity, z, computed, expected) if component == "sigma_yy" else None
-        yield compare_fields(label, quantity, source, computed, expected, tolerances[0], curve=curve)
+        curve = Curve(("z / a", quantity), z, computed, expected) if component == "sigma_yy" else None
+        yield Reference(label, source).compare_fields(quantity, computed, expected, tolerances[0], curve=curve)
     strain, computed = residual["plastic_strain_yz_young"], STIFF.young * passed["plastic_strain_yz"].values
     drag, expected = (fields.sum(axis=-1) for fields in (computed, strain.values))
     source = f"{origin} {strain.attrs['error_estimate'] / float(np.abs(strain).max()):.0e} of the largest shear"
     quantity = "plastic shear yz summed over depth, after every pass, over the largest"
     largest = np.abs(expected).max()
-    yield compare_fields(label, quantity, source, drag / largest, expected / largest, tolerances[1])
+    yield Reference(label, source).compare_fields(quantity, drag / largest, expected / largest, tolerances[1])

@@ -36,7 +36,8 @@ def on_cells(
     function: Callable[[FloatArray, FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
 ) -> xr.DataArray:
     """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y."""
-    return on_grid(lambda grid: function(grid.x[:, None], grid.y[None, :]), Grid(x_range, y_range, *cells))
+    grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
+    return on_grid(lambda grid: function(grid.x[:, None], grid.y[None, :]), grid)
 
 
 def on_grid(function: Callable[[Grid], FloatArray], grid: Grid) -> xr.DataArray:
@@ -54,7 +55,7 @@ def cell_means(
         edges = np.linspace(*y_range, grid.cells_y + 1)
         return np.asarray(np.diff(integral_y(edges)) / grid.dy)[None, :]
 
-    return on_grid(means, Grid(x_range, y_range, *cells))
+    return on_grid(means, Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1]))
 
 
 def components(fields: Mapping[Any, ArrayLike]) -> FloatArray:
@@ -189,7 +190,7 @@ class ContactCase:
         return np.asarray(np.where(outside, np.inf, self.gap_x(x))[:, None] + y[None, :] ** 2)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class PassesCase:
     """Passes of Hertz' line contact of half-width and peak pressure 1 over an elastic-plastic half-plane."""
 
@@ -220,10 +221,10 @@ CONTACT_CASES: dict[str, ContactCase] = {
 }
 # Passes whose residual stresses and plastic strains are stored: either side of the shakedown limits 4.0 k, 3.2 k
 PASSES_CASES: dict[str, PassesCase] = {
-    "settling": PassesCase(1 / 3.6, friction=0.0, passes=2),
-    "settling_sliding": PassesCase(1 / 3.1, friction=0.2, passes=5),
-    "flowing": PassesCase(1 / 4.3, friction=0.0, passes=3),
-    "flowing_sliding": PassesCase(1 / 3.4, friction=0.2, passes=2),
+    "settling": PassesCase(shear_yield_stress=1 / 3.6, friction=0.0, passes=2),
+    "settling_sliding": PassesCase(shear_yield_stress=1 / 3.1, friction=0.2, passes=5),
+    "flowing": PassesCase(shear_yield_stress=1 / 4.3, friction=0.0, passes=3),
+    "flowing_sliding": PassesCase(shear_yield_stress=1 / 3.4, friction=0.2, passes=2),
 }
 # Files of the stored finite elements, one group for each case
 STRESS_FILE, CONTACT_FILE = "finite_elements_stress.nc", "finite_elements_contact.nc"

@@ -256,8 +256,8 @@ def plot_profiles(checks: list[Check]) -> Figure:
             label="reference",
         )
         ax.set_title("\n".join(textwrap.wrap(check.case, 48)), fontsize="small")
-        ax.set_xlabel(curve.axis)
-        ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.quantity), fontsize="small")
+        ax.set_xlabel(curve.labels[0])
+        ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.labels[1]), fontsize="small")
         ax.grid(alpha=0.3)
     if axes:
         axes[0].legend(fontsize="small")

@@ -35,7 +35,7 @@ from contactstudy.heat.moving_source import Ends, MovingBody, SourceOperator
 from contactstudy.profiles import FullCrown
 from contactstudy.solution import solve
 from contactstudy.verification import closed_forms
-from contactstudy.verification.check import Check, Curve, compare, compare_fields
+from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import on_cells, on_grid
 from contactstudy.wear import wear_in, worn_profile
 
@@ -57,8 +57,8 @@ def line_contact(
     return solve_contact(
         bodies[0],
         gap,
-        0.25 * np.pi * modulus,
-        friction,
+        load=0.25 * np.pi * modulus,
+        friction=friction,
         counterbody=Counterbody(bodies[1]),
         motion=motion,
         settings=ContactSettings(coupled=coupled),
@@ -76,23 +76,21 @@ def carter_checks() -> Iterator[Check]:
         step = float(rolled["y"][1] - rolled["y"][0])
         sliding = friction * float(rolled["pressure"].sum()) * step
         force = float(rolled["traction_y"].sum()) * step / sliding
-        yield compare(case, "force over full sliding's", source, force, 1 - stick**2, 1e-3)
+        yield Reference(case, source).compare("force over full sliding's", force, 1 - stick**2, 1e-3)
         width = 0.5 * float(rolled["stick"].sum()) * step
-        yield compare(case, "half-width of the stick zone / a", source, width, stick, 0.5 * step + 1e-9)
+        yield Reference(case, source).compare("half-width of the stick zone / a", width, stick, 0.5 * step + 1e-9)
         inside = np.abs(rolled["y"].values) < 0.9
         y = rolled["y"].values[inside]
         peak = friction * 2 * float(rolled["pressure"].sum()) * step / np.pi
         computed, expected = rolled["traction_y"].values[inside] / peak, closed_forms.carter_traction(y, stick)
         # The traction has a vertical slope where slip begins, between two cells.
         smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
-        yield compare_fields(
-            case,
+        yield Reference(case, source).compare_fields(
             "traction / (f p0), two cells from where slip begins",
-            source,
             computed[smooth],
             expected[smooth],
             0.01,
-            curve=Curve("y / a", "q / (f p0)", y, computed, expected),
+            curve=Curve(("y / a", "q / (f p0)"), y, computed, expected),
         )
 
 
@@ -114,8 +112,8 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
             solve_contact(
                 body,
                 gap,
-                load,
-                friction,
+                load=load,
+                friction=friction,
                 counterbody=Counterbody(body),
                 motion=Rolling(longitudinal_creepage=number * creepage),
             ).isel(x=cells // 2)
@@ -126,7 +124,9 @@ def slope_checks(*, full: bool) -> Iterator[Check]:
         half_width = np.sqrt(4 * step * float(first["pressure"].sum()) / (np.pi * modulus))
         slope = (4 * forces[0] - forces[1]) / (2 * creepage)
         expected, source = 0.5 * np.pi * modulus * half_width, "Carter (1926); Johnson (1985) 8.46"
-        yield compare(case, "initial slope of the force per length", source, slope, expected, 5e-3, relative=True)
+        yield Reference(case, source).compare(
+            "initial slope of the force per length", slope, expected, 5e-3, relative=True
+        )
 
 
 def spence_checks() -> Iterator[Check]:
@@ -139,8 +139,8 @@ def spence_checks() -> Iterator[Check]:
         pressed = solve_contact(
             half,
             gap,
-            load * part**3,
-            0.2986,
+            load=load * part**3,
+            friction=0.2986,
             motion=Shift(),
             settings=ContactSettings(coupled=True, after=pressed, tolerance=1e-5),
         )
@@ -148,7 +148,7 @@ def spence_checks() -> Iterator[Check]:
     areas = [float(pressed["stick"].sum()), float((pressed["pressure"] > 0).sum())]
     case, source = "rigid sphere pressed on a plane, f = 0.2986", "Spence (1975) by CONTACT"
     part = np.sqrt(areas[0] / areas[1])
-    yield compare(case, "radius of the stick zone over the contact's", source, part, 0.5, reach / cells)
+    yield Reference(case, source).compare("radius of the stick zone over the contact's", part, 0.5, reach / cells)
 
 
 def shift_checks() -> Iterator[Check]:
@@ -160,17 +160,17 @@ def shift_checks() -> Iterator[Check]:
     shifted = solve_contact(
         HalfSpace(material=rubber),
         gap,
-        load,
-        friction,
+        load=load,
+        friction=friction,
         counterbody=Counterbody(HalfSpace(material=rubber)),
         motion=Shift(force_y=part * friction * load),
     )
     case, source = "sphere shifted on a plane, 7/8 of full sliding's force", "Cattaneo (1938); Mindlin (1949)"
-    expected = closed_forms.mindlin_shift(part, load, friction, 1e-3, shear, poisson)
-    yield compare(case, "shift", source, float(shifted["shift_y"]), expected, 3e-3, relative=True)
+    expected = closed_forms.mindlin_shift(part, load, friction, 1e-3, shear, poisson=poisson)
+    yield Reference(case, source).compare("shift", float(shifted["shift_y"]), expected, 3e-3, relative=True)
     step = 2 * reach / cells
     stick = step * np.sqrt(float(shifted["stick"].sum()) / np.pi)
-    yield compare(case, "radius of the stick zone / a", source, stick / 1e-3, 0.5, 0.5 * step / 1e-3)
+    yield Reference(case, source).compare("radius of the stick zone / a", stick / 1e-3, 0.5, 0.5 * step / 1e-3)
 
 
 def ellipse_gap(along_x: float, along_y: float, load: float, of: Material, cells: tuple[int, int]) -> xr.DataArray:
@@ -200,8 +200,8 @@ def rolling_ellipse(
     return solve_contact(
         body,
         gap,
-        load,
-        friction,
+        load=load,
+        friction=friction,
         counterbody=Counterbody(body),
         motion=motion,
         settings=ContactSettings(tolerance=1e-5),
@@ -240,7 +240,7 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
             cells = (count if ratio < 10 else KALKER_CELLS[0], count)
             forces = []
             for motion in motions:
-                rolled = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion, cells)
+                rolled = rolling_ellipse(across, 1.0, 0.01, steel, 1.0, motion=motion, cells=cells)
                 force = float(rolled["force_y" if motion.longitudinal_creepage else "force_x"])
                 forces.append(force / (SMALL * across * (np.sqrt(across) if motion.spin else 1.0)))
             coefficients.append(forces)
@@ -250,9 +250,9 @@ def kalker_checks(*, full: bool) -> Iterator[Check]:
         case = f"vanishing creepage, a/b = {ratio:g}, Poisson's ratio {poisson:g}"
         source = "Kalker (1990), table E.3"
         for name, computed, expected in zip(names, extrapolated, table[:2], strict=True):
-            yield compare(case, f"{name}, extrapolated", source, computed, expected, within, relative=True)
+            yield Reference(case, source).compare(f"{name}, extrapolated", computed, expected, within, relative=True)
         # Under spin the traction is largest at the leading edge, where the error falls faster.
-        yield compare(case, "c23", source, coefficients[1][2], table[2], within, relative=True)
+        yield Reference(case, source).compare("c23", coefficients[1][2], table[2], within, relative=True)
 
 
 # Force over full sliding's, by the longitudinal creepage
@@ -264,11 +264,11 @@ def contact_program_checks() -> Iterator[Check]:
     steel, load, friction = material(82e9, 0.28), 106.7e3, 0.33
     for creepage, expected in CONTACT_CURVE.items():
         motion = Rolling(longitudinal_creepage=creepage)
-        rolled = rolling_ellipse(12.61e-3, 6.304e-3, load, steel, friction, motion, (44, 48))
+        rolled = rolling_ellipse(12.61e-3, 6.304e-3, load, steel, friction, motion=motion, cells=(44, 48))
         case = f"traction curve of an ellipse 2 to 1, creepage {creepage:g}"
         force = float(rolled["force_y"]) / (friction * load)
         source = "CONTACT, 48 x 44 cells, which are 1.4 % off"
-        yield compare(case, "force over full sliding's", source, force, expected, 0.016, relative=True)
+        yield Reference(case, source).compare("force over full sliding's", force, expected, 0.016, relative=True)
     soft, source = material(23e9, 0.31), "Bentall and Johnson (1967) by CONTACT"
     # The creepage grows with the half-width over the pair's radius, 0.1 mm over 25 mm there and 1 here.
     scale = 0.1 / 25
@@ -278,7 +278,7 @@ def contact_program_checks() -> Iterator[Check]:
         rolled = line_contact(soft, steel, Rolling(force_y=force), 0.05, coupled=True)
         case = f"unlike cylinders rolling, f = 0.05, force {part:g} of full sliding's"
         computed = scale * float(rolled["longitudinal_creepage"])
-        yield compare(case, "creepage", source, computed, expected, 0.015, relative=True)
+        yield Reference(case, source).compare("creepage", computed, expected, 0.015, relative=True)
 
 
 STEEL_HEAT = ThermalProperties(conductivity=46.0, density=7850.0, specific_heat=470.0)
@@ -297,7 +297,7 @@ def line_case() -> tuple[Case, xr.Dataset]:
     body = FiniteLengthSpace(length=1e-3, material=Material(210e9, 0.3))
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
     reach = 1.5 * case.hertz_half_width
-    grid = Grid((0.0, 1e-3), (-reach, reach), 4, 96)
+    grid = Grid(x_range=(0.0, 1e-3), y_range=(-reach, reach), cells_x=4, cells_y=96)
     pressure = 1.5e9 * np.sqrt(np.maximum(1 - (grid.y / case.hertz_half_width) ** 2, 0)) + 0 * grid.x[:, None]
     fields = {"pressure": (("x", "y"), pressure), "traction_y": (("x", "y"), 0.05 * pressure)}
     return case, xr.Dataset(fields, coords={"x": grid.x, "y": grid.y})
@@ -313,49 +313,55 @@ def fast_checks() -> Iterator[Check]:
     heat = 0.05 * 1.5e9 * sliding
     expected = 0.5 * heat * np.sqrt(STEEL_HEAT.diffusivity * a / (np.pi * speed)) / STEEL_HEAT.conductivity * factor
     name, source = "fast line contact of like bodies", "Blok (1937); Jaeger (1942)"
-    yield compare(name, "largest rise", source, float(hot.max_temperature_rise), expected, 5e-3, relative=True)
+    yield Reference(name, source).compare(
+        "largest rise", float(hot.max_temperature_rise), expected, 5e-3, relative=True
+    )
     distance = -float(hot.max_temperature_rise_y) / a
-    yield compare(name, "distance behind the middle / a", source, distance, behind, 0.02)
+    yield Reference(name, source).compare("distance behind the middle / a", distance, behind, 0.02)
     share = float(hot.body_heat_share)
-    yield compare(name, "part of the heat in the body", "symmetry", share, 0.5, 2e-3)
+    yield Reference(name, "symmetry").compare("part of the heat in the body", share, 0.5, 2e-3)
     apart = abs(hot.temperature_rise - hot.roller_temperature_rise).where(result.pressure > 0)
     largest = float(apart.max() / hot.max_temperature_rise)
-    yield compare(name, "surfaces' difference where they touch, over the rise", "shared heat", largest, 0.0, 1e-6)
+    yield Reference(name, "shared heat").compare(
+        "surfaces' difference where they touch, over the rise", largest, 0.0, 1e-6
+    )
     motion = Sliding(body_speed=-400.0, roller_speed=-100.0)
     unlike = flash_temperature(replace(case, motion=motion), result, body=STEEL_HEAT, roller=STEEL_HEAT)
     name = "fast line contact, the body four times as fast"
     source = "shares go with the root of the speed; Blok (1937)"
-    yield compare(name, "part of the heat in the body", source, float(unlike.body_heat_share), 2 / 3, 5e-3)
+    yield Reference(name, source).compare("part of the heat in the body", float(unlike.body_heat_share), 2 / 3, 5e-3)
 
 
 def band_checks() -> Iterator[Check]:
     """Uniform heat in a band, at all speeds."""
-    grid = Grid((0.0, 8.0), (-2, 2), 5, 64)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-2, 2), cells_x=5, cells_y=64)
     band = np.where(np.abs(grid.y) < 1, 1.0, 0.0)
     for drift in (0.01, 0.3, 5.0, 100.0):
         rises = rise(grid, band, 2 * drift, Ends(0.0, 8.0))[2]
         exact = closed_forms.moving_band(grid.y, drift)
-        curve = Curve("y / a", "T lambda / (q a)", grid.y, rises, exact)
+        curve = Curve(("y / a", "T lambda / (q a)"), grid.y, rises, exact)
         case = f"band of uniform heat between two ends, Peclet number {drift:g}"
-        yield compare_fields(
-            case, "rise over the largest", "Jaeger (1942)", rises / exact.max(), exact / exact.max(), 5e-6, curve=curve
+        yield Reference(case, "Jaeger (1942)").compare_fields(
+            "rise over the largest", rises / exact.max(), exact / exact.max(), 5e-6, curve=curve
         )
 
 
 def resting_checks() -> Iterator[Check]:
     """Rest sources on a half-space."""
-    grid = Grid((-1.2, 1.2), (-1.2, 1.2), 61, 61)
+    grid = Grid(x_range=(-1.2, 1.2), y_range=(-1.2, 1.2), cells_x=61, cells_y=61)
     source = "Carslaw and Jaeger (1959), 10.5"
-    cells = Grid((-1.5, 1.5), (-1.5, 1.5), 45, 45)
+    cells = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
     square = np.where((np.abs(cells.x)[:, None] < 1) & (np.abs(cells.y) < 1), 1.0, 0.0)
     side = 0.5 * float(square[22].sum()) * cells.dy
     middle = float(rise(cells, square, 0.0, EVERYWHERE)[22, 22]) / side
     expected = 4 * float(np.arcsinh(1.0)) / np.pi
-    yield compare("square of uniform heat at rest", "rise in the middle", source, middle, expected, 1e-5, relative=True)
+    yield Reference("square of uniform heat at rest", source).compare(
+        "rise in the middle", middle, expected, 1e-5, relative=True
+    )
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
     middle, expected = float(rise(grid, heat, 0.0, EVERYWHERE)[30, 30]), 0.25 * np.pi
     case = "circle of Hertz' pressure at rest, 61 x 61 cells"
-    yield compare(case, "rise in the middle", source, middle, expected, 2e-3, relative=True)
+    yield Reference(case, source).compare("rise in the middle", middle, expected, 2e-3, relative=True)
 
 
 def end_checks() -> Iterator[Check]:
@@ -366,19 +372,19 @@ def end_checks() -> Iterator[Check]:
     at_end = rise(half, heat, 3.0, Ends(0.0, np.inf))
     doubled = rise(full, np.concatenate([heat[::-1], heat]), 3.0, EVERYWHERE)[4:]
     scale = doubled.max()
-    yield compare_fields(
-        "heat beside an insulated end", "rise over the largest", "symmetry", at_end / scale, doubled / scale, 1e-9
+    yield Reference("heat beside an insulated end", "symmetry").compare_fields(
+        "rise over the largest", at_end / scale, doubled / scale, 1e-9
     )
     for speed in (1.0, -4.0):
         outflow, power = heat_carried_away(speed)
         case = f"heat in three cells between two ends, surface speed {speed:g}"
         quantity = "heat through planes before and behind, over all of it"
-        yield compare(case, quantity, "conservation of energy", outflow / power, 1.0, 1e-6)
+        yield Reference(case, "conservation of energy").compare(quantity, outflow / power, 1.0, 1e-6)
 
 
 def heat_carried_away(speed: float) -> tuple[float, float]:
     """Heat that flows and is carried through planes before and behind some sources, and the heat of these, W."""
-    grid = Grid((0.0, 2.0), (-3, 3), 12, 60)
+    grid = Grid(x_range=(0.0, 2.0), y_range=(-3, 3), cells_x=12, cells_y=60)
     heat = np.zeros(grid.shape)
     heat[2, 28:30], heat[7, 30] = 5.0, 1.0
     points, weights = np.polynomial.legendre.leggauss(40)
@@ -409,38 +415,27 @@ def sliding_wear_checks() -> Iterator[Check]:
     case, grid = sharp_roller()
     name = "sharp roller inside the face, full sliding"
     distances = [0.0, 3e3, 2e5]
-    worn = wear_in(case, COEFFICIENT, distances, grid=grid)
+    worn = wear_in(case, COEFFICIENT, distance=distances, grid=grid)
     ideal = COEFFICIENT * case.normal_load * distances[2]
     volume = float(worn.worn_volume[2])
-    yield compare(name, "worn volume", "Archard (1953): k W s", volume, ideal, 1e-9, relative=True)
+    yield Reference(name, "Archard (1953): k W s").compare("worn volume", volume, ideal, 1e-9, relative=True)
     load = worn.line_load.values[2]
     under = np.isfinite(case.gap(grid)).any(axis=1)
     ratio = float(load[under].max() / load[under].min())
     source = "a steady profile wears evenly"
-    yield compare(name, "largest load per length over the smallest, worn in", source, ratio, 1.0, 1e-3)
+    yield Reference(name, source).compare("largest load per length over the smallest, worn in", ratio, 1.0, 1e-3)
     explicit = stepped_explicit(case, grid, distances[1])
     depth, scale = worn.wear_depth.values[1], explicit.max()
-    curve = Curve("x / mm", "worn depth over the largest", 1e3 * grid.x, depth / scale, explicit / scale)
-    yield compare_fields(
-        name,
-        "worn depth early on, over the largest",
-        f"{EXPLICIT_STEPS} explicit steps",
-        depth / scale,
-        explicit / scale,
-        0.01,
-        curve=curve,
+    curve = Curve(("x / mm", "worn depth over the largest"), 1e3 * grid.x, depth / scale, explicit / scale)
+    yield Reference(name, f"{EXPLICIT_STEPS} explicit steps").compare_fields(
+        "worn depth early on, over the largest", depth / scale, explicit / scale, 0.01, curve=curve
     )
     profile = worn_profile(case, worn, distances[1])
     worn_case = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
     pressed = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
     load = worn.line_load.values[1]
-    yield compare_fields(
-        name,
-        "load per length of the worn profile, over the largest",
-        "the contact while it wore",
-        pressed / load.max(),
-        load / load.max(),
-        2e-3,
+    yield Reference(name, "the contact while it wore").compare_fields(
+        "load per length of the worn profile, over the largest", pressed / load.max(), load / load.max(), 2e-3
     )
 
 
@@ -462,8 +457,8 @@ def rolling_wear_checks() -> Iterator[Check]:
     case = Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.2, motion=Rolling(longitudinal_creepage=1e-3))
     grid = choose_grid(case, cells_x=3, cells_y=8, window=2.5)
     work = float(solve(case, grid, stresses=False).friction_work)
-    worn = wear_in(case, COEFFICIENT, [100.0], grid=grid, law="work")
+    worn = wear_in(case, COEFFICIENT, distance=[100.0], grid=grid, law="work")
     volume, expected = float(worn.worn_volume[-1]), COEFFICIENT * work * 100.0
     name = "crowned roller rolling at a creepage, little worn"
     source = "k times the frictional work of the unworn contact"
-    yield compare(name, "worn volume", source, volume, expected, 2e-3, relative=True)
+    yield Reference(name, source).compare("worn volume", volume, expected, 2e-3, relative=True)

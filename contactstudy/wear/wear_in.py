@@ -85,11 +85,12 @@ class WornContact:
 
             def solve(motion: RigidMotion, guess: FloatArray | None) -> ContactIterate:
                 problem = ContactProblem(
-                    grid,
-                    shape.gap.values + depth[:, None] - motion.height(grid.x),
-                    shape.prescribed.resultants(grid),
-                    shape.coupled_friction,
-                    *self.settings,
+                    grid=grid,
+                    gap=shape.gap.values + depth[:, None] - motion.height(grid.x),
+                    resultants=shape.prescribed.resultants(grid),
+                    friction=shape.coupled_friction,
+                    tolerance=self.settings.tolerance,
+                    max_iterations=self.settings.max_iterations,
                 )
                 if shape.coupled_friction:
                     return solve_coupled(operator, problem)
@@ -223,8 +224,8 @@ TOLERANCES = (1e-5, 0.1)  # Tolerances that the contact is solved well enough fo
 def wear_in(
     case: Case,
     coefficient: float,
-    distance: float | Sequence[float] | FloatArray,
     *,
+    distance: float | Sequence[float] | FloatArray,
     law: str = "slip",
     circumference: float | None = None,
     grid: Grid | None = None,
@@ -291,7 +292,7 @@ def wear_in(
     >>> body = FiniteLengthSpace(length=0.6e-3, material=Material(210e9, 0.3))
     >>> case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
     >>> cells = choose_grid(case, cells_x=3, cells_y=8)
-    >>> worn = wear_in(case, 1e-17, [0.0, 5e3, 1e5], grid=cells)
+    >>> worn = wear_in(case, 1e-17, distance=[0.0, 5e3, 1e5], grid=cells)
     >>> load = worn.line_load.where(worn.line_load > 0)
     >>> (load.max("x") / load.min("x")).values.round(2).tolist()
     [2.28, 1.37, 1.0]
@@ -319,7 +320,7 @@ def wear_in(
 
     gap = case.gap(cells)
     prescribed = Prescribed(case.normal_load, case.load_position).checked(gap, cells)
-    shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+    shape = Shape(case.body, cells, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
     # Bound on the iterations of one contact: in large steps the contact area changes often
     contact = WornContact(case, shape, Settings(max_iterations=2000))
     stepper = Stepper(contact, rate / around, law, tolerance)

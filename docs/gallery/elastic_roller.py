@@ -13,6 +13,6 @@ for name, ends in {"roller with free ends": "free", "roller as a half-space": "n
     curves[name] = cs.solve(cs.Case(body=body, roller=roller, load=3060.0), stresses=False)
 
 figure, ax = pyplot.subplots(figsize=(5.2, 3.0), layout="constrained")
-cs.plots.plot_comparison(curves, "pressure", ax, si=True)
+cs.plots.plot_comparison(curves, "pressure", ax=ax, si=True)
 ax.set(xlim=(0, 2))
 figure.savefig("elastic_roller.png", dpi=200)

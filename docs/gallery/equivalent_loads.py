@@ -7,14 +7,14 @@ import contactstudy as cs
 from contactstudy.operators import Overlapping
 
 length = 4.0
-grid = cs.Grid((0.0, length), (-2.0, 2.0), 64, 64)
+grid = cs.Grid(x_range=(0.0, length), y_range=(-2.0, 2.0), cells_x=64, cells_y=64)
 depths = np.linspace(0.02, 3.0, 60)
 body = cs.FiniteLengthSpace(length=length, material=cs.Material(young=1.0, poisson=0.3))
 hertz = (np.sqrt(np.maximum(1 - grid.y**2, 0)) * np.ones(grid.shape)).ravel()
 
 figure, axes = pyplot.subplots(2, 3, figsize=(10, 5.6), layout="constrained")
 for row, load, name in zip(axes, ("pressure", "traction_y"), ("pressure", "traction along y"), strict=True):
-    method = Overlapping(body, grid, depths, load)
+    method = Overlapping(body=body, grid=grid, z=depths, load=load)
     added = (method.P_h1 @ hertz).reshape(grid.shape) - (hertz.reshape(grid.shape) if load == "pressure" else 0.0)
     faces = [(operator @ hertz).reshape(grid.cells_y, -1) for operator in (method.P_v1, method.P_v2)]
     titles = (r"$P_{h1} - p$" if load == "pressure" else r"$P_{h1}$", r"$P_{v1}$", r"$P_{v2}$")

@@ -16,5 +16,5 @@ profiles = {
     "straight, arcs, dub-off": cs.profiles.PartialCrown(4e-3, 1.2, dub_length=0.8e-3, dub_radius=0.06),
 }
 figure, ax = pyplot.subplots(figsize=(5.2, 3.4), layout="constrained")
-cs.plots.plot_profiles(profiles, 10e-3, ax, deepest=15e-6)
+cs.plots.plot_profiles(profiles, 10e-3, ax=ax, deepest=15e-6)
 figure.savefig("profiles.png", dpi=200)

@@ -15,5 +15,5 @@ curves = {
 }
 
 figure, ax = pyplot.subplots(figsize=(5.2, 3.0), layout="constrained")
-cs.plots.plot_comparison(curves, "pressure", ax, si=True)
+cs.plots.plot_comparison(curves, "pressure", ax=ax, si=True)
 figure.savefig("tilt.png", dpi=200)

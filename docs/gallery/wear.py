@@ -11,7 +11,7 @@ case = cs.Case(
     max_pressure=1.5e9,
     friction=0.05,
 )
-worn = cs.wear.wear_in(case, 1e-17, [0.0, 500.0, 2e3, 1e4])
+worn = cs.wear.wear_in(case, 1e-17, distance=[0.0, 500.0, 2e3, 1e4])
 
 figure, axes = pyplot.subplots(2, 1, figsize=(5.2, 5.4), sharex=True, layout="constrained")
 cs.plots.plot_wear(worn, axes[0])

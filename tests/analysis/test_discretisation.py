@@ -36,7 +36,9 @@ def case_of(length: float, profile: profiles.Profile) -> Case:
 
 def solved(case: Case, cells: int):
     window = 2 * case.hertz_half_width
-    return solve(case, Grid((0.0, BODY.length), (-window, window), cells, cells), stresses=False)
+    return solve(
+        case, Grid(x_range=(0.0, BODY.length), y_range=(-window, window), cells_x=cells, cells_y=cells), stresses=False
+    )
 
 
 @pytest.mark.parametrize(

@@ -46,7 +46,7 @@ def test_dimensions_in_either_order_are_the_same() -> None:
 
 
 def test_uniform_cells_need_no_more_coordinates() -> None:
-    uniform = Grid((0.0, 1.5), (-1.0, 1.0), 6, 4)
+    uniform = Grid(x_range=(0.0, 1.5), y_range=(-1.0, 1.0), cells_x=6, cells_y=4)
     assert cell_coordinates(uniform) == {}
     data = xr.DataArray(np.ones((6, 4)), coords={"x": uniform.x, "y": uniform.y}, dims=("x", "y"))
     assert labelled_cells("p", data)[1].uniform
@@ -115,7 +115,8 @@ def test_result_on_graded_cells_survives_a_file(tmp_path: Path, engine: str) -> 
         opened.load()
     assert np.array_equal(opened.x_width, result.x_width)
     stresses = [
-        cs.stress_field(body, each.pressure, 0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5]) for each in (result, opened)
+        cs.stress_field(body, each.pressure, friction=0.1, x=[0.0, 1e-4], y=[0.0], z=[2e-5, 5e-5])
+        for each in (result, opened)
     ]
     for name in stresses[0].data_vars:
         assert np.array_equal(stresses[0][name], stresses[1][name])

@@ -58,7 +58,7 @@ def test_cells_joined_in_twos_have_every_other_edge(ratios: list[float]) -> None
 def test_equal_widths_make_a_uniform_grid() -> None:
     grid = Grid.from_edges(np.linspace(0.0, 3.0, 7), Y_RANGE, 4)
     assert grid.uniform
-    assert grid == Grid((0.0, 3.0), Y_RANGE, 6, 4)
+    assert grid == Grid(x_range=(0.0, 3.0), y_range=Y_RANGE, cells_x=6, cells_y=4)
     assert np.array_equal(grid.weights, np.ones((6, 1)))
 
 

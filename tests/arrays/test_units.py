@@ -75,7 +75,7 @@ def test_only_real_numbers_are_taken(values: np.ndarray, half_space: HalfSpace) 
 def test_friction_and_roughness_are_converted_or_refused(half_space: HalfSpace) -> None:
     friction = xr.DataArray([10.0, 20.0], {"x": ("x", [0.0, 2.0], {"units": "mm"})}, "x", attrs={"units": "%"})
     assert checked_friction(friction) == AxialFriction((0.0, 2e-3), (0.1, 0.2))
-    cells = Grid((0.0, 4e-3), (0.0, 2e-3), 4, 2)
+    cells = Grid(x_range=(0.0, 4e-3), y_range=(0.0, 2e-3), cells_x=4, cells_y=2)
     map_ = xr.DataArray(np.arange(8.0).reshape(4, 2), {"x": 1e3 * cells.x, "y": 1e3 * cells.y}, ("x", "y"))
     for axis in "xy":
         map_[axis].attrs["units"] = "mm"
@@ -141,7 +141,9 @@ def test_numbers_of_contact_laws_designs_and_measured_profiles() -> None:
     measured = Measured(x, xr.DataArray(np.full(6, 2.0), dims="x", attrs={"units": "micron"}))
     assert measured == Measured(1e-3 * x.values, np.full(6, 2.0) * 1e-6)
     loads = xr.DataArray([0.03], dims="load", attrs={"units": "kN"})
-    found = best_profile(case, FullCrown, {"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8)
+    found = best_profile(
+        case, FullCrown, bounds={"crown_radius": (0.005, 0.02)}, loads=loads, accuracy=0.1, evaluations=8
+    )
     assert found["case_load"].values.tolist() == [30.0]
 
 
@@ -205,10 +207,10 @@ def test_the_load_of_a_result_is_that_of_the_next_case() -> None:
 
 def test_a_study_takes_scalars_with_units() -> None:
     base = {"young": scalar(210, "GPa"), "poisson": 0.3, "radius": scalar(5, "mm"), "roller_length": 1e-3}
-    study = Study("a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
+    study = Study(name="a", base=base | {"e_over_a": 0}, sweep={"max_pressure": [scalar(1500, "MPa"), 1e9]})
     assert (study.base["young"], study.base["radius"], study.sweep["max_pressure"]) == (210e9, 5e-3, [1.5e9, 1e9])
     with pytest.raises(InvalidInputError, match=r"young.attrs\['units'\] = 'mm'"):
-        Study("a", base={"young": scalar(210, "mm")})
+        Study(name="a", base={"young": scalar(210, "mm")})
 
 
 @pytest.mark.parametrize(

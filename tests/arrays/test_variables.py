@@ -46,7 +46,7 @@ from contactstudy.bearing.tabulation import Presser, law_table
 from contactstudy.fields.edge_tension import edge_tension
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.verification import suite
-from contactstudy.verification.check import compare
+from contactstudy.verification.check import Reference
 from tests.bearing.test_energy_spline import NODES
 from tests.small_study import small_study
 from tests.stand_in_solver import solve_fake
@@ -117,7 +117,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     body = cs.FiniteLengthSpace(length=length, material=steel)
     roller = cs.Roller(radius=5e-3, length=length, material=steel)
     case = cs.Case(body=body, roller=roller, max_pressure=1.5e9, friction=0.1)
-    grid = cs.Grid((0.0, length), (-4 * half_width, 4 * half_width), 16, 48)
+    grid = cs.Grid(x_range=(0.0, length), y_range=(-4 * half_width, 4 * half_width), cells_x=16, cells_y=48)
     depths = half_width * np.array([0.25, 0.5, 1.0])
     solved = cs.solve(case, grid, y=grid.y[::4], x=grid.x[::4], z=depths)
     pressure = solved["pressure"]
@@ -135,7 +135,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
     rough = cs.roughness.self_affine(grid, rms_height=1e-7, hurst=0.8, longest=2e-4, shortest=60e-6, seed=1)
     file = tmp_path_factory.mktemp("rough") / "map.nc"
     rough.to_netcdf(file)
-    check = compare("case", "peak pressure", "closed form", 1.0, 1.0, 0.1)
+    check = Reference("case", "closed form").compare("peak pressure", 1.0, 1.0, 0.1)
     checked = suite.Verification("full", {"one": [check]})
     law = bearing.ContactLaw(law_table(Presser(case, 0.1, 1e-4), NODES, np.full((2, *NODES.load.shape), 0.01)))
     smooth = cs.Roller(radius=5e-3, length=length, profile=cs.profiles.Lundberg(1e-7), material=steel)
@@ -161,7 +161,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "surface_displacement, all": cs.surface_displacement(body, pressure, components="xyz"),
         "equivalent_loads": cs.equivalent_loads(body, pressure, z=depths),
         "roller_stress": cs.roller_stress(case, pressure, z=depths),
-        "wear_in": wear.wear_in(case, 1e-17, [0.0, 10.0], grid=grid.coarsened()),
+        "wear_in": wear.wear_in(case, 1e-17, distance=[0.0, 10.0], grid=grid.coarsened()),
         "contact_law": law.table,
         "at": law.at([2e-6, 3e-6], [0.0, 1e-4]),
         "under": bearing.Raceways(law, law).under([1e4, 2e4], [0.0, 1.0]),
@@ -170,8 +170,8 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         "best_profile": design.best_profile(
             crowned,
             cs.profiles.Lundberg,
-            {"amplitude": (1e-7, 4e-7)},
-            lambda result: (1.0, 1.0),
+            bounds={"amplitude": (1e-7, 4e-7)},
+            measure=lambda result: (1.0, 1.0),
             accuracy=0.1,
             evaluations=8,
         ),

@@ -27,7 +27,7 @@ def test_order_of_the_end_pressures_under_a_cylinder(cylinder_gap, unit_material
     end = {}
     for model in ("exact", "mirror", "mirror-factor"):
         body = FiniteLengthSpace(length=8.0, material=unit_material, model=model)
-        along = solve_contact(body, cylinder_gap(8.0, (64, 48)), 8 * LINE_LOAD)["pressure"].max("y")
+        along = solve_contact(body, cylinder_gap(8.0, (64, 48)), load=8 * LINE_LOAD)["pressure"].max("y")
         end[model] = float(along[0] / along[32])
     assert end["mirror"] == pytest.approx(1.0, abs=1e-3)
     # The free end lies between the mirror, which holds the end up, and the factor, which lets it sink too far.

@@ -49,7 +49,7 @@ def test_roller_is_centred_unless_told() -> None:
 
 def test_gap_is_zero_at_first_touch_and_infinite_beside_the_roller() -> None:
     case = Case(body=BODY, roller=ROLLER, max_pressure=1e9)
-    gap = case.gap(Grid((0.0, 10.2e-3), (-1e-4, 1e-4), 102, 11))
+    gap = case.gap(Grid(x_range=(0.0, 10.2e-3), y_range=(-1e-4, 1e-4), cells_x=102, cells_y=11))
     assert gap.min() == 0.0
     assert np.isinf(gap[0]).all()
     assert gap[50, 0] == pytest.approx((1e-4 * 10 / 11) ** 2 / 2 / 5e-3)
@@ -68,7 +68,7 @@ def test_grid_follows_the_case() -> None:
 
 @given(st.floats(-1e3, 1e3), st.floats(1e-6, 1e3), st.integers(2, 200))
 def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: int) -> None:
-    grid = Grid((start, start + span), (-span, span), cells, cells + 1)
+    grid = Grid(x_range=(start, start + span), y_range=(-span, span), cells_x=cells, cells_y=cells + 1)
     assume(grid.dx > 1e-9 * abs(start))  # or the centres' differences are rounding
     again = Grid.from_centres(grid.x, grid.y)
     assert again.shape == grid.shape
@@ -112,9 +112,12 @@ def test_grid_is_found_again_from_its_centres(start: float, span: float, cells: 
             "end_distance = 1.0.*over the body",
         ),
         (lambda: Case(body=BODY, roller=ROLLER, max_pressure=1e9, friction="none"), "friction = 'none'"),
-        (lambda: Grid((0.0, 0.0), (0.0, 1.0), 1, 1), r"x_range = \(0.0, 0.0\)"),
-        (lambda: Grid((0.0, 1.0), (0.0, 1.0), 0, 1), "cells_x = 0: must be a whole number"),
-        (lambda: Grid((0.0, 1.0), (0.0, 1.0), 1, 1.5), "cells_y = 1.5"),
+        (lambda: Grid(x_range=(0.0, 0.0), y_range=(0.0, 1.0), cells_x=1, cells_y=1), r"x_range = \(0.0, 0.0\)"),
+        (
+            lambda: Grid(x_range=(0.0, 1.0), y_range=(0.0, 1.0), cells_x=0, cells_y=1),
+            "cells_x = 0: must be a whole number",
+        ),
+        (lambda: Grid(x_range=(0.0, 1.0), y_range=(0.0, 1.0), cells_x=1, cells_y=1.5), "cells_y = 1.5"),
         (lambda: choose_grid(Case(body=BODY, roller=ROLLER, max_pressure=1e9), window=0.0), "window = 0.0"),
     ],
 )
@@ -208,7 +211,7 @@ def test_radii_that_leave_no_gap_are_refused(first, second, message: str) -> Non
 
 def test_both_ends_of_a_roller_are_under_it_whatever_rounding_says() -> None:
     """75 cells on 0.6 mm have middles at 0.1 and 0.5 mm, where this roller begins and ends."""
-    grid = Grid((0.0, 0.6e-3), (-1e-4, 1e-4), 75, 4)
+    grid = Grid(x_range=(0.0, 0.6e-3), y_range=(-1e-4, 1e-4), cells_x=75, cells_y=4)
     for profile, ends in ((profiles.Cylinder(), [12, 62]), (profiles.Lundberg(2e-7), [13, 61])):
         roller = Roller(radius=5e-3, length=0.4e-3, profile=profile)
         case = Case(body=FiniteLengthSpace(length=0.6e-3, material=STEEL), roller=roller, max_pressure=1.5e9)

@@ -89,7 +89,7 @@ def test_any_shape_may_have_it() -> None:
     grid = choose_grid(case(0.1), cells_x=3, cells_y=8, window=1.5)
     gap = xr.DataArray(case(0.1).gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     body = FiniteLengthSpace(length=LENGTH, material=STEEL)
-    found = solve_contact(body, gap, 100.0, BOTH_WAYS)
+    found = solve_contact(body, gap, load=100.0, friction=BOTH_WAYS)
     assert float(found.traction_y[0].max()) <= 0 <= float(found.traction_y[-1].min())
     dragged = surface_displacement(body, 0 * found.pressure, traction_y=found.traction_y, components="y")
     assert np.abs(dragged.displacement_y.values + dragged.displacement_y.values[::-1]).max() < 1e-6 * float(

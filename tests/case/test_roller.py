@@ -11,6 +11,6 @@ def test_cell_centre_within_rounding_of_the_end_lies_under_the_roller():
 
 
 def test_gap_at_centres_of_uniform_cells():
-    grid = Grid((0.0, 4.0), (-1.0, 1.0), 4, 1)
+    grid = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=1)
     gap = gap_on_cells(lambda x, y: x[:, None] ** 2 + 0 * y, grid, 2.0, 2.0)
     assert gap[:, 0].tolist() == [2.25, 0.25, 0.25, 2.25]

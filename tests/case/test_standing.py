@@ -45,7 +45,7 @@ def test_a_load_needs_an_arm_of_a_quarter_of_the_half_width(from_end: float) -> 
 @pytest.mark.parametrize("columns", [slice(0, 3), slice(-3, None)])
 def test_a_contact_shorter_than_a_half_width_is_refused_at_an_end_of_a_tilted_roller(columns: slice) -> None:
     tilted, level = case_with(tilt=1e-3), case_with()
-    grid = Grid((0.0, LENGTH), (-4e-4, 4e-4), 100, 8)
+    grid = Grid(x_range=(0.0, LENGTH), y_range=(-4e-4, 4e-4), cells_x=100, cells_y=8)
     gap, pressure = np.full(grid.shape, np.inf), np.zeros(grid.shape)
     gap[10:90] = 0.0
     pressure[10:90][columns] = 1.0

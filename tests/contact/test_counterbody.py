@@ -38,7 +38,7 @@ FILLET = profiles.Cylinder(fillet_radius=2 * HALF_WIDTH)
 
 def contact_shape(body, counter: Counterbody, cells: int, length: float, radius_x: float = 40e-3) -> xr.DataArray:
     """Gap of an ellipsoid over the first `length` of a body, where the counterbody faces it."""
-    grid = Grid((0.0, length), (-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells, 48)
+    grid = Grid(x_range=(0.0, length), y_range=(-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells_x=cells, cells_y=48)
     x = grid.x[:, None]
     middle = counter.start + 0.5 * counter.body.length
     gap = (x - middle) ** 2 / (2 * radius_x) + grid.y**2 / 10e-3
@@ -94,7 +94,7 @@ def test_friction_moves_the_contact_of_unlike_materials(first: Material, second:
 
     counter = None if second is None else Counterbody(bar(second))
     found = solve_contact(
-        bar(first), gap, load, friction, counterbody=counter, settings=ContactSettings(coupled=True)
+        bar(first), gap, load=load, friction=friction, counterbody=counter, settings=ContactSettings(coupled=True)
     ).pressure.isel(x=1)
     assert abs(exact.centre) > 0.03 * exact.half_width
     expected = exact.pressure(found.y.values)
@@ -120,7 +120,10 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     per_unit, across, load = 3, (-1.5, 1.5), 1.5
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
-    grid, own = (Grid((0.0, each.length), across, round(per_unit * each.length), 9) for each in (body, counter))
+    grid, own = (
+        Grid(x_range=(0.0, each.length), y_range=across, cells_x=round(per_unit * each.length), cells_y=9)
+        for each in (body, counter)
+    )
     both = flexibility(body, grid)
     shift = per_unit * start
     first, last = max(0, shift), min(grid.cells_x, shift + own.cells_x)
@@ -129,7 +132,7 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     gap = on_cells(lambda x, y: (x - start - 3) ** 2 / 40 + y**2 / 2, (0.0, 8.0), across, grid.shape)
     gap = gap.where((gap.x > start) & (gap.x < start + 6), np.inf)
     found = solve_contact(
-        body, gap, load, counterbody=Counterbody(counter, start), settings=ContactSettings(tolerance=1e-8)
+        body, gap, load=load, counterbody=Counterbody(counter, start), settings=ContactSettings(tolerance=1e-8)
     )
 
     # The lines to which the prescribed tilt refers turn under the load.
@@ -162,8 +165,8 @@ def test_exchanged_bodies_press_alike(friction: float):
     gap = contact_shape(first, below, 64, first.length)
     exchanged = gap.isel(x=slice(8, 56)).assign_coords(x=gap.x[8:56] - HALF_WIDTH)
     settings = ContactSettings(coupled=friction != 0, tolerance=1e-8)
-    one = solve_contact(first, gap, 100.0, friction, counterbody=below, settings=settings)
-    other = solve_contact(second, exchanged, 100.0, -friction, counterbody=above, settings=settings)
+    one = solve_contact(first, gap, load=100.0, friction=friction, counterbody=below, settings=settings)
+    other = solve_contact(second, exchanged, load=100.0, friction=-friction, counterbody=above, settings=settings)
     pressure = one.pressure.values[8:56]
     assert np.abs(pressure - other.pressure.values).max() < 2e-6 * pressure.max()
 
@@ -192,7 +195,7 @@ def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
                 load=2e2,
                 end_distance=distance * HALF_WIDTH,
             ),
-            Grid((0.0, body.length), (-3 * HALF_WIDTH, 3 * HALF_WIDTH), 72, 64),
+            Grid(x_range=(0.0, body.length), y_range=(-3 * HALF_WIDTH, 3 * HALF_WIDTH), cells_x=72, cells_y=64),
             stresses=False,
         ).pressure.values
         for material in (None, Material(1e7 * STEEL.young, 0.3))
@@ -221,7 +224,7 @@ def test_ends_between_the_borders_of_cells_cost_little():
     case = Case(body=body, roller=roller, max_pressure=1.5e9)
 
     def middle(cells: int) -> float:
-        grid = Grid((0.0, body.length), choose_grid(case).y_range, cells, 32)
+        grid = Grid(x_range=(0.0, body.length), y_range=choose_grid(case).y_range, cells_x=cells, cells_y=32)
         return float(solve(case, grid, stresses=False).pressure.sel(x=0.5 * body.length, method="nearest").max())
 
     aligned = middle(112)  # 16 cells from the body's end to the roller's
@@ -266,7 +269,7 @@ def test_a_rigid_roller_has_no_stresses(short_body):
 @given(st.floats(-0.5, 1.0), st.floats(0.6, 2.0), st.integers(4, 40))
 def test_loads_are_carried_over_without_loss(start: float, length: float, cells: int):
     counter = Counterbody(FiniteLengthSpace(length=length, material=STEEL), start)
-    grid = Grid((0.0, 1.7), (-1.0, 1.0), cells, 2)
+    grid = Grid(x_range=(0.0, 1.7), y_range=(-1.0, 1.0), cells_x=cells, cells_y=2)
     facing = (grid.x > start) & (grid.x < start + length)
     load = np.random.default_rng(cells).random(grid.shape) * facing[:, None]
     carried = counter.load_on(grid, load)
@@ -275,7 +278,7 @@ def test_loads_are_carried_over_without_loss(start: float, length: float, cells:
 
 def test_aligned_cells_are_carried_over_as_they_are():
     counter = Counterbody(FiniteLengthSpace(length=1.0, material=STEEL), 0.5)
-    overlap = counter.overlap(Grid((0.0, 2.0), (-1.0, 1.0), 16, 2))
+    overlap = counter.overlap(Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=16, cells_y=2))
     np.testing.assert_allclose(overlap, np.eye(16)[4:12] / 8, atol=1e-12)
 
 
@@ -295,4 +298,4 @@ def test_a_counterbody_needs_a_place():
 def test_the_counterbody_argument_is_checked(short_body):
     gap = contact_shape(short_body, Counterbody(short_body), 16, 8.0)
     with pytest.raises(InvalidInputError, match="counterbody"):
-        solve_contact(short_body, gap, 1.0, counterbody=STEEL)
+        solve_contact(short_body, gap, load=1.0, counterbody=STEEL)

@@ -15,7 +15,7 @@ def test_gap_on_cells_of_any_width_has_the_contact_of_uniform_ones(body: HalfSpa
     """The verb for labelled gaps: the load is exact, the pressure that of uniform cells."""
     finite_body = isinstance(body, FiniteLengthSpace)
     kept = np.concatenate([np.arange(16), np.arange(16, 48, 2), np.arange(48, 65)])
-    uniform = Grid((0.0, SHORT), (-2 * A, 2 * A), 64, 32)
+    uniform = Grid(x_range=(0.0, SHORT), y_range=(-2 * A, 2 * A), cells_x=64, cells_y=32)
     graded = Grid.from_edges(uniform.x_edges[kept], uniform.y_range, 32)
     contacts = []
     for grid in (graded, uniform):

@@ -61,7 +61,7 @@ def test_pressure_falls_towards_a_free_end_where_a_half_space_makes_it_rise(
         gap = cylinder_gap(8.0, (cells, 64))
         free = solve_contact(short_body, gap, load=8 * LINE_LOAD)["pressure"].max("y")
         peaks[cells] = float(
-            solve_contact(HalfSpace(material=half_space.material), _island(gap), 8 * LINE_LOAD)["pressure"].max()
+            solve_contact(HalfSpace(material=half_space.material), _island(gap), load=8 * LINE_LOAD)["pressure"].max()
         )
         assert np.all(np.diff(free.values[: cells // 2]) > 0)
         assert 0.55 < float(free[0]) < 0.72
@@ -95,7 +95,7 @@ def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
 def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     middles = [
         float(
-            solve_contact(short_body, cylinder_gap(8.0, cells), 8 * LINE_LOAD)["pressure"].sel(
+            solve_contact(short_body, cylinder_gap(8.0, cells), load=8 * LINE_LOAD)["pressure"].sel(
                 x=4, y=0, method="nearest"
             )
         )
@@ -107,8 +107,8 @@ def test_mesh_is_no_part_of_the_answer(short_body: FiniteLengthSpace, cylinder_g
 
 def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSpace, cylinder_gap) -> None:
     gap = cylinder_gap(8.0, (48, 64))
-    plain = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4)
-    coupled = solve_contact(short_body, gap, 8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
+    plain = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4)
+    coupled = solve_contact(short_body, gap, load=8 * LINE_LOAD, friction=0.4, settings=ContactSettings(coupled=True))
     assert np.allclose(plain["traction_y"], 0.4 * plain["pressure"])
 
     def centre(contact: xr.Dataset) -> float:
@@ -124,8 +124,8 @@ def test_friction_moves_the_contact_only_when_coupled(short_body: FiniteLengthSp
 def test_coupling_vanishes_for_an_incompressible_half_space(cylinder_gap) -> None:
     body = HalfSpace(material=Material(0.75, 0.5))
     gap = sphere_gap(48)
-    plain = solve_contact(body, gap, 4 / 3, friction=0.3)
-    coupled = solve_contact(body, gap, 4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
+    plain = solve_contact(body, gap, load=4 / 3, friction=0.3)
+    coupled = solve_contact(body, gap, load=4 / 3, friction=0.3, settings=ContactSettings(coupled=True))
     assert np.abs(plain["pressure"] - coupled["pressure"]).max() < 1e-5
 
 
@@ -170,32 +170,32 @@ def test_bad_arguments_are_named(half_space: HalfSpace, change: dict[str, object
 def test_bad_gaps_are_named(half_space: HalfSpace, short_body: FiniteLengthSpace) -> None:
     good = sphere_gap(16)
     with pytest.raises(InvalidInputError, match=r"nan at x = .*finite everywhere"):
-        solve_contact(half_space, good.where(good > 0.1), 1.0)
+        solve_contact(half_space, good.where(good > 0.1), load=1.0)
     with pytest.raises(InvalidInputError, match=r"xarray\.DataArray"):
-        solve_contact(half_space, good.values, 1.0)  # type: ignore[arg-type]
+        solve_contact(half_space, good.values, load=1.0)  # type: ignore[arg-type]
     with pytest.raises(InvalidInputError, match=r"gap.dims"):
-        solve_contact(half_space, good.rename(x="u"), 1.0)
+        solve_contact(half_space, good.rename(x="u"), load=1.0)
     with pytest.raises(InvalidInputError, match="uniformly spaced"):
-        solve_contact(half_space, good.assign_coords(x=good.x**3), 1.0)
+        solve_contact(half_space, good.assign_coords(x=good.x**3), load=1.0)
     with pytest.raises(InvalidInputError, match="increasing"):
-        solve_contact(half_space, good.assign_coords(x=-good.x), 1.0)
+        solve_contact(half_space, good.assign_coords(x=-good.x), load=1.0)
     with pytest.raises(InvalidInputError, match="at least two"):
-        solve_contact(half_space, good[:1], 1.0)
+        solve_contact(half_space, good[:1], load=1.0)
     with pytest.raises(InvalidInputError, match="non-empty"):
-        solve_contact(half_space, good[:0], 1.0)
+        solve_contact(half_space, good[:0], load=1.0)
     with pytest.raises(InvalidInputError, match="infinite everywhere"):
-        solve_contact(half_space, good * np.inf, 1.0)
+        solve_contact(half_space, good * np.inf, load=1.0)
     with pytest.raises(InvalidInputError, match="begin at the free end"):
-        solve_contact(short_body, good, 1.0)
+        solve_contact(short_body, good, load=1.0)
     with pytest.raises(InvalidInputError, match="end at the free end"):
-        solve_contact(short_body, good.assign_coords(x=good.x + 1.5), 1.0)
+        solve_contact(short_body, good.assign_coords(x=good.x + 1.5), load=1.0)
 
 
 @pytest.mark.parametrize("load", [1.0, 1e45])
 def test_a_window_full_of_contact_is_a_named_error_and_no_warning(short_body, cylinder_gap, load: float) -> None:
     """All cells of the coarse first guess touch and sink alike."""
     with pytest.raises(WindowError, match="y_min"):
-        solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load)
+        solve_contact(short_body, cylinder_gap(8.0, (16, 16)) * (0.0 if load == 1 else 1.0), load=load)
 
 
 @pytest.mark.parametrize(
@@ -207,23 +207,23 @@ def test_cells_and_windows_out_of_proportion_are_refused(short_body, window, cel
     x = 8.0 * (np.arange(cells[0]) + 0.5) / cells[0]
     gap = xr.DataArray(np.broadcast_to(y**2, cells), coords={"x": x, "y": y}, dims=("x", "y"))
     with pytest.raises(InvalidInputError, match=named):
-        solve_contact(short_body, gap, 1.0)
+        solve_contact(short_body, gap, load=1.0)
 
 
 def test_too_many_cells_are_refused_before_any_memory_is_asked_for() -> None:
     with pytest.raises(InvalidInputError, match=r"at most 1e\+08 cells"):
-        Grid((0.0, 1.0), (-1.0, 1.0), 10**6, 10**6)
+        Grid(x_range=(0.0, 1.0), y_range=(-1.0, 1.0), cells_x=10**6, cells_y=10**6)
     with pytest.raises(InvalidInputError, match="not closer than rounding"):
-        Grid((1.0, 1.0 + 1e-15), (-1.0, 1.0), 4, 4)
+        Grid(x_range=(1.0, 1.0 + 1e-15), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     with pytest.raises(InvalidInputError, match="not closer than rounding"):
-        Grid((0.0, 1.0), (-5e-324, 5e-324), 4, 4)
+        Grid(x_range=(0.0, 1.0), y_range=(-5e-324, 5e-324), cells_x=4, cells_y=4)
 
 
 @pytest.mark.parametrize("poisson", [0.0, 0.49])
 def test_strongly_coupled_contacts_keep_their_tolerance(poisson: float, cylinder_gap) -> None:
     body = FiniteLengthSpace(material=Material(1.0, poisson), length=8.0)
     coupled = solve_contact(
-        body, cylinder_gap(8.0, (32, 48)), 8 * LINE_LOAD, friction=1.0, settings=ContactSettings(coupled=True)
+        body, cylinder_gap(8.0, (32, 48)), load=8 * LINE_LOAD, friction=1.0, settings=ContactSettings(coupled=True)
     )
     assert bool(coupled["converged"])
     assert float(coupled["penetration_error"]) <= 1e-6

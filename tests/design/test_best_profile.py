@@ -14,7 +14,7 @@ def test_the_best_crown_against_a_scan() -> None:
     case = Case(
         body=HalfSpace(material=Material(210e9, 0.3)), roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9
     )
-    found = best_profile(case, profiles.Lundberg, {"amplitude": (0.05e-6, 1e-6)}, accuracy=0.02, evaluations=20)
+    found = best_profile(case, profiles.Lundberg, bounds={"amplitude": (0.05e-6, 1e-6)}, accuracy=0.02, evaluations=20)
     assert found.measure.attrs["units"] == "Pa"
     assert found.parameter_units.item() == "m"
 

@@ -41,7 +41,7 @@ BOTH = {"edge_drop": (1e-6, 1e-4), "k1": (0.5, 4.0)}
 def test_smooth_optimum(solves) -> None:
     """Measure 1 + 4 s**2 in decades s: worse by two errors of 0.01 at s = 0.0707."""
     solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    found = best_profile(CASE, made, ONE)
+    found = best_profile(CASE, made, bounds=ONE)
     assert float(np.log10(found.optimum[0] / 2e-5)) == pytest.approx(0.0, abs=0.03)
     ends = np.log10(np.array([found.flat_from[0], found.flat_to[0]]) / 2e-5)
     np.testing.assert_allclose(ends, [-0.0707, 0.0707], atol=0.045)
@@ -55,9 +55,9 @@ def test_smooth_optimum(solves) -> None:
 @pytest.mark.parametrize("most", [8, 9, 12, 16, 60])
 def test_the_number_of_designs_is_bounded(solves, most: int) -> None:
     solves(lambda drop, k1, case: 1 + 4 * np.log10(drop / 2e-5) ** 2)
-    assert best_profile(CASE, made, ONE, evaluations=most).sizes["evaluation"] <= most
+    assert best_profile(CASE, made, bounds=ONE, evaluations=most).sizes["evaluation"] <= most
     solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0) ** 2)
-    result = best_profile(CASE, made, BOTH, evaluations=most + 1)
+    result = best_profile(CASE, made, bounds=BOTH, evaluations=most + 1)
     assert result.sizes["evaluation"] <= most + 1
     assert (result.flat_from <= result.optimum).all()
 
@@ -66,7 +66,7 @@ def test_a_kink_between_two_cases(solves) -> None:
     """One load wants less, the other more: the optimum is where both are equal."""
     slopes = {50.0: 1.0, 100.0: -2.0}
     solves(lambda drop, k1, case: 3 + slopes[case.normal_load] * np.log10(drop / 1e-5))
-    found = best_profile(CASE, made, ONE, loads=list(slopes))
+    found = best_profile(CASE, made, bounds=ONE, loads=list(slopes))
     assert float(np.log10(found.optimum[0] / 1e-5)) == pytest.approx(0.0, abs=0.02)
     assert found.case_load.values.tolist() == [50.0, 100.0]
     np.testing.assert_allclose(found.case_measure.max("case"), found.design_measure)
@@ -77,7 +77,7 @@ def test_a_kink_between_two_cases(solves) -> None:
 
 def test_two_parameters(solves) -> None:
     solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-5) ** 2 + 2 * (k1 - 2.0 + 0.5 * np.log10(drop / 1e-5)) ** 2)
-    found = best_profile(CASE, made, BOTH, evaluations=80)
+    found = best_profile(CASE, made, bounds=BOTH, evaluations=80)
     values = found.optimum.to_series()
     assert np.log10(values["edge_drop"] / 1e-5) == pytest.approx(0.0, abs=0.1)
     assert values["k1"] == pytest.approx(2.0, abs=0.15)
@@ -91,7 +91,7 @@ def test_brute_force_finds_nothing_better(solves) -> None:
         return float(2 + np.cos(5 * s) + 1.5 * s)
 
     solves(bumpy)
-    found = best_profile(CASE, made, ONE)
+    found = best_profile(CASE, made, bounds=ONE)
     scan = min(bumpy(drop, 1.0, CASE) for drop in np.geomspace(1e-6, 1e-4, 2001))
     assert float(found.measure) == pytest.approx(scan, abs=ERROR)
 
@@ -103,7 +103,7 @@ def test_infinite_measures_and_impossible_profiles(solves) -> None:
         return np.inf if drop < 1e-5 else 1 + np.log10(drop / 1.5e-5) ** 2
 
     solves(singular)
-    found = best_profile(CASE, made, ONE)
+    found = best_profile(CASE, made, bounds=ONE)
     assert float(found.optimum[0]) == pytest.approx(1.5e-5, rel=0.15)
     assert 0.9e-5 < float(found.flat_from[0]) <= float(found.flat_to[0]) < 5e-5
     assert np.isinf(found.design_measure).any()
@@ -112,7 +112,7 @@ def test_infinite_measures_and_impossible_profiles(solves) -> None:
 def test_optimum_on_a_bound(solves) -> None:
     solves(lambda drop, k1, case: 1 + np.log10(drop / 1e-6))
     with pytest.warns(BoundWarning, match=r"the best edge_drop = 1e-06 lies at a bound \(1e-06 to 0.0001\)"):
-        found = best_profile(CASE, made, ONE)
+        found = best_profile(CASE, made, bounds=ONE)
     assert float(found.flat_from[0]) == pytest.approx(float(found.lower_bound[0]))
     assert found.at_bound.values.tolist() == [True]
 
@@ -122,8 +122,8 @@ def test_tilts_and_errors_of_functions(solves) -> None:
     found = best_profile(
         CASE,
         made,
-        ONE,
-        lambda result: (2 * result.peak_pressure, 0.5),
+        bounds=ONE,
+        measure=lambda result: (2 * result.peak_pressure, 0.5),
         max_pressures=[1e9, 2e9],
         tilts=[0.0, 1e-3],
         evaluations=8,
@@ -135,7 +135,9 @@ def test_tilts_and_errors_of_functions(solves) -> None:
     assert not found.at_bound.any()
     assert float(found.flat_from[0]) == pytest.approx(1e-6)
     assert float(found.flat_to[0]) == pytest.approx(1e-4)
-    plain = best_profile(CASE, made, ONE, lambda result: result.peak_pressure, accuracy=0.02, evaluations=8)
+    plain = best_profile(
+        CASE, made, bounds=ONE, measure=lambda result: result.peak_pressure, accuracy=0.02, evaluations=8
+    )
     assert float(plain.measure_error) == pytest.approx(0.02)
 
 
@@ -170,4 +172,4 @@ def test_bad_arguments_are_named(solves, arguments, message: str) -> None:
 def test_no_possible_profile(solves) -> None:
     solves(lambda drop, k1, case: 1.0)
     with pytest.raises(InvalidInputError, match="edge_drop"):
-        best_profile(CASE, made, {"edge_drop": (-2.0, -1.0)})
+        best_profile(CASE, made, bounds={"edge_drop": (-2.0, -1.0)})

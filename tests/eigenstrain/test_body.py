@@ -36,7 +36,7 @@ def in_rectangle() -> Callable[..., tuple[EigenstrainBody, np.ndarray]]:
             for own, (low, high) in zip(edges, (x_range, z_range), strict=True)
         ]
         strain[:, here[0][:, None] & here[1]] = EVERY[:, None]
-        return EigenstrainBody(ROUGH, extent, *edges, **settings), strain
+        return EigenstrainBody(material=ROUGH, extent=extent, x_edges=edges[0], z_edges=edges[1], **settings), strain
 
     return build
 
@@ -100,7 +100,12 @@ def test_equilibrium_and_free_faces(in_rectangle) -> None:
 
 def test_strain_that_is_free_leaves_no_stress() -> None:
     """Heat all over a body between ends; where the heat ends, deep below, is too far to be felt."""
-    body = EigenstrainBody(ROUGH, (0.0, 1.0), np.linspace(0, 1, 5), np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]))
+    body = EigenstrainBody(
+        material=ROUGH,
+        extent=(0.0, 1.0),
+        x_edges=np.linspace(0, 1, 5),
+        z_edges=np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]),
+    )
     strain = np.zeros((6, 4, 5))
     strain[[0, 2]] = 1.0
     found = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
@@ -108,7 +113,12 @@ def test_strain_that_is_free_leaves_no_stress() -> None:
 
 
 def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
-    body = EigenstrainBody(ROUGH, (0.0, 1.0), np.linspace(0, 1, 5), np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]))
+    body = EigenstrainBody(
+        material=ROUGH,
+        extent=(0.0, 1.0),
+        x_edges=np.linspace(0, 1, 5),
+        z_edges=np.array([0.0, 0.5, 1.0, 2.0, 4.0, 6.0]),
+    )
     strain = np.zeros((6, 4, 5))
     strain[1] = 1.0
     found = body.solve(strain).stresses(np.linspace(0, 1, 9), np.array([0.0, 0.3, 1.0]))
@@ -118,7 +128,12 @@ def test_strain_along_y_is_held_by_stress_along_y_alone() -> None:
 
 def test_layer_on_the_top_of_a_half_space() -> None:
     """Forty times as long as deep; in the middle it is nearly as if it had no end."""
-    body = EigenstrainBody(ROUGH, WHOLE, np.concatenate([[-11], np.linspace(-10, 10, 41), [11]]), np.array([0, 0.5, 1]))
+    body = EigenstrainBody(
+        material=ROUGH,
+        extent=WHOLE,
+        x_edges=np.concatenate([[-11], np.linspace(-10, 10, 41), [11]]),
+        z_edges=np.array([0, 0.5, 1]),
+    )
     strain = np.zeros((6, 42, 2))
     strain[:, 1:-1, 0] = EVERY[:, None]
     x, z = np.array([-3.1, 0.0]), np.array([0.2, 0.7])
@@ -144,7 +159,9 @@ def test_layer_across_the_whole_length_bends_no_end(in_rectangle) -> None:
 
 def test_displacement_of_the_top_does_the_work_of_the_eigenstrain() -> None:
     """Reciprocity: a small eigenstrain sinks the top by its work on the stress of a line force there (Flamant)."""
-    body = EigenstrainBody(ROUGH, WHOLE, np.linspace(-0.1, 0.1, 3), np.linspace(0.9, 1.1, 3), degree=5)
+    body = EigenstrainBody(
+        material=ROUGH, extent=WHOLE, x_edges=np.linspace(-0.1, 0.1, 3), z_edges=np.linspace(0.9, 1.1, 3), degree=5
+    )
     strain = np.zeros((6, 2, 2))
     strain[:] = EVERY[:, None, None]
     x = np.array([-1.0, 0.0, 0.6])
@@ -189,7 +206,9 @@ def test_work_is_symmetric_and_positive(in_rectangle) -> None:
 
 
 def test_elements_reach_the_ends_and_deep_enough() -> None:
-    body = EigenstrainBody(ROUGH, (0.0, 3.0), np.array([1.0, 1.5, 2.0]), np.array([0.2, 0.4]))
+    body = EigenstrainBody(
+        material=ROUGH, extent=(0.0, 3.0), x_edges=np.array([1.0, 1.5, 2.0]), z_edges=np.array([0.2, 0.4])
+    )
     x, z = body.elements
     assert x[0] == 0.0
     assert x[-1] == 3.0

@@ -12,7 +12,9 @@ ROUGH = Material(2.0, 0.3)
 
 
 def test_some_cells_of_a_body() -> None:
-    body = EigenstrainBody(ROUGH, (0.0, 2.0), np.linspace(0, 2, 6), np.linspace(0, 1, 5))
+    body = EigenstrainBody(
+        material=ROUGH, extent=(0.0, 2.0), x_edges=np.linspace(0, 2, 6), z_edges=np.linspace(0, 1, 5)
+    )
     along_x, along_z = np.array([0, 1, 4, 4]), np.array([0, 2, 1, 3])
     few = np.random.default_rng(5).normal(size=(6, 4))
     whole = np.zeros((6, 5, 4))
@@ -23,7 +25,9 @@ def test_some_cells_of_a_body() -> None:
 
 
 def test_a_layer_is_a_long_row_of_cells() -> None:
-    body = EigenstrainBody(ROUGH, (-np.inf, np.inf), np.linspace(-60, 60, 25), np.array([0.0, 0.25, 0.5]))
+    body = EigenstrainBody(
+        material=ROUGH, extent=(-np.inf, np.inf), x_edges=np.linspace(-60, 60, 25), z_edges=np.array([0.0, 0.25, 0.5])
+    )
     strain = np.zeros((6, 24, 2))
     strain[:, :, 1] = np.array([1.0, 0.5, -0.3, 0.2, 0.4, -0.6])[:, None]
     row = body.solve(strain).cell_averages()[:, 12, 1]

@@ -91,7 +91,7 @@ def test_error_of_shallow_depths(line_contact) -> None:
 def test_loaded_corner_is_bound_by_its_pressure(short_body, strip_pressure, friction: float) -> None:
     """Only rho_yy exists there: p / k is at most 2 / sqrt(1 + 4 f^2), and about that."""
     pressure = strip_pressure(8.0, (64, 64))
-    stress = stress_field(short_body, pressure, friction, x=[0.0], z=[0.0], inside_cells=pressure)
+    stress = stress_field(short_body, pressure, friction=friction, x=[0.0], z=[0.0], inside_cells=pressure)
     found = fatigue.shakedown(stress)
     limit = float(pressure.max() / found["shakedown_stress"].squeeze())
     bound = 2 / np.sqrt(1 + 4 * friction**2)

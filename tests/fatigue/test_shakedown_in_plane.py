@@ -118,7 +118,7 @@ def test_flush_roller(short_body, strip_pressure) -> None:
     pressure, friction = strip_pressure(8.0, (32, 32)), 0.1
     pressure = pressure * (0.4 + 0.6 * np.minimum(1, np.minimum(pressure.x, 8 - pressure.x) / 2))
     x, y, z = np.linspace(0, 8, 13), np.linspace(-3, 3, 49), np.linspace(0, 1.8, 13)
-    stress = stress_field(short_body, pressure, friction, x=x, y=y, z=z, inside_cells=pressure)
+    stress = stress_field(short_body, pressure, friction=friction, x=x, y=y, z=z, inside_cells=pressure)
     found = fatigue.shakedown_in_plane(stress, short_body)
     largest = float(found["peak_shakedown_stress"])
     assert largest < 0.97 * float(fatigue.shakedown(stress)["shakedown_stress"].max())

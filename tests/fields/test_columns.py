@@ -29,7 +29,7 @@ LENGTH, FRICTION = 1e-3, 0.3
 Y_RANGE = (-1.6e-4, 1.6e-4)
 KEPT = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
 """Edges that are kept of forty uniform cells."""
-UNIFORM = Grid((0.0, LENGTH), Y_RANGE, 40, 32)
+UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=40, cells_y=32)
 GRADED = Grid.from_edges(UNIFORM.x_edges[KEPT], Y_RANGE, 32)
 X, Y, Z = [0.0, 1e-5, 3.3e-4, LENGTH], [0.0, 5e-5], [2e-5, 1e-4]
 
@@ -73,7 +73,7 @@ def largest(field: xr.Dataset) -> float:
 
 @pytest.mark.parametrize("body", BODIES)
 def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
-    graded, uniform = (stress_field(BODIES[body], load, FRICTION, x=X, y=Y, z=Z) for load in loads)
+    graded, uniform = (stress_field(BODIES[body], load, friction=FRICTION, x=X, y=Y, z=Z) for load in loads)
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
@@ -84,7 +84,7 @@ def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: s
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
     before, on, beyond, near = (
-        stress_field(BODIES[body], load, FRICTION, x=x, **at, inside_cells=load) for x in places
+        stress_field(BODIES[body], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in places
     )
     for other in (before, beyond, near):
         for name in on.data_vars:
@@ -94,17 +94,19 @@ def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: s
 @pytest.mark.parametrize("body", BODIES)
 def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
-    graded, uniform = (displacement_field(BODIES[body], load, FRICTION, **points) for load in loads)
+    graded, uniform = (displacement_field(BODIES[body], load, friction=FRICTION, **points) for load in loads)
     assert largest(graded - uniform) < 1e-6 * largest(uniform)
 
 
 @pytest.mark.parametrize("body", BODIES)
 def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, smooth_loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
-    graded, uniform = (stress_field(BODIES[body], each, FRICTION, **points, inside_cells=each) for each in smooth_loads)
+    graded, uniform = (
+        stress_field(BODIES[body], each, friction=FRICTION, **points, inside_cells=each) for each in smooth_loads
+    )
     assert largest(graded - uniform) < 1e-3 * 1e9
     graded, uniform = (
-        displacement_field(BODIES[body], load, FRICTION, **points, inside_cells=load) for load in smooth_loads
+        displacement_field(BODIES[body], load, friction=FRICTION, **points, inside_cells=load) for load in smooth_loads
     )
     assert largest(graded - uniform) < 5e-4 * largest(uniform)
 
@@ -157,11 +159,11 @@ def turned(load: xr.DataArray) -> xr.DataArray:
 @given(load=graded_pressure(), body=st.sampled_from(["half", "mirror", "finite"]))
 def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
     x = np.array([0.0, 2e-4, 7e-4])
-    there = stress_field(BODIES[body], load, FRICTION, x=x, y=Y, z=Z, inside_cells=load)
+    there = stress_field(BODIES[body], load, friction=FRICTION, x=x, y=Y, z=Z, inside_cells=load)
     reverse = turned(load)
-    back = stress_field(BODIES[body], reverse, FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse).isel(
-        x=slice(None, None, -1)
-    )
+    back = stress_field(
+        BODIES[body], reverse, friction=FRICTION, x=(LENGTH - x)[::-1], y=Y, z=Z, inside_cells=reverse
+    ).isel(x=slice(None, None, -1))
     for name in ("sigma_xx", "sigma_yy", "sigma_zz", "tau_yz", "von_mises"):
         assert np.abs(there[name].values - back[name].values).max() < 1e3
     for name in ("tau_xy", "tau_xz"):
@@ -172,6 +174,7 @@ def test_turned_body_has_turned_stresses(load: xr.DataArray, body: str) -> None:
 @given(load=graded_pressure(), factor=st.floats(0.1, 10.0))
 def test_stresses_scale_with_the_load(load: xr.DataArray, factor: float) -> None:
     one, other = (
-        stress_field(BODIES["half"], each, FRICTION, x=X, y=Y, z=Z, inside_cells=each) for each in (load, factor * load)
+        stress_field(BODIES["half"], each, friction=FRICTION, x=X, y=Y, z=Z, inside_cells=each)
+        for each in (load, factor * load)
     )
     assert np.allclose(other["von_mises"], factor * one["von_mises"], rtol=1e-9)

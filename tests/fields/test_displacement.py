@@ -34,8 +34,8 @@ def eccentric(on_cells) -> xr.DataArray:
 
 def strain_of(body, pressure, friction: float, point: tuple[float, float, float], step: float = 1e-3):
     """Strain tensor at a point, by central differences of the displacements."""
-    axes = [at + step * np.array([-1.0, 0.0, 1.0]) for at in point]
-    field = displacement_field(body, pressure, friction, *axes)
+    axes = {axis: at + step * np.array([-1.0, 0.0, 1.0]) for axis, at in zip("xyz", point, strict=True)}
+    field = displacement_field(body, pressure, friction=friction, **axes)
     gradient = np.empty((3, 3))
     for i, name in enumerate(("u_x", "u_y", "u_z")):
         for j, axis in enumerate("xyz"):
@@ -51,7 +51,7 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, friction: float, e
     for point in ((0.25, 0.2, 0.4), (1.5, -0.6, 0.8), (3.7, 0.1, 1.5)):
         strain = strain_of(body, eccentric, friction, point)
         expected = 2 * shear * (strain + nu / (1 - 2 * nu) * np.trace(strain) * np.eye(3))
-        stress = stress_field(body, eccentric, friction, *([at] for at in point)).squeeze()
+        stress = stress_field(body, eccentric, friction=friction, x=point[:1], y=point[1:2], z=point[2:]).squeeze()
         for i, j, component in (
             *((0, 0, "sigma_xx"), (1, 1, "sigma_yy"), (2, 2, "sigma_zz")),
             *((0, 1, "tau_xy"), (0, 2, "tau_xz"), (1, 2, "tau_yz")),
@@ -63,10 +63,12 @@ def test_strains_obey_hookes_law_with_the_stresses(name: str, friction: float, e
 @pytest.mark.parametrize("name", BODIES)
 def test_on_the_top_it_is_the_tops_displacement(name: str, friction: float, eccentric: xr.DataArray) -> None:
     sunk = surface_displacement(BODIES[name], eccentric, friction)
-    inside = displacement_field(BODIES[name], eccentric, friction)["u_z"].sel(z=0.0, drop=True)
+    inside = displacement_field(BODIES[name], eccentric, friction=friction)["u_z"].sel(z=0.0, drop=True)
     tolerance = {"half-space": 1e-12, "mirror": 1e-7}.get(name, 1e-3)
     assert float(np.abs(inside - sunk).max()) < tolerance * float(sunk.max() - sunk.min())
-    smooth = displacement_field(BODIES[name], eccentric, friction, inside_cells=eccentric)["u_z"].sel(z=0.0, drop=True)
+    smooth = displacement_field(BODIES[name], eccentric, friction=friction, inside_cells=eccentric)["u_z"].sel(
+        z=0.0, drop=True
+    )
     assert float(np.abs(smooth - sunk).max()) < 2e-3 * float(sunk.max() - sunk.min())
 
 

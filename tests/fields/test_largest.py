@@ -23,7 +23,7 @@ NOWHERE = np.zeros(0)
 
 def circle() -> tuple[Grid, FloatArray]:
     """Hertz pressure on a circle of radius 1."""
-    grid = Grid((-1.25, 1.25), (-1.25, 1.25), 100, 100)
+    grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=100, cells_y=100)
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 
@@ -102,9 +102,11 @@ def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones(friction: f
     assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
     x, y, z = at(far)
     step = 0.01 * A
-    axes = [place + step * np.arange(-4.0, 5.0) for place in (x, y)]
+    offsets = step * np.arange(-4.0, 5.0)
     depths = z + 0.2 * step * np.arange(-9.0, 10.0)
-    beside = stress_field(case.body, far.pressure, friction, *axes, z=depths, inside_cells=far.pressure)
+    beside = stress_field(
+        case.body, far.pressure, friction=friction, x=x + offsets, y=y + offsets, z=depths, inside_cells=far.pressure
+    )
     assert float(beside.von_mises.max()) == pytest.approx(value, rel=3e-3)
     assert value / float(far.von_mises.max()) > 1.4
 
@@ -145,7 +147,9 @@ def test_near_a_free_end_less_pressure_does_more() -> None:
 def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None:
     body = HalfSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=RADIUS, length=8 * A), max_pressure=PRESSURE)
-    given = solve(case, Grid((-A, 9 * A), (-1.5 * A, 1.5 * A), 20, 20), x=[0.0], y=[0.0], z=[A])
+    given = solve(
+        case, Grid(x_range=(-A, 9 * A), y_range=(-1.5 * A, 1.5 * A), cells_x=20, cells_y=20), x=[0.0], y=[0.0], z=[A]
+    )
     assert np.isnan(float(given.peak_von_mises_error))
     assert "given cells" in given.peak_von_mises_error.attrs["comment"]
     refined = solve(case, accuracy=0.05, x=[0.0], y=[0.0], z=[A])
@@ -179,7 +183,7 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     far = solve(case, x=[0.5 * length], y=[0.0], z=[a])
     columns = (far.x.values > 0.05 * a) & (far.x.values < a)
     x, z = far.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
-    dense = stress_field(body, far.pressure, friction, x=x, y=far.y.values, z=z, inside_cells=far.pressure)
+    dense = stress_field(body, far.pressure, friction=friction, x=x, y=far.y.values, z=z, inside_cells=far.pressure)
     inside = far.pressure.sel(x=dense.x, y=dense.y) > 0.3 * float(far.pressure.max())
     largest = float(dense.von_mises.where(inside).max())
     assert float(far.peak_von_mises) == pytest.approx(largest, rel=5e-3)
@@ -225,7 +229,9 @@ def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
     case = Case(body=body, roller=roller, max_pressure=1.5e9, tilt=0.8e-3, friction=0.1)
     found = solve(case, accuracy=0.005, y=[0.0], z=[1e-5])
     x, y, z = (float(found[f"peak_von_mises_{axis}"]) for axis in "xyz")
-    there = stress_field(body, found.pressure, 0.1, [x], [y], [z], inside_cells=found.pressure).von_mises.item()
+    there = stress_field(
+        body, found.pressure, friction=0.1, x=[x], y=[y], z=[z], inside_cells=found.pressure
+    ).von_mises.item()
     assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
     assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])

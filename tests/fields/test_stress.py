@@ -8,10 +8,10 @@ import xarray as xr
 
 from contactstudy import FiniteLengthSpace, HalfSpace, InvalidInputError, Material, stress_field
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import stresses_at
-from contactstudy.overlapping.field import Points
 from tests.closed_forms import hertz_circle_surface, sliding_circle_surface
 
 Y = [-1.2, -0.4, 0.0, 0.3, 0.8]
@@ -23,7 +23,7 @@ def circle(on_cells) -> xr.DataArray:
 
 
 def test_surface_of_a_sliding_circle(circle: xr.DataArray, half_space: HalfSpace) -> None:
-    stress = stress_field(half_space, circle, 0.3, z=[0.0]).isel(z=0).sel(x=0.0, method="nearest")
+    stress = stress_field(half_space, circle, friction=0.3, z=[0.0]).isel(z=0).sel(x=0.0, method="nearest")
     inside = np.abs(stress["y"].values) < 0.95
     x = np.full(int(inside.sum()), float(stress["x"]))
     traction = sliding_circle_surface(x, stress["y"].values[inside], 1.0, 0.3, 0.3)
@@ -74,7 +74,7 @@ def test_corner_under_pressure_carries_exactly_what_theory_says(short_body: Fini
 def test_friction_is_linear(short_body: FiniteLengthSpace, strip_pressure) -> None:
     pressure = strip_pressure(8.0, (32, 32))
     points = {"x": [0.0, 1.0], "y": [0.3], "z": [0.0, 0.4]}
-    none, some, more = (stress_field(short_body, pressure, f, **points) for f in (0.0, 0.2, 0.4))
+    none, some, more = (stress_field(short_body, pressure, friction=f, **points) for f in (0.0, 0.2, 0.4))
     for name in STRESSES:
         assert np.allclose(more[name] - none[name], 2 * (some[name] - none[name]), atol=1e-10), name
 

@@ -29,7 +29,7 @@ def test_hertz_pressure_sinks_the_inside_as_a_paraboloid(on_cells, half_space: H
 
 @pytest.mark.parametrize("tangential", [False, True])
 def test_operator_is_reciprocal_or_antisymmetric_in_y(short_body: FiniteLengthSpace, tangential: bool) -> None:
-    grid = Grid((0.0, 8.0), (-2.0, 2.0), 24, 16)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
     operator = SurfaceOperator.of(short_body, grid, (Load.NORMAL, Load.ALONG_Y))
     first, second = np.random.default_rng(1).random((2, 24, 16))
     if tangential:
@@ -91,7 +91,10 @@ def test_bad_input_is_named(short_body: FiniteLengthSpace, strip_pressure) -> No
 def test_the_coarse_operator_is_close_to_one_built_on_coarse_cells(short_body, unit_material, cells):
     random = np.random.default_rng(3)
     for body in (short_body, QuarterSpace(material=unit_material), HalfSpace(material=unit_material)):
-        grids = Grid((0.0, 8.0), (-3.0, 3.0), *cells), Grid((0.0, 8.0), (-3.0, 3.0), cells[0] // 2, cells[1] // 2)
+        grids = (
+            Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0], cells_y=cells[1]),
+            Grid(x_range=(0.0, 8.0), y_range=(-3.0, 3.0), cells_x=cells[0] // 2, cells_y=cells[1] // 2),
+        )
         operator, built = (surface_operator(body, grid) for grid in grids)
         pressure = random.random((cells[0] // 2, cells[1] // 2))
         expected = built({Load.NORMAL: pressure})
@@ -103,7 +106,7 @@ def test_displacement_is_zero_at_its_reference_whatever_the_window(unit_material
     body = FiniteLengthSpace(length=1.0, material=unit_material, model=model)
     sunk = []
     for window, cells in ((10.5, 210), (2.5, 50)):
-        grid = Grid((0.0, 1.0), (-window, window), 8, cells)
+        grid = Grid(x_range=(0.0, 1.0), y_range=(-window, window), cells_x=8, cells_y=cells)
         load = np.zeros(grid.shape)
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         pressure = xr.DataArray(load, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))

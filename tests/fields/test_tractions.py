@@ -34,7 +34,7 @@ BODIES: dict[str, Body] = {
     "mirror": FiniteLengthSpace(length=LENGTH, material=MATERIAL, model="mirror"),
 }
 GRIDS = {
-    "uniform": Grid((0.0, LENGTH), (-2.0, 2.0), 15, 20),
+    "uniform": Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=15, cells_y=20),
     "graded": Grid.from_edges([0.0, 0.05, 0.1, 0.2, 0.4, 0.7, 1.1, 1.5, 1.9, 2.3, 2.6, 2.8, 2.9, 3.0], (-2.0, 2.0), 20),
 }
 ALL = (Load.NORMAL, Load.ALONG_X, Load.ALONG_Y)
@@ -43,7 +43,7 @@ bodies = pytest.mark.parametrize("body", BODIES.values(), ids=BODIES)
 
 def traction(cells: int = 24, along_x: float = 0.3) -> xr.DataArray:
     """A load that reaches both ends and is even in nothing."""
-    grid = Grid((0.0, LENGTH), (-2.0, 2.0), cells, cells)
+    grid = Grid(x_range=(0.0, LENGTH), y_range=(-2.0, 2.0), cells_x=cells, cells_y=cells)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     values = np.maximum(1 - y**2, 0) * (1 + along_x * x) * (1 + 0.2 * y)
     return xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
@@ -134,7 +134,7 @@ def test_bending_changes_with_the_reference_by_pure_bending_alone() -> None:
     body = BODIES["finite length"]
     moved = []
     for reach, cells in ((2.0, 20), (5.0, 50)):
-        grid = Grid((0.0, LENGTH), (-reach, reach), 15, cells)
+        grid = Grid(x_range=(0.0, LENGTH), y_range=(-reach, reach), cells_x=15, cells_y=cells)
         load = xr.DataArray(np.zeros(grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
         load[:, cells // 2 - 3 : cells // 2 + 3] = 1.0
         moved.append(surface_displacement(body, **acting(Load.ALONG_X, load), components="xyz"))
@@ -146,7 +146,7 @@ def test_bending_changes_with_the_reference_by_pure_bending_alone() -> None:
 
 
 def test_a_long_body_loaded_in_the_middle_is_dragged_like_a_half_space() -> None:
-    grid = Grid((0.0, 60.0), (-1.5, 1.5), 240, 12)
+    grid = Grid(x_range=(0.0, 60.0), y_range=(-1.5, 1.5), cells_x=240, cells_y=12)
     x, y = np.meshgrid(grid.x, grid.y, indexing="ij")
     # Without a resultant, which would bend a body of any length.
     values = np.where(np.abs(x - 30) < 1.5, np.sin(np.pi * (x - 30) / 1.5), 0.0) * (1 - y**2 / 2.25)

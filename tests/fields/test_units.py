@@ -34,9 +34,10 @@ def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndar
     pressure = 1e-3 * modulus * np.sqrt(np.maximum(0.7 - y**2, 0)) * (1 + 0.3 * x[:, None])
     coordinates = {"x": length * x, "y": length * y, "x_width": ("x", length * np.diff(EDGES[cells]))}
     load = xr.DataArray(pressure, coordinates, ("x", "y"))
-    own, at = body(kind, length, modulus), [length * np.array(each) for each in ([0.0, 0.5, 2.9], [-0.3, 0.4])]
-    stress = stress_field(own, load, 0.2, *at, [0.02 * length, 0.7 * length], traction_x=0.1 * load)
-    moved = displacement_field(own, load, 0.2, *at, [0.0, 0.7 * length])
+    own = body(kind, length, modulus)
+    at = {"friction": 0.2, "x": length * np.array([0.0, 0.5, 2.9]), "y": length * np.array([-0.3, 0.4])}
+    stress = stress_field(own, load, **at, z=[0.02 * length, 0.7 * length], traction_x=0.1 * load)
+    moved = displacement_field(own, load, **at, z=[0.0, 0.7 * length])
     top = surface_displacement(own, load, 0.2)
     found = [stress[name].values / modulus for name in stress.data_vars]
     found += [moved[name].values / length for name in moved.data_vars]

@@ -16,7 +16,7 @@ COARSE = Strip(length=12.0, depth=6.0, width=1.0, height=0.2, fine=2.2, step=0.2
 
 def test_nothing_flows_below_first_yield() -> None:
     """First yield of a line contact is at p0 = 3.107 k."""
-    strains, stresses, _ = PlasticStrip(PassesCase(1 / 3.0, friction=0.0, passes=1), COARSE).rolled()
+    strains, stresses, _ = PlasticStrip(PassesCase(shear_yield_stress=1 / 3.0, friction=0.0, passes=1), COARSE).rolled()
     assert np.abs(strains).max() == 0
     assert np.abs(stresses).max() < 1e-12
 

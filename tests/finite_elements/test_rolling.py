@@ -31,7 +31,7 @@ def test_rolling_between_free_ends(monkeypatch: pytest.MonkeyPatch) -> None:
     gap = on_cells(lambda x, y: 0.5 * y**2 + 0 * x, (0, LENGTH), (-WINDOW, WINDOW), (COLUMNS, STRIPS))
     body = FiniteLengthSpace(length=LENGTH, material=Material(1 - POISSON**2, POISSON))
     motion = Rolling(force_y=PART * FRICTION * LOAD)
-    found = solve_contact(body, gap, LOAD, FRICTION, counterbody=Counterbody(body), motion=motion)
+    found = solve_contact(body, gap, load=LOAD, friction=FRICTION, counterbody=Counterbody(body), motion=motion)
     # At this creepage 1 % of it is 0.75 % of the force.
     assert float(found["longitudinal_creepage"]) == pytest.approx(expected.creepage, rel=1e-3)
     first, largest = found.isel(x=slice(0, COLUMNS // 2)), FRICTION * float(found["pressure"].max())

@@ -26,7 +26,7 @@ def test_coupled_contact_of_a_short_elastic_roller() -> None:
         coupled=True,
     )
     window = (-1.09849551913929e-05, 1.09849551913929e-05)
-    result = solve(case, Grid((0.0, body.length), window, 130, 34), stresses=False)
+    result = solve(case, Grid(x_range=(0.0, body.length), y_range=window, cells_x=130, cells_y=34), stresses=False)
     assert bool(result["converged"])
     assert float(result["penetration_error"]) < 1e-6
 
@@ -35,7 +35,7 @@ def test_stresses_below_a_contact_one_cell_wide() -> None:
     """On 13 cells across a wide window a transform of no points was asked for."""
     body = FiniteLengthSpace(material=Material(210e9, 0.3), length=0.001, model="single-mirror")
     case = Case(body=body, roller=Roller(radius=8.5e-3, length=0.25e-3), max_pressure=0.2e9)
-    result = solve(case, Grid((0.0, 0.001), (-1.1e-3, 1.1e-3), 16, 13), stresses=False)
+    result = solve(case, Grid(x_range=(0.0, 0.001), y_range=(-1.1e-3, 1.1e-3), cells_x=16, cells_y=13), stresses=False)
     pressure = result["pressure"]
     (row,) = np.flatnonzero(pressure.any("x"))
     stress = stress_field(body, pressure, x=pressure["x"][[7]], y=pressure["y"][[row]], z=[0.0])
@@ -58,6 +58,6 @@ def test_small_shift(motion: Shift) -> None:
         motion=motion,
     )
     window = (-9.248014993268249e-08, 9.248014993268249e-08)
-    result = solve(case, Grid((0.0, case.body.length), window, 6, 12), stresses=False)
+    result = solve(case, Grid(x_range=(0.0, case.body.length), y_range=window, cells_x=6, cells_y=12), stresses=False)
     assert bool(result["converged"])
     assert float(result["slip_error"]) < 1e-5

@@ -20,7 +20,7 @@ CASE = Case(
     max_pressure=1.5e9,
     friction=0.05,
 )
-LINE_GRID = Grid((0.0, 1e-3), (-2 * 65e-6, 2 * 65e-6), 4, 128)
+LINE_GRID = Grid(x_range=(0.0, 1e-3), y_range=(-2 * 65e-6, 2 * 65e-6), cells_x=4, cells_y=128)
 
 
 @pytest.fixture(scope="session")

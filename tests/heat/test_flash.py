@@ -93,7 +93,7 @@ def test_temperature_falls_with_the_depth(hot, line_case, on_line, steel):
 def test_a_roller_that_ends_in_the_middle_of_a_cell_heats_both_its_ends_alike(line_case, steel):
     body = FiniteLengthSpace(length=1.2e-3, material=line_case.body.material)
     case = Case(body=body, roller=Roller(radius=5e-3, length=1e-3), max_pressure=1.5e9, friction=0.05)
-    grid = Grid((0.0, 1.2e-3), (-2.4 * 65e-6, 2.4 * 65e-6), 150, 48)
+    grid = Grid(x_range=(0.0, 1.2e-3), y_range=(-2.4 * 65e-6, 2.4 * 65e-6), cells_x=150, cells_y=48)
     assert np.isclose(grid.x, 1e-4, rtol=1e-9).any()
     result = solve(case, grid, stresses=False)
     found = flash_temperature(moved(case, -10.0, -9.0), result, body=steel, roller=steel)
@@ -184,7 +184,9 @@ def test_bad_speeds_and_motions_in_rolling(rolled, line_case, on_line, steel):
 
 
 def test_the_stated_error_covers_finer_cells_and_a_singular_end_has_none(line_case, on_line, steel):
-    coarse, fine = (on_line(Grid((0.0, 1e-3), (-1.3e-4, 1.3e-4), 4, cells)) for cells in (20, 160))
+    coarse, fine = (
+        on_line(Grid(x_range=(0.0, 1e-3), y_range=(-1.3e-4, 1.3e-4), cells_x=4, cells_y=cells)) for cells in (20, 160)
+    )
     known = {"peak_pressure": 1.5e9, "peak_pressure_error": 1.5e6}
     line_case = moved(line_case, -10.0, -9.0)
     found, settled = (

@@ -17,7 +17,10 @@ def rise(unit, grid, heat, *, speed, ends, depth=0.0):
 @pytest.mark.parametrize("drift", [0.01, 0.3, -0.3, 5.0, -100.0])
 @pytest.mark.parametrize(
     "grid",
-    [Grid((0, 8), (-2, 2), 5, 64), Grid.from_edges([0, 0.1, 0.4, 1, 2, 4, 7, 8], (-2, 2), 64)],
+    [
+        Grid(x_range=(0, 8), y_range=(-2, 2), cells_x=5, cells_y=64),
+        Grid.from_edges([0, 0.1, 0.4, 1, 2, 4, 7, 8], (-2, 2), 64),
+    ],
     ids=["uniform", "graded"],
 )
 def test_moving_band_is_jaegers(unit, grid, drift):
@@ -28,7 +31,7 @@ def test_moving_band_is_jaegers(unit, grid, drift):
 
 
 def test_uniform_square_at_rest(unit):
-    grid = Grid((-1.5, 1.5), (-1.5, 1.5), 45, 45)
+    grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=45, cells_y=45)
     square = 1.0 * (np.abs(grid.x)[:, None] < 0.5) * (np.abs(grid.y) < 0.5)
     found = rise(unit, grid, square, speed=0.0, ends=EVERYWHERE)
     # Carslaw and Jaeger, 10.5: 2 l asinh(1) / (pi lambda) in the middle of a square of side 2 l
@@ -36,14 +39,17 @@ def test_uniform_square_at_rest(unit):
 
 
 def test_hertzian_circle_at_rest(unit):
-    grid = Grid((-1.2, 1.2), (-1.2, 1.2), 61, 61)
+    grid = Grid(x_range=(-1.2, 1.2), y_range=(-1.2, 1.2), cells_x=61, cells_y=61)
     heat = np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0))
     found = rise(unit, grid, heat, speed=0.0, ends=EVERYWHERE)
     assert found[30, 30] == pytest.approx(np.pi / 4, rel=2e-3)
 
 
 def test_no_wake_comes_round_the_window(unit):
-    narrow, wide = Grid((-2, 2), (-2, 2), 16, 16), Grid((-2, 2), (-8, 8), 16, 64)
+    narrow, wide = (
+        Grid(x_range=(-2, 2), y_range=(-2, 2), cells_x=16, cells_y=16),
+        Grid(x_range=(-2, 2), y_range=(-8, 8), cells_x=16, cells_y=64),
+    )
     heat = np.exp(-(narrow.x[:, None] ** 2) - 4 * narrow.y**2)
     outside = np.pad(heat, ((0, 0), (24, 24)))
     for speed in (0.0, 0.5):
@@ -79,7 +85,7 @@ def test_two_ends_are_a_row_of_images(unit, graded):
 
 
 def test_uniform_and_graded_columns_agree_wherever_the_ends_are(unit):
-    grid = Grid((0, 2), (-1, 1), 8, 20)
+    grid = Grid(x_range=(0, 2), y_range=(-1, 1), cells_x=8, cells_y=20)
     # widths equal but for rounding: another operator
     same = Grid.between(np.linspace(0, 2, 9) + 1e-9 * np.sin(np.arange(9)), (-1, 1), 20)
     assert grid.uniform
@@ -97,12 +103,12 @@ def test_all_heat_leaves_through_planes_before_and_behind(speed):
 
 
 def test_below_the_surface_a_source_at_rest_is_a_point_from_afar(unit):
-    grid = Grid((-0.1, 0.1), (-0.1, 0.1), 3, 3)
+    grid = Grid(x_range=(-0.1, 0.1), y_range=(-0.1, 0.1), cells_x=3, cells_y=3)
     found = rise(unit, grid, np.ones(grid.shape), speed=0.0, ends=EVERYWHERE, depth=5.0)
     assert found[1, 1] == pytest.approx(0.04 / (2 * np.pi * 5.0), rel=1e-3)
 
 
 def test_between_two_ends_a_surface_at_rest_has_no_steady_temperature(unit):
-    grid = Grid((0, 1), (-1, 1), 4, 4)
+    grid = Grid(x_range=(0, 1), y_range=(-1, 1), cells_x=4, cells_y=4)
     with pytest.raises(InvalidInputError, match="hotter without limit"):
         SourceOperator(MovingBody(unit, 0.0, Ends(0.0, 1.0)), grid, slice(0, 4))

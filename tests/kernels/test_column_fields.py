@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.cache import ArrayKey
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.column_fields import (
@@ -46,14 +47,14 @@ def displacements_of(load: Load, extent: tuple[float, float]) -> Influence:
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_field_of_uniform_cells(load: Load, extent: str) -> None:
-    grid = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    grid = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     cells = np.random.default_rng(0).random(grid.shape)
     cells[:, :3] = 0
     # Displacements of a row without end are differences of large numbers.
     for influence, allowed in ((stresses_of(load), 2e-7), (displacements_of(load, EXTENTS[extent]), 3e-6)):
         for y in (grid.y, np.array([0.1, 0.33])):
-            expected = half_space_field(cells, influence, grid, X, y, Z, extent=EXTENTS[extent])
-            found = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
+            expected = half_space_field(cells, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+            found = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
             assert found.shape == expected.shape
             assert np.abs(found - expected).max() < allowed * np.abs(expected).max()
 
@@ -66,7 +67,9 @@ def test_a_body_elsewhere_has_the_same_field(load: Load, extent: str) -> None:
         grid = Grid.from_edges(place + np.array([0.0, 0.2, 0.7, 1.1, 1.6, LENGTH]), (-1.0, 1.0), 6)
         ends = (EXTENTS[extent][0] + place, EXTENTS[extent][1] + place)
         cells = np.random.default_rng(2).random(grid.shape)
-        fields.append(columns_field(cells, None, stresses_of(load), grid, place + X, np.array([0.1]), Z, extent=ends))
+        fields.append(
+            columns_field(cells, None, stresses_of(load), grid, Points(place + X, np.array([0.1]), Z), extent=ends)
+        )
     assert np.abs(fields[1] - fields[0]).max() < 1e-9 * np.abs(fields[0]).max()
 
 
@@ -77,13 +80,13 @@ GRADED = np.array([0, 1, 2, 3, 5, 7, 10, 14, 17, 18, 19, 20])
 @pytest.mark.parametrize("load", Load)
 @pytest.mark.parametrize("extent", EXTENTS)
 def test_field_of_the_same_load_on_finer_uniform_cells(load: Load, extent: str) -> None:
-    uniform = Grid((0.0, LENGTH), (-1.0, 1.0), 20, 16)
+    uniform = Grid(x_range=(0.0, LENGTH), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
     graded = Grid.from_edges(uniform.x_edges[GRADED], (-1.0, 1.0), 16)
     cells = np.random.default_rng(1).random(graded.shape)
     spread = np.repeat(cells, np.diff(GRADED), axis=0)
     influence, y = stresses_of(load), np.array([-0.4, 0.0, 0.1, 0.33, 0.9])
-    expected = half_space_field(spread, influence, uniform, X, y, Z, extent=EXTENTS[extent])
-    found = columns_field(cells, None, influence, graded, X, y, Z, extent=EXTENTS[extent])
+    expected = half_space_field(spread, influence, uniform, Points(X, y, Z), extent=EXTENTS[extent])
+    found = columns_field(cells, None, influence, graded, Points(X, y, Z), extent=EXTENTS[extent])
     assert np.abs(found - expected).max() < 2e-7 * np.abs(expected).max()
 
 
@@ -97,14 +100,19 @@ def test_a_column_loaded_alone_keeps_its_place_wherever_its_field_is_asked_for(
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    fine = FineCells(cells, cells, graded, EXTENTS[extent], load.sign_x)
-    uniform = Grid((0.0, LENGTH), (float(fine.y_edges[0]), float(fine.y_edges[-1])), 20, 9 * fine.cells.shape[1])
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=EXTENTS[extent], image=load.sign_x)
+    uniform = Grid(
+        x_range=(0.0, LENGTH),
+        y_range=(float(fine.y_edges[0]), float(fine.y_edges[-1])),
+        cells_x=20,
+        cells_y=9 * fine.cells.shape[1],
+    )
     smooth = fine.along_y(fine.cells, fine.cells).means(np.linspace(*uniform.y_range, uniform.cells_y + 1))
     spread = np.repeat(smooth, np.diff(GRADED), axis=0)
     influence, x, y = stresses_of(load), np.linspace(0.05, 1.95, 21), np.array([0.0, 0.3])
     for z in (np.array([0.15]), np.array([0.4])):
-        expected = half_space_field(spread, influence, uniform, x, y, z, extent=EXTENTS[extent])
-        found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS[extent])
+        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=EXTENTS[extent])
+        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS[extent])
         assert np.abs(found - expected).max() < 1e-3 * np.abs(expected).max()
 
 
@@ -116,15 +124,15 @@ def test_a_smooth_load_on_wide_columns_is_seen_as_smooth(extent: str) -> None:
     across = np.sqrt(np.maximum(1 - (graded.y / (0.6 * scale)) ** 2, 0))
     cells = np.exp(-((graded.x[:, None] / scale - 1.3) ** 2) / 0.2) * across
     ends = (scale * EXTENTS[extent][0], scale * EXTENTS[extent][1])
-    fine = FineCells(cells, cells, graded, ends)
+    fine = FineCells(load=cells, shape=cells, grid=graded, extent=ends)
     y_range = (float(fine.y_edges[0]), float(fine.y_edges[-1]))
-    uniform = Grid((0.0, scale * LENGTH), y_range, 100, 9 * fine.cells.shape[1])
+    uniform = Grid(x_range=(0.0, scale * LENGTH), y_range=y_range, cells_x=100, cells_y=9 * fine.cells.shape[1])
     along_x = fine.columns([uniform.x_edges])
     spread = fine.along_y(along_x, along_x).means(np.linspace(*y_range, uniform.cells_y + 1))
     influence, x, y = stresses_of(Load.NORMAL), scale * np.linspace(0.1, 1.9, 13), np.array([0.0, 0.3 * scale])
     for z in (np.array([0.05 * scale]), np.array([0.3 * scale])):
-        expected = half_space_field(spread, influence, uniform, x, y, z, extent=ends)
-        found = columns_field(cells, cells, influence, graded, x, y, z, extent=ends)
+        expected = half_space_field(spread, influence, uniform, Points(x, y, z), extent=ends)
+        found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=ends)
         assert np.abs(found - expected).max() < 0.02 * np.abs(expected).max()
 
 
@@ -141,7 +149,7 @@ def test_steps_of_a_load(column: int, extent: str, image: int, expected: list[fl
     graded = Grid.from_edges(np.linspace(0.0, LENGTH, 21)[GRADED], (-1.0, 1.0), 16)
     cells = np.zeros(graded.shape)
     cells[column] = np.sqrt(np.maximum(1 - (graded.y / 0.6) ** 2, 0))
-    steps = FineCells(1e-3 * cells, 1e-3 * cells, graded, EXTENTS[extent], image).steps
+    steps = FineCells(load=1e-3 * cells, shape=1e-3 * cells, grid=graded, extent=EXTENTS[extent], image=image).steps
     assert np.unique(steps.round(9)).tolist() == pytest.approx(expected)
 
 
@@ -153,9 +161,9 @@ def test_depths_that_are_seen_together_are_those_seen_alone(load: Load) -> None:
     cells = np.exp(-graded.x[:, None] / 20) * np.sqrt(np.maximum(1 - (graded.y / 0.8) ** 2, 0))
     influence, y, z = stresses_of(load), np.array([-0.2, 0.3]), np.linspace(0.0, 6.0, 25)
     x, extent = np.array([0.0, 0.7, 9.0, 40.0, 60.0]), (0.0, 60.0)
-    together = columns_field(cells, cells, influence, graded, x, y, z, extent=extent)
+    together = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=extent)
     for number in (0, 1, 8, 24):
-        alone = columns_field(cells, cells, influence, graded, x, y, z[number : number + 1], extent=extent)
+        alone = columns_field(cells, cells, influence, graded, Points(x, y, z[number : number + 1]), extent=extent)
         # Nearer to the top than the others see it, columns are split into more.
         assert np.abs(together[..., number] - alone[..., 0]).max() < 2e-4 * np.abs(together).max()
 
@@ -167,14 +175,18 @@ def test_far_away_the_field_is_that_of_a_point_load(load: Load) -> None:
     point = Grid.from_edges([0.45, 0.55], (-0.05, 0.05), 1)
     force = float((cells * graded.widths[:, None]).sum() * graded.dy)
     influence, x, y, z = stresses_of(load), np.array([-60.0, 50.0, 70.0]), np.array([0.0, 3.0]), np.array([1.0, 40.0])
-    found = columns_field(cells, cells, influence, graded, x, y, z, extent=EXTENTS["none"])
-    expected = columns_field(np.full((1, 1), force / 0.01), None, influence, point, x, y, z, extent=EXTENTS["none"])
+    found = columns_field(cells, cells, influence, graded, Points(x, y, z), extent=EXTENTS["none"])
+    expected = columns_field(
+        np.full((1, 1), force / 0.01), None, influence, point, Points(x, y, z), extent=EXTENTS["none"]
+    )
     assert np.abs(found - expected).max() < 5e-4 * np.abs(expected).max()
 
 
 def test_nothing_loaded_leaves_nothing() -> None:
     grid = Grid.from_edges([0.0, 0.5, 2.0], (-1.0, 1.0), 4)
-    field = half_space_field(np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, X, grid.y, Z, extent=EXTENTS["both"])
+    field = half_space_field(
+        np.zeros(grid.shape), stresses_of(Load.NORMAL), grid, Points(X, grid.y, Z), extent=EXTENTS["both"]
+    )
     assert field.shape == (6, X.size, grid.y.size, Z.size)
     assert not field.any()
 
@@ -194,8 +206,10 @@ def test_mirrored_load_makes_the_mirrored_field(loaded: tuple[Grid, FloatArray],
     grid, cells = loaded
     backwards = Grid.from_edges(LENGTH - grid.x_edges[::-1], (-1.0, 1.0), 6)
     influence, y = stresses_of(load), np.array([-0.4, 0.1])
-    there = columns_field(cells, None, influence, grid, X, y, Z, extent=EXTENTS[extent])
-    back = columns_field(cells[::-1], None, influence, backwards, LENGTH - X[::-1], y, Z, extent=EXTENTS[extent])
+    there = columns_field(cells, None, influence, grid, Points(X, y, Z), extent=EXTENTS[extent])
+    back = columns_field(
+        cells[::-1], None, influence, backwards, Points(LENGTH - X[::-1], y, Z), extent=EXTENTS[extent]
+    )
     sign = np.array(influence.sign_along_x)[:, None, None, None]
     assert np.abs(there - sign * back[:, ::-1]).max() < 1e-8 * np.abs(there).max()
 
@@ -209,7 +223,7 @@ def test_normal_stress_on_a_plane_carries_the_whole_load(loaded: tuple[Grid, Flo
     s = np.linspace(-1.0, 1.0, points) * np.arcsinh(reach / depth)
     wide, steps = depth * np.sinh(s), depth * np.cosh(s) * (s[1] - s[0])
     field = columns_field(
-        cells, None, stresses_of(Load.NORMAL), grid, 1.0 + wide, wide, np.array([depth]), extent=EXTENTS["none"]
+        cells, None, stresses_of(Load.NORMAL), grid, Points(1.0 + wide, wide, np.array([depth])), extent=EXTENTS["none"]
     )[2, :, :, 0]
     carried = -float(steps @ field @ steps)
     total = float((cells * grid.widths[:, None]).sum() * grid.dy)
@@ -230,7 +244,7 @@ def fine(place: float = 0.0, unit: float = 1.0, *, ends: int = 2, image: int = 1
         cells = np.where((x > 0.6) & (x < 2.4), cells, 0.0)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.0) if ends == 2 else np.inf)
     load = (PRESSURE if unit < 1 else 1.0) * cells
-    return FineCells(load, load, grid, extent, image)
+    return FineCells(load=load, shape=load, grid=grid, extent=extent, image=image)
 
 
 def around(x: float, own: FineCells, narrow: float = 0.0) -> _Surroundings:
@@ -310,7 +324,7 @@ def test_a_rounding_before_an_edge_is_as_good_as_the_edge(narrow: float) -> None
     """Also before the outermost edge of those that are split, where narrow columns follow that are not."""
     edges = np.concatenate([[0.0, 1.0], np.linspace(2.0, 2.1, 11)])
     grid = Grid.between(edges, (-1.0, 1.0), 4)
-    own = FineCells(PRESSURE * np.ones(grid.shape), PRESSURE * np.ones(grid.shape), grid)
+    own = FineCells(load=PRESSURE * np.ones(grid.shape), shape=PRESSURE * np.ones(grid.shape), grid=grid)
     on = around(2.0, own, narrow).inserted
     for towards in (-np.inf, np.inf):
         beside = around(float(np.nextafter(2.0, towards)), own, narrow).inserted
@@ -367,7 +381,7 @@ def test_points_are_in_the_middle_of_a_layers_cells(offset: float, span: float) 
 
 
 def seen(y: FloatArray, parts: int | None) -> list[Layer]:
-    grid = Grid((0.0, 1.0), (-0.75, 1.25), 4, 8)
+    grid = Grid(x_range=(0.0, 1.0), y_range=(-0.75, 1.25), cells_x=4, cells_y=8)
     along_y, numbers = AlongY(grid, y, 1, 6), np.array([1])
     z = np.array([0.1, 0.2])
     return along_y.uniform(z, numbers) if parts is None else along_y.layers(z, numbers, fine=bool(parts))

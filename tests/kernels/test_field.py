@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
 from contactstudy.kernels.convolution import centred_field
@@ -20,11 +21,12 @@ INFLUENCE = Influence.of(STRESS_CORNERS[Load.NORMAL], 0.3, Load.NORMAL, STRESS_P
 
 
 def test_unaligned_positions_have_the_field_of_each_alone() -> None:
-    grid = Grid((0.0, 8.0), (-2.0, 2.0), 80, 16)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-2.0, 2.0), cells_x=80, cells_y=16)
     load = (1 - (grid.y / 2.0) ** 2) * np.ones(grid.shape)
     x, z = np.sort(np.random.default_rng(0).uniform(0.0, 8.0, 25)), np.array([0.05, 0.5])
     together, *alone = (
-        half_space_field(load, INFLUENCE, grid, each, grid.y[::4], z, extent=(0.0, 8.0)) for each in (x, *x[:, None])
+        half_space_field(load, INFLUENCE, grid, Points(each, grid.y[::4], z), extent=(0.0, 8.0))
+        for each in (x, *x[:, None])
     )
     # Far columns are taken together.
     np.testing.assert_allclose(together, np.concatenate(alone, axis=1), rtol=0, atol=1e-5 * np.abs(together).max())
@@ -49,7 +51,7 @@ def test_field_is_linear_in_the_load(kind: str, extent: tuple[float, float], *, 
     x, y = (grid.x[::6], grid.y[::4]) if aligned else (np.array([0.01, 1.3, 3.77]), np.array([-0.9, 0.033]))
     z = np.array([0.0, 0.05, 0.3, 1.5])
     one, other, both = (
-        half_space_field(load, INFLUENCE, grid, x, y, z, extent=extent, shape=shape)
+        half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=extent, shape=shape)
         for load in (first, second, first + 2 * second)
     )
     # The images' sums amplify rounding.
@@ -66,19 +68,19 @@ def test_field_does_not_jump_where_fine_cells_end(kind: str, *, aligned: bool) -
     for size in (grid.dy, grid.dx):
         z = REACH * size * np.array([1 - 1e-9, 1 + 1e-9])
         above, below = np.moveaxis(
-            half_space_field(load, INFLUENCE, grid, x, y, z, extent=(0.0, 4.0), shape=load), 3, 0
+            half_space_field(load, INFLUENCE, grid, Points(x, y, z), extent=(0.0, 4.0), shape=load), 3, 0
         )
         assert np.abs(above - below).max() < 1e-5
 
 
-GRID = Grid((0.0, 2.0), (-1.0, 1.0), 20, 16)
+GRID = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=20, cells_y=16)
 Z = np.array([0.0, 0.05, 0.4])
 
 
 def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Stresses under steps of a load in each direction."""
     influences = [Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES) for each in Load]
-    return np.stack([half_space_field(load, each, GRID, x, y, Z, extent=extent) for each in influences])
+    return np.stack([half_space_field(load, each, GRID, Points(x, y, Z), extent=extent) for each in influences])
 
 
 def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
@@ -87,7 +89,7 @@ def displacements(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[
     fields = []
     for each in Load:
         influence = displacement_influence(each, 0.3, length, 20.0)
-        fields.append(half_space_field(load, influence, GRID, x, y, Z, extent=extent))
+        fields.append(half_space_field(load, influence, GRID, Points(x, y, Z), extent=extent))
     return np.stack(fields)
 
 
@@ -135,13 +137,15 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
     each: Load, cells_x: int, rows: slice | list[int], other_half: float
 ) -> None:
     """Of the halves alone no wavenumber is zero."""
-    grid = Grid((0.0, 2.0), (-1.0, 1.0), cells_x, 16)
+    grid = Grid(x_range=(0.0, 2.0), y_range=(-1.0, 1.0), cells_x=cells_x, cells_y=16)
     half = np.random.default_rng(0).random(grid.shape)
     half[(cells_x + 1) // 2 :] = 0.0
     x = np.atleast_1d(grid.x[rows])
     influence = Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES)
     parts = (half, other_half * half[::-1], half + other_half * half[::-1])
-    one, other, both = (half_space_field(cells, influence, grid, x, grid.y, Z, extent=(0.0, 2.0)) for cells in parts)
+    one, other, both = (
+        half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in parts
+    )
     np.testing.assert_allclose(both, one + other, atol=1e-13 * np.abs(one).max())
 
 
@@ -155,7 +159,7 @@ def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit:
 def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)
-    softer = half_space_stress(Load.NORMAL, load, 0.1, GRID, GRID.x, y, Z, extent=extent)
+    softer = half_space_stress(Load.NORMAL, load, 0.1, GRID, Points(GRID.x, y, Z), extent=extent)
     assert np.abs(softer - first[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
     np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)

@@ -44,7 +44,7 @@ def fine(
     grid = Grid.between(unit * (edges + place), (-1.2 * unit, 1.2 * unit), 12)
     cells = pressure * load_on(grid.x / unit - place, grid.y / unit)
     extent = (unit * place if ends else -np.inf, unit * (place + 3.8) if ends == 2 else np.inf)
-    return FineCells(cells, cells, grid, extent, image)
+    return FineCells(load=cells, shape=cells, grid=grid, extent=extent, image=image)
 
 
 @pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
@@ -89,7 +89,7 @@ def test_cells_are_refined_down_to_the_reach(edges: FloatArray) -> None:
         False,
     ]
     load = np.where(np.abs(own.grid.y) < 0.7, 1.0, 0.0) * np.ones(own.grid.shape)
-    even = FineCells(load, load, own.grid)
+    even = FineCells(load=load, shape=load, grid=own.grid)
     assert not even.split.any()
     assert not even.fine_depths_x(np.zeros(1)).any()
     assert own.fine_depths_x(own.grid.dx * REACH * np.array([0.99, 1.01])).tolist() == [True, False]
@@ -186,7 +186,7 @@ def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
     first, second = random.random(own.grid.shape), random.random(own.grid.shape) * (own.load > 0)
 
     def evaluated(load: FloatArray) -> list[FloatArray]:
-        cells = FineCells(load, own.shape, own.grid, own.extent, image)
+        cells = FineCells(load=load, shape=own.shape, grid=own.grid, extent=own.extent, image=image)
         columns = cells.columns([np.linspace(0.1, 3.7, 30)])
         whole = cells.coarse_load(fine_x=False)[0]
         return [cells.fine_load(0.03)[0], whole, cells.end_load()[0], columns]
@@ -205,7 +205,7 @@ def test_columns_are_split_where_their_load_is_uneven(unit: float) -> None:
     grid = Grid.between(EDGES, (-1.2, 1.2), 12)
     along = 1 + 1e-4 * grid.x - 0.5 * np.maximum(grid.x - 2.5, 0.0)
     load = unit * along[:, None] * np.sqrt(1 - (grid.y / 1.3) ** 2)
-    split = FineCells(load, load, grid).split
+    split = FineCells(load=load, shape=load, grid=grid).split
     assert not split[:4].any()
     assert split[-3:].all()
 
@@ -216,5 +216,5 @@ def test_fine_cells_carry_a_load_up_to_the_border(offset: float) -> None:
     grid = Grid.between(UNIFORM, (-1.2, 1.2), 12)
     cells = load_on(grid.x, 0.6 * grid.y)
     assert cells[:, [0, -1]].any()
-    found, own = FineCells(cells, cells, grid).fine_load(offset)
+    found, own = FineCells(load=cells, shape=cells, grid=grid).fine_load(offset)
     assert found.sum() * own.cell_area == pytest.approx(cells.sum() * grid.cell_area)

@@ -9,10 +9,11 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy import Grid, Material
+from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import images, patch
-from contactstudy.kernels.field import half_space_displacement
+from contactstudy.kernels.field import displacement_influence, half_space_field
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, normal_displacement_inside, tangential_displacement_inside
 from contactstudy.kernels.strips import corner_function, strips_of
@@ -176,9 +177,8 @@ def displaced(
     extent = (unit * place, unit * (place + 3.0))
     x, y, z = unit * (np.array([0.0, 0.7, 2.2]) + place), unit * np.array([-0.1, 0.4]), unit * np.array([0.05, 0.6])
     shape = pressure if smooth else None
-    return half_space_displacement(
-        load, pressure, Material(1.0, 0.3), grid, x, y, z, extent=extent, reference=30.0 * unit, shape=shape
-    )
+    influence = displacement_influence(load, 0.3, extent[1] - extent[0], 30.0 * unit)
+    return half_space_field(pressure, influence, grid, Points(x, y, z), extent=extent, shape=shape)
 
 
 @pytest.mark.parametrize("name", EDGES)

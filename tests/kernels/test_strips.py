@@ -46,7 +46,9 @@ def influence(
     image: int = 1,
 ) -> FloatArray:
     """Influence of a strip (wavenumber, cell, cell)."""
-    return ColumnsRequest(edges, dy, cells_y, extent, reference).influence(((1.0, strip),), image)
+    return ColumnsRequest(edges=edges, dy=dy, cells_y=cells_y, extent=extent, reference=reference).influence(
+        ((1.0, strip),), image
+    )
 
 
 def strip_kernel(strip: Strip, x: float, low: float, high: float) -> float:
@@ -241,7 +243,9 @@ LOADS = (Load.NORMAL, Load.ALONG_X, Load.ALONG_Y)
 def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body) -> None:
     finer, cells_x, cells_y = 8, 30, 12
     y_range = (-1.2e-4, 1.2e-4)
-    fine, coarse = (Grid((0.0, LENGTH), y_range, cells_x * factor, cells_y) for factor in (finer, 1))
+    fine, coarse = (
+        Grid(x_range=(0.0, LENGTH), y_range=y_range, cells_x=cells_x * factor, cells_y=cells_y) for factor in (finer, 1)
+    )
     pressure = np.random.default_rng(0).random(coarse.shape)
     sinks_only = getattr(body, "model", "") == "single-mirror"
     loads, directions = (LOADS[::2], LOADS[:1]) if sinks_only else (LOADS, LOADS)
@@ -266,13 +270,13 @@ def test_operator_is_the_averaged_displacement_of_one_on_finer_cells(body: Body)
 def test_operator_converges_to_that_of_uniform_cells() -> None:
     """What is left of the difference above is the finer cells' own: it falls with their square."""
     body, cells_x, cells_y = HalfSpace(material=STEEL), 16, 8
-    coarse = Grid((0.0, LENGTH), (-1.2e-4, 1.2e-4), cells_x, cells_y)
+    coarse = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x, cells_y=cells_y)
     pressure = np.random.default_rng(1).random(coarse.shape)
     operator = ColumnsOperator.of(STEEL, body.parts[0], coarse, (NORMAL_RESPONSE,), Resolution())
     columns = operator({Load.NORMAL: pressure}, (Load.NORMAL,))[Load.NORMAL]
     apart = []
     for finer in (4, 8, 16):
-        fine = Grid((0.0, LENGTH), (-1.2e-4, 1.2e-4), cells_x * finer, cells_y)
+        fine = Grid(x_range=(0.0, LENGTH), y_range=(-1.2e-4, 1.2e-4), cells_x=cells_x * finer, cells_y=cells_y)
         own = SurfaceOperator.of(body, fine)({Load.NORMAL: np.repeat(pressure, finer, axis=0)})
         apart.append(np.abs(own.reshape(cells_x, finer, cells_y).mean(axis=1) - columns).max() / np.ptp(columns))
     assert apart[1] < 0.35 * apart[0]

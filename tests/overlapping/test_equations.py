@@ -9,11 +9,11 @@ import pytest
 from scipy import integrate
 
 from contactstudy import Grid, Material
+from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
 from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_square
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -39,7 +39,7 @@ def test_alternating_the_two_bodies_converges_to_the_explicit_solution(lateral: 
 
 @pytest.mark.parametrize("length", [8.0, 2.5])
 def test_correction_is_symmetric(length: float) -> None:
-    grid = Grid((0.0, length), (-2.0, 2.0), 24, 16)
+    grid = Grid(x_range=(0.0, length), y_range=(-2.0, 2.0), cells_x=24, cells_y=16)
     freed = FreedEnds(length)
     request = EndRequest.of(freed, Material(1.0, 0.3), grid, (NORMAL_RESPONSE,), 80.0, Resolution())
     for kernel in end_kernel(request).samples[NORMAL_RESPONSE]:
@@ -47,13 +47,16 @@ def test_correction_is_symmetric(length: float) -> None:
 
 
 def test_no_internal_setting_matters() -> None:
-    grid = Grid((0.0, 8.0), (-1.0, 1.0), 32, 24)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = np.broadcast_to((1 - grid.y**2) ** 2, grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
 
     def stress(resolution: Resolution) -> np.ndarray:
         both = (Load.NORMAL, Load.ALONG_Y)
-        fields = end_stress(EndProblem(8.0, 0.3, pressure, both, grid, resolution), [Points(*points)])[0]
+        fields = end_stress(
+            EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=both, grid=grid, resolution=resolution),
+            [Points(*points)],
+        )[0]
         return np.stack([fields[load] for load in both])
 
     usual = stress(Resolution())

@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.kernels.field import half_space_stress
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators, Positions
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-GRID = Grid((0.0, 2.4), (-1.0, 1.0), 8, 8)
+GRID = Grid(x_range=(0.0, 2.4), y_range=(-1.0, 1.0), cells_x=8, cells_y=8)
 
 
 def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -27,7 +28,15 @@ def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) ->
 @pytest.mark.parametrize("mirrored_once", [False, True])
 def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> None:
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.ones(GRID.shape)
-    problem = EndProblem(2.4, 0.3, cells, (Load.NORMAL,), GRID, Resolution(), mirrored_once=mirrored_once)
+    problem = EndProblem(
+        length=2.4,
+        poisson=0.3,
+        cells=cells,
+        loads=(Load.NORMAL,),
+        grid=GRID,
+        resolution=Resolution(),
+        mirrored_once=mirrored_once,
+    )
     offset = problem.corner_offset
     x = np.array([0.0, 0.5 * offset, offset, 0.3, 1.2, 2.1, 2.4 - offset, 2.4 - 0.5 * offset, 2.4])
     y, z = np.array([0.0, 0.6]), np.array([0.0, 0.5 * offset, offset, 0.4])
@@ -43,7 +52,7 @@ def test_a_symmetric_load_has_the_same_at_both_ends(*, mirrored_once: bool) -> N
 def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
     """The corner is not taken for that of the other end."""
     cells = np.where(np.abs(GRID.y) < 0.5, 1.0, 0.0) * np.linspace(2.0, 0.5, GRID.cells_x)[:, None]
-    problem = EndProblem(2.4, 0.3, cells, (Load.NORMAL,), GRID, Resolution())
+    problem = EndProblem(length=2.4, poisson=0.3, cells=cells, loads=(Load.NORMAL,), grid=GRID, resolution=Resolution())
     offset = problem.corner_offset
     x = np.array([0.0, offset, 2.4 - offset, 2.4])
     added, _ = pressed(problem, x, np.array([0.0]), np.array([0.4]))
@@ -54,14 +63,31 @@ def test_an_eccentric_load_is_at_either_corner_what_it_is_nearby() -> None:
 
 def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_too() -> None:
     """Where loads are mirrored once: in real space, with the load and its two images side by side, which are alike."""
-    length, top, face = 2.4, Grid((0.0, 2.4), (-4.0, 4.0), 12, 32), Grid((0.0, 6.0), (-4.0, 4.0), 24, 32)
+    length, top, face = (
+        2.4,
+        Grid(x_range=(0.0, 2.4), y_range=(-4.0, 4.0), cells_x=12, cells_y=32),
+        Grid(x_range=(0.0, 6.0), y_range=(-4.0, 4.0), cells_x=24, cells_y=32),
+    )
     cells = np.maximum(1 - top.y**2, 0.0) ** 2 * np.ones(top.shape)
-    problem = EndProblem(length, 0.3, cells, (Load.NORMAL,), top, Resolution(), mirrored_once=True)
+    problem = EndProblem(
+        length=length,
+        poisson=0.3,
+        cells=cells,
+        loads=(Load.NORMAL,),
+        grid=top,
+        resolution=Resolution(),
+        mirrored_once=True,
+    )
     added, (first, second) = pressed(problem, top.x, top.y, face.x)
     y, z = top.y[16:24:3], face.x[2:20:4]
-    copies, three = np.concatenate([cells + added] * 3), Grid((-2.4, 4.8), (-4.0, 4.0), 36, 32)
-    left = half_space_stress(Load.NORMAL, copies, 0.3, three, np.zeros(1), y, z, extent=(-np.inf, np.inf))[0, 0]
+    copies, three = (
+        np.concatenate([cells + added] * 3),
+        Grid(x_range=(-2.4, 4.8), y_range=(-4.0, 4.0), cells_x=36, cells_y=32),
+    )
+    left = half_space_stress(Load.NORMAL, copies, 0.3, three, Points(np.zeros(1), y, z), extent=(-np.inf, np.inf))[0, 0]
     behind = np.array([length])
-    opposite = half_space_stress(Load.NORMAL, second.T, 0.3, face, z, y, behind, extent=(0.0, np.inf))[2, :, :, 0]
+    opposite = half_space_stress(Load.NORMAL, second.T, 0.3, face, Points(z, y, behind), extent=(0.0, np.inf))[
+        2, :, :, 0
+    ]
     assert first[16:24:3, 2:20:4] == pytest.approx(left + opposite.T, abs=1e-2)
     assert np.abs(opposite).max() > 0.05

@@ -8,11 +8,12 @@ import numpy as np
 import pytest
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import field
 from contactstudy.overlapping.equations import EquationSet
-from contactstudy.overlapping.field import Points, end_fields
+from contactstudy.overlapping.field import end_fields
 from contactstudy.overlapping.harmonics import STRESS, end_displacement, end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -29,9 +30,16 @@ PLACES = (
 def test_a_place_has_the_same_field_alone_and_among_others(
     length: float, points: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    grid = Grid((0.0, 8.0), (-1.0, 1.0), 32, 24)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
     pressure = (1 - grid.y**2) ** 2 * np.linspace(0.5, 1.5, 32)[:, None]
-    problem = EndProblem(length, 0.3, pressure, (Load.NORMAL, Load.ALONG_Y), grid, Resolution())
+    problem = EndProblem(
+        length=length,
+        poisson=0.3,
+        cells=pressure,
+        loads=(Load.NORMAL, Load.ALONG_Y),
+        grid=grid,
+        resolution=Resolution(),
+    )
     places = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
     alone = [end_stress(problem, [place])[0] for place in places]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
@@ -43,7 +51,7 @@ def test_a_place_has_the_same_field_alone_and_among_others(
 
 def evaluated(places: list[Points]) -> tuple[int, int]:
     """How often a field is evaluated, and at how many points in all."""
-    grid = Grid((0.0, 8.0), (-1.0, 1.0), 4, 4)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=4, cells_y=4)
     sizes = []
 
     def beside(
@@ -52,7 +60,9 @@ def evaluated(places: list[Points]) -> tuple[int, int]:
         sizes.append(x.size * z.size)
         return STRESS.of_face_load(system, depth, loads, x, z)
 
-    problem = EndProblem(8.0, 0.3, np.ones(grid.shape), (Load.NORMAL,), grid, Resolution())
+    problem = EndProblem(
+        length=8.0, poisson=0.3, cells=np.ones(grid.shape), loads=(Load.NORMAL,), grid=grid, resolution=Resolution()
+    )
     end_fields(problem, replace(STRESS, of_face_load=beside), places)
     return len(sizes), sum(sizes)
 
@@ -74,7 +84,7 @@ def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> No
 @pytest.mark.parametrize("loads", [(Load.NORMAL, Load.ALONG_Y), (Load.ALONG_X,)])
 def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     """The quadratures depend on body, grid and positions, not on the load."""
-    grid = Grid((0.0, 8.0), (-1.5, 1.5), 16, 16)
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.5, 1.5), cells_x=16, cells_y=16)
     hertz = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.ones((16, 1))
     tilted = hertz * np.linspace(0.5, 1.5, 16)[:, None]
     rough = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
@@ -83,9 +93,9 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     place = Points(np.array([0.0, 0.05, 3.0]), np.array([-1.0, 0.1]), np.array([0.0, 0.02, 0.3]))
 
     def fields(cells: FloatArray) -> list[FloatArray]:
-        problem = EndProblem(length, 0.3, cells, loads, grid, Resolution())
+        problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
         (stress,) = end_stress(problem, [place], 80.0)
-        displacement = end_displacement(problem, *place, reference=10 * length)
+        displacement = end_displacement(problem, Points(*place), reference=10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
     parts = [fields(cells) for cells in (hertz, tilted, rough, spot)]

@@ -18,11 +18,27 @@ RAY = np.exp(0.4j) * np.array([0.3, 1.1, 2.6])
 RANDOM = np.random.default_rng(0)
 WEIGHTS = RANDOM.standard_normal((8, 2)) + 1j * RANDOM.standard_normal((8, 2))
 MODES = {
-    "one end": AxialModes(np.inf, 0, np.zeros(0), RAY, np.ones(3, np.complex128)),
-    "even": AxialModes(LENGTH, 1, np.pi / LENGTH * np.array([0.0, 2.0]), RAY, np.ones(3, np.complex128)),
-    "odd": AxialModes(LENGTH, -1, np.pi / LENGTH * np.array([1.0, 3.0]), RAY, np.ones(3, np.complex128)),
-    "even, mirrored once": SingleMirrorModes(LENGTH, 1, np.zeros(0), RAY, np.ones(3, np.complex128)),
-    "odd, mirrored once": SingleMirrorModes(LENGTH, -1, np.zeros(0), RAY, np.ones(3, np.complex128)),
+    "one end": AxialModes(length=np.inf, parity=0, discrete=np.zeros(0), ray=RAY, weights=np.ones(3, np.complex128)),
+    "even": AxialModes(
+        length=LENGTH,
+        parity=1,
+        discrete=np.pi / LENGTH * np.array([0.0, 2.0]),
+        ray=RAY,
+        weights=np.ones(3, np.complex128),
+    ),
+    "odd": AxialModes(
+        length=LENGTH,
+        parity=-1,
+        discrete=np.pi / LENGTH * np.array([1.0, 3.0]),
+        ray=RAY,
+        weights=np.ones(3, np.complex128),
+    ),
+    "even, mirrored once": SingleMirrorModes(
+        length=LENGTH, parity=1, discrete=np.zeros(0), ray=RAY, weights=np.ones(3, np.complex128)
+    ),
+    "odd, mirrored once": SingleMirrorModes(
+        length=LENGTH, parity=-1, discrete=np.zeros(0), ray=RAY, weights=np.ones(3, np.complex128)
+    ),
 }
 X, Z = np.array([0.3, 0.9, 1.4]), np.array([0.2, 0.8, 1.9])
 STEP = 1e-4
@@ -100,7 +116,7 @@ def test_the_faces_of_v_carry_what_is_freed_there_and_its_top_none_but_normal_st
     if isinstance(modes, SingleMirrorModes):
         # Each half-space's own load; the opposite one's normal stress reaches the face, its shear stays there.
         applied = np.exp(1j * np.outer(Z, RAY[:2])) @ (modes.applied(kappa)[:, None] * WEIGHTS[:2])
-        alone = SingleMirrorModes(1e3, 1, np.zeros(0), RAY, modes.weights)
+        alone = SingleMirrorModes(length=1e3, parity=1, discrete=np.zeros(0), ray=RAY, weights=modes.weights)
         assert beside(alone, harmonics._stress_of_face_load)(faces[:1], Z)[0, 0] == pytest.approx(freed)
         assert np.abs(np.real(applied) - freed).max() > 1e-3 * np.abs(freed).max()
     else:

@@ -25,7 +25,7 @@ from contactstudy.overlapping.lateral import (
 )
 from contactstudy.overlapping.quadrature import Resolution
 
-GRID = Grid((0.0, 4.0), (-1.0, 1.0), 12, 40)
+GRID = Grid(x_range=(0.0, 4.0), y_range=(-1.0, 1.0), cells_x=12, cells_y=40)
 Y = np.array([-1.5, -0.2, 0.0, 0.7])
 
 

@@ -12,14 +12,22 @@ from contactstudy.overlapping.operators import OverlappingOperators, Positions
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
-UNIFORM = Grid((0.0, 2.0), (-1.5, 1.5), 8, 6)
+UNIFORM = Grid(x_range=(0.0, 2.0), y_range=(-1.5, 1.5), cells_x=8, cells_y=6)
 COLUMNS = Grid.from_edges([0.0, 0.1, 0.3, 0.7, 1.2, 1.7, 2.0], (-1.5, 1.5), 6)
 DEPTHS = np.array([0.1, 0.5])
 
 
 def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = False) -> OverlappingOperators:
     resolution = Resolution().for_loads((load,))
-    problem = EndProblem(length, 0.3, np.zeros(grid.shape), (load,), grid, resolution, mirrored_once)
+    problem = EndProblem(
+        length=length,
+        poisson=0.3,
+        cells=np.zeros(grid.shape),
+        loads=(load,),
+        grid=grid,
+        resolution=resolution,
+        mirrored_once=mirrored_once,
+    )
     reference = 10 * length if np.isfinite(length) else None
     return OverlappingOperators.of(problem, Positions(grid.x, grid.y, DEPTHS), reference=reference)
 

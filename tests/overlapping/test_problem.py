@@ -31,7 +31,7 @@ def asked(
     cells = (
         pressure * np.where((grid.y / unit > -0.5) & (grid.y / unit < 0.75), 1.0, 0.0) * (1 + np.arange(6.0))[:, None]
     )
-    return EndProblem(unit * length, 0.3, cells, (load,), grid, Resolution())
+    return EndProblem(length=unit * length, poisson=0.3, cells=cells, loads=(load,), grid=grid, resolution=Resolution())
 
 
 @pytest.mark.parametrize("load", [Load.NORMAL, Load.ALONG_X])

@@ -19,11 +19,11 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stresses_at
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 from contactstudy.overlapping.harmonics import end_stress
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
@@ -61,7 +61,15 @@ def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
     """Before anything is imposed: H under the added load and V under the face loads cancel on the top."""
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     both = (Load.NORMAL, Load.ALONG_Y)
-    problem = EndProblem(4.0, 0.3, eccentric.values, both, grid, Resolution(), mirrored_once=True)
+    problem = EndProblem(
+        length=4.0,
+        poisson=0.3,
+        cells=eccentric.values,
+        loads=both,
+        grid=grid,
+        resolution=Resolution(),
+        mirrored_once=True,
+    )
     fields = end_stress(problem, [Points(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[0]
     added = np.stack([fields[load] for load in both])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
@@ -91,7 +99,7 @@ def test_added_load_and_its_two_images_sink_a_plain_half_space_as_much(on_cells,
 def test_displacement_inside_meets_that_of_the_top(eccentric: xr.DataArray, unit_material: Material) -> None:
     body = single_mirror(4.0, unit_material)
     on_top = surface_displacement(body, eccentric, FRICTION)
-    inside = displacement_field(body, eccentric, FRICTION, y=eccentric.y.values[[24, 30]])
+    inside = displacement_field(body, eccentric, friction=FRICTION, y=eccentric.y.values[[24, 30]])
     difference = np.abs(on_top.values[:, [24, 30]] - inside.u_z.values[..., 0]).max()
     assert difference < 5e-4 * float(on_top.max())
     assert "reference_distance" not in on_top.attrs
@@ -131,8 +139,8 @@ def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_mater
 def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
     pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
     points = {"x": [0.0, 0.4, 1.0, 2.0, 50.0], "y": [0.0, 0.6], "z": [0.05, 0.5, 2.0]}
-    stress = stress_field(single_mirror(60.0, unit_material), pressure, FRICTION, **points)
-    exact = stress_field(FiniteLengthSpace(length=60.0, material=unit_material), pressure, FRICTION, **points)
+    stress = stress_field(single_mirror(60.0, unit_material), pressure, friction=FRICTION, **points)
+    exact = stress_field(FiniteLengthSpace(length=60.0, material=unit_material), pressure, friction=FRICTION, **points)
     for name in STRESSES:
         assert np.abs(stress[name] - exact[name]).max() < 3e-4, name
 
@@ -142,7 +150,7 @@ def test_contact_nears_the_exact_one_in_a_longer_body(cylinder_gap, unit_materia
     for length in (2.5, 8.0, 32.0):
         gap = cylinder_gap(length, (int(8 * length), 48))
         pressures = [
-            solve_contact(body, gap, length * LINE_LOAD)["pressure"].max("y").values
+            solve_contact(body, gap, load=length * LINE_LOAD)["pressure"].max("y").values
             for body in (
                 FiniteLengthSpace(length=length, material=unit_material),
                 single_mirror(length, unit_material),

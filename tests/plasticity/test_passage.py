@@ -27,16 +27,17 @@ def passes_of(history: np.ndarray, shear_yield_stress: float, hardening: tuple[f
     """Passes over one cell of a history (instant, 6)."""
     one = np.zeros(1, np.int64)
     passage = Passage(
-        history.T[:, :, None],
-        LAYERS,
-        LAYERS,
-        Alone(),
-        history.shape[0] + 2,
-        (one, one),
-        np.full(1, np.sqrt(3) * shear_yield_stress),
-        YOUNG / (2 * (1 + POISSON)),
-        *hardening,
-        1e-5,
+        elastic=history.T[:, :, None],
+        residual=LAYERS,
+        layers=LAYERS,
+        along=Alone(),
+        places=history.shape[0] + 2,
+        box=(one, one),
+        yield_stress=np.full(1, np.sqrt(3) * shear_yield_stress),
+        shear_modulus=YOUNG / (2 * (1 + POISSON)),
+        isotropic=hardening[0],
+        kinematic=hardening[1],
+        tolerance=1e-5,
     )
     state = State(np.zeros((6, 1)), np.zeros(1), True)
     for _ in range(count):

@@ -30,7 +30,7 @@ def test_line_is_the_drop_downwards():
 def test_given_axes_are_used_and_stay_upside_down():
     ax = pyplot.figure().add_subplot()
     for _ in range(2):
-        assert plot_profile(Cylinder(), 10e-3, ax) is ax
+        assert plot_profile(Cylinder(), 10e-3, ax=ax) is ax
     assert ax.yaxis_inverted()
 
 

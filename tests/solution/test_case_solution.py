@@ -110,7 +110,7 @@ def test_half_space_has_nothing_left_on_its_ends() -> None:
 def test_grid_beside_the_roller_is_refused() -> None:
     case = Case(body=HalfSpace(material=STEEL), roller=CASE.roller, max_pressure=1.5e9)
     with pytest.raises(InvalidInputError, match="lies under the roller"):
-        solve(case, Grid((1.0, 2.0), (-1e-4, 1e-4), 8, 8))
+        solve(case, Grid(x_range=(1.0, 2.0), y_range=(-1e-4, 1e-4), cells_x=8, cells_y=8))
     with pytest.raises(InvalidInputError, match="case = 1"):
         solve(1)  # type: ignore[arg-type]
 

@@ -46,7 +46,7 @@ def test_points_as_range_and_as_list_are_the_same():
 def test_a_new_parameter_with_a_default_keeps_old_identities(monkeypatch):
     before = "6c02e5292dae80f3"
     assert case_id({"friction": 0.1})[:16] == before
-    new = parameters.Parameter("roughness", number, "1", "added later", fallback=3.0)
+    new = parameters.Parameter(name="roughness", check=number, units="1", meaning="added later", fallback=3.0)
     monkeypatch.setitem(parameters.PARAMETERS, "roughness", new)
     assert case_id({"friction": 0.1})[:16] == before
     assert case_id({"friction": 0.1, "roughness": 3})[:16] == before

@@ -59,7 +59,7 @@ def test_defaults_are_those_that_old_cases_were_solved_with():
 def test_a_keyword_becomes_a_parameter_by_one_entry(monkeypatch):
     def takes_more(case: Case, *, sharpness: float = 0.5) -> None: ...
 
-    new = Parameter("sharpness", number, "1", "made up", takes_more)
+    new = Parameter(name="sharpness", check=number, units="1", meaning="made up", taker=takes_more)
     monkeypatch.setitem(PARAMETERS, "sharpness", new)
     assert new.default == 0.5
     assert taken_by(takes_more, {"sharpness": 0.7, "friction": 0.1}) == {"sharpness": 0.7}

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from benchmarks.convergence import SETTINGS, Table
-from contactstudy.verification.check import compare, compare_fields
+from contactstudy.verification.check import Reference
 from contactstudy.verification.suite import line
 
 FINITE = st.floats(-1e6, 1e6)
@@ -16,7 +16,7 @@ FINITE = st.floats(-1e6, 1e6)
 
 @given(FINITE, FINITE, st.floats(0, 1e3))
 def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
-    check = compare("case", "quantity", "source", computed, expected, tolerance)
+    check = Reference("case", "source").compare("quantity", computed, expected, tolerance)
     assert check.passed == (abs(computed - expected) <= tolerance)
     assert line(check).startswith("ok" if check.passed else "FAIL")
 
@@ -25,16 +25,16 @@ def test_tolerance(computed: float, expected: float, tolerance: float) -> None:
 def test_worst_point_of_fields(expected: list[float], place: int) -> None:
     computed = np.array(expected)
     computed[place % computed.size] += 1.0
-    check = compare_fields("case", "field", "source", computed, expected, 0.5)
+    check = Reference("case", "source").compare_fields("field", computed, expected, 0.5)
     assert check.difference == pytest.approx(1.0, abs=1e-6)
     assert not check.passed
 
 
 @pytest.mark.parametrize("wrong", [np.nan, np.inf, -np.inf])
 def test_what_is_not_a_number_fails(wrong: float) -> None:
-    assert not compare("case", "quantity", "source", wrong, 1.0, 1e9).passed
-    assert not compare_fields("case", "field", "source", [1.0, wrong], [1.0, 1.0], 1e9).passed
-    assert not compare_fields("case", "field", "source", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
+    assert not Reference("case", "source").compare("quantity", wrong, 1.0, 1e9).passed
+    assert not Reference("case", "source").compare_fields("field", [1.0, wrong], [1.0, 1.0], 1e9).passed
+    assert not Reference("case", "source").compare_fields("field", [1.0, 1.0, np.nan], 1.0, 1e9, median=True).passed
 
 
 def test_convergence_by_error_and_order() -> None:

@@ -73,8 +73,8 @@ def softer(patch: Patch) -> None:
 def no_friction(patch: Patch) -> None:
     real = stress.stress_field
 
-    def without(body, pressure, friction=0.0, *at, **named):
-        return real(body, pressure, 0.0, *at, **named)
+    def without(body, pressure, **named):
+        return real(body, pressure, **(named | {"friction": 0.0}))
 
     everywhere(patch, "stress_field", without)
 
@@ -132,8 +132,8 @@ def softer_bodies(patch: Patch) -> None:
 def twice_the_friction(patch: Patch) -> None:
     real = contact.solve_contact
 
-    def wrong(body, gap, load, coefficient, *arguments, **named):
-        return real(body, gap, load, 2 * coefficient, *arguments, **named)
+    def wrong(body, gap, *, friction, **named):
+        return real(body, gap, friction=2 * friction, **named)
 
     patch.setattr(tribology, "solve_contact", wrong)
 

@@ -14,14 +14,20 @@ import xarray as xr
 from contactstudy import InvalidInputError, MagnitudeWarning
 from contactstudy.cli import main
 from contactstudy.verification import Verification, suite, verify
-from contactstudy.verification.check import Check, Curve, compare
+from contactstudy.verification.check import Check, Curve, Reference
 
 
 def fake(full: bool) -> Iterator[Check]:
     """Two checks, of which one fails."""
     x = np.linspace(0, 1, 5)
-    yield compare("good | case", "pressure", "Hertz", 1.0, 1.0, 0.1, curve=Curve("x / a", "sigma_xx / p0", x, x, x))
-    yield compare("bad case", "pressure", "Hertz", 2.0, 1.0, 0.1)
+    yield Reference("good | case", "Hertz").compare(
+        "pressure",
+        1.0,
+        1.0,
+        0.1,
+        curve=Curve(("x / a", "sigma_xx / p0"), x, x, x),
+    )
+    yield Reference("bad case", "Hertz").compare("pressure", 2.0, 1.0, 0.1)
 
 
 @pytest.fixture

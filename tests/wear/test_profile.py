@@ -33,13 +33,13 @@ def equal_columns(count: int, cells_y: int = 48) -> Grid:
 @pytest.fixture(scope="module")
 def settled() -> xr.Dataset:
     """Wear on columns that settle the pressure at the ends, a thousandth of a half-width wide there."""
-    return wear_in(pressed(), K, [0.0, 2e4, 2e5], tolerance=0.03)
+    return wear_in(pressed(), K, distance=[0.0, 2e4, 2e5], tolerance=0.03)
 
 
 @pytest.fixture(scope="module")
 def coarse() -> xr.Dataset:
     """The same wear on columns of 5 um."""
-    return wear_in(pressed(), K, [0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
+    return wear_in(pressed(), K, distance=[0.0, 2e4, 2e5], grid=equal_columns(80), tolerance=0.03)
 
 
 @pytest.mark.slow
@@ -99,7 +99,7 @@ def test_shakedown_limit_beside_the_end(settled, coarse) -> None:
 @pytest.fixture(scope="module")
 def uniform() -> xr.Dataset:
     """Wear on few uniform cells."""
-    return wear_in(pressed(), K, [0.0, 1e4, 2e4], grid=choose_grid(pressed(), cells_x=2, cells_y=6))
+    return wear_in(pressed(), K, distance=[0.0, 1e4, 2e4], grid=choose_grid(pressed(), cells_x=2, cells_y=6))
 
 
 def test_unworn_profile(uniform) -> None:
@@ -112,7 +112,7 @@ def test_slope_at_a_flush_end() -> None:
     case = pressed(beside=0.0)
     reach = 2.6 * case.hertz_half_width
     edges = np.linspace(0, LENGTH, 41)
-    worn = wear_in(case, K, [0.0, 2e5], grid=Grid.from_edges(edges, (-reach, reach), 32))
+    worn = wear_in(case, K, distance=[0.0, 2e5], grid=Grid.from_edges(edges, (-reach, reach), 32))
     profile = worn_profile(case, worn)
     s = 1e-6 * np.array([0.0, 1.0, 2.0, 4.0])
     slopes = np.diff(profile.drop(s - 0.5 * LENGTH, LENGTH)) / np.diff(s)
@@ -123,7 +123,7 @@ def test_overhanging_roller_without_a_ridge() -> None:
     body = FiniteLengthSpace(length=0.3e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=LENGTH), max_pressure=1.5e9, end_distance=-0.05e-3)
     reach = 2.6 * case.hertz_half_width
-    worn = wear_in(case, K, [0.0, 2e4], grid=Grid.from_edges(np.linspace(0, 0.3e-3, 31), (-reach, reach), 32))
+    worn = wear_in(case, K, distance=[0.0, 2e4], grid=Grid.from_edges(np.linspace(0, 0.3e-3, 31), (-reach, reach), 32))
     profile = worn_profile(case, worn)
     depth = worn["wear_depth"].values[-1]
     ends = profile.drop(np.array([-0.15e-3, 0.15e-3]), LENGTH)
@@ -134,7 +134,7 @@ def test_overhanging_roller_without_a_ridge() -> None:
 def test_partly_worn_edge_radius_without_a_ridge() -> None:
     """There the columns are wide: interpolated depths left a ridge that was pressed higher than the unworn radius."""
     case = pressed(Cylinder(fillet_radius=0.1e-3))
-    worn = wear_in(case, K, [0.0, 1e4])
+    worn = wear_in(case, K, distance=[0.0, 1e4])
     again = solve(pressed(worn_profile(case, worn)), stresses=False)
     unworn, own = (float(worn["pressure"].isel(distance=at).max()) for at in (0, -1))
     assert own < float(again.peak_pressure) < 0.8 * unworn

@@ -40,7 +40,7 @@ def sharp():
 @pytest.fixture(scope="module")
 def worn(sharp):
     case, grid = sharp
-    return wear_in(case, K, 1e5, grid=grid)
+    return wear_in(case, K, distance=1e5, grid=grid)
 
 
 def spread(line_load):
@@ -72,7 +72,7 @@ def test_step_sizes(worn):
 @pytest.mark.slow
 def test_wear_error_against_small_steps(sharp):
     case, grid = sharp
-    rough, fine = (wear_in(case, K, [5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 3e-5))
+    rough, fine = (wear_in(case, K, distance=[5e3], grid=grid, tolerance=tolerance) for tolerance in (0.03, 3e-5))
     off = float(abs(rough.wear_depth - fine.wear_depth).isel(distance=-1).max() / fine.wear_depth.max())
     assert off < 2 * float(rough.wear_error[-1])
     assert off < 0.03
@@ -82,7 +82,7 @@ def test_wear_error_against_small_steps(sharp):
 def test_uniform_wear():
     case = roller_on(length=0.4e-3, model="mirror")
     grid = choose_grid(case, cells_x=2, cells_y=8)
-    found = wear_in(case, K, [0.0, 1e5], grid=grid, circumference=0.01)
+    found = wear_in(case, K, distance=[0.0, 1e5], grid=grid, circumference=0.01)
     depth = K * case.normal_load / 0.4e-3 * 1e5 / 0.01
     assert found.wear_depth.values[-1] == pytest.approx(depth, rel=1e-6)
     assert found.pressure.values[-1] == pytest.approx(found.pressure.values[0], abs=1e-4 * 1.5e9)
@@ -90,7 +90,7 @@ def test_uniform_wear():
 
 def test_uniform_pressure_between_mirrors():
     case = roller_on(length=0.4e-3, model="mirror", profile=FullCrown(crown_radius=0.05))
-    found = wear_in(case, K, [0.0, 1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
+    found = wear_in(case, K, distance=[0.0, 1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
     peaks = found.pressure.max("y").values
     assert spread(peaks[0]) > 1.05
     assert spread(peaks[1]) < 1.002
@@ -99,9 +99,9 @@ def test_uniform_pressure_between_mirrors():
 def test_continuation(sharp, worn):
     case, grid = sharp
     with pytest.warns(ConvergenceWarning, match="max_steps = 4"):
-        first = wear_in(case, K, 1e5, grid=grid, max_steps=4)
+        first = wear_in(case, K, distance=1e5, grid=grid, max_steps=4)
     assert first.sizes["distance"] == 5
-    second = wear_in(case, K, 1e5, after=first)
+    second = wear_in(case, K, distance=1e5, after=first)
     assert float(second.distance[0]) == float(first.distance[-1])
     assert second.wear_depth.values[-1] == pytest.approx(worn.wear_depth.values[-1], rel=1e-4)
     assert float(second.volume_error) < 1e-12
@@ -115,7 +115,7 @@ def test_load_position_off_the_middle(sharp):
     """The roller then wears askew, and turns with its wear."""
     case, grid = sharp
     off = Case(body=case.body, roller=case.roller, max_pressure=1.5e9, load_position=0.32e-3)
-    found = wear_in(off, K, [1e5], grid=grid)
+    found = wear_in(off, K, distance=[1e5], grid=grid)
     load, x = found.line_load.values[-1], grid.x
     under = load > 0
     length = grid.dx * under.sum()
@@ -129,7 +129,7 @@ def test_load_position_off_the_middle(sharp):
 def test_quarter_space():
     body = QuarterSpace(material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.3e-3), max_pressure=1.5e9, end_distance=0.05e-3)
-    found = wear_in(case, K, [1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
+    found = wear_in(case, K, distance=[1e5], grid=choose_grid(case, cells_x=3, cells_y=8))
     assert spread(found.line_load.values[-1]) < 1.001
     assert float(found.volume_error) < 1e-12
 
@@ -144,7 +144,7 @@ def test_elastic_roller_with_coupled_friction():
         coupled=True,
     )
     grid = choose_grid(case, cells_x=2, cells_y=6)
-    by_slip, by_work = (wear_in(case, K, [2e3], grid=grid, law=law) for law in ("slip", "work"))
+    by_slip, by_work = (wear_in(case, K, distance=[2e3], grid=grid, law=law) for law in ("slip", "work"))
     assert float(by_work.worn_volume[-1]) == pytest.approx(0.2 * float(by_slip.worn_volume[-1]), rel=1e-12)
     assert spread(by_slip.line_load.values[-1]) < spread(by_slip.line_load.values[0])
 
@@ -165,7 +165,7 @@ def rolling():
 def test_rolling_by_slip(rolling):
     case, grid = rolling
     result = solve(case, grid, stresses=False)
-    worn = wear_in(case, K, [100.0], grid=grid)
+    worn = wear_in(case, K, distance=[100.0], grid=grid)
     rate = float((result.pressure * np.hypot(result.slip_x, result.slip_y)).sum()) * grid.cell_area
     assert float(worn.worn_volume[-1]) == pytest.approx(K * rate * 100.0, rel=2e-3)
 
@@ -173,7 +173,7 @@ def test_rolling_by_slip(rolling):
 @pytest.mark.slow
 def test_steady_wear_in_rolling(rolling):
     case, grid = rolling
-    found = wear_in(case, 1e-14, [10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
+    found = wear_in(case, 1e-14, distance=[10.0, 4e4, 1e5], grid=grid, tolerance=0.05)
     assert float(found.volume_error) < 0.02
     under = found.line_load.values[0] > 0
     depth = found.wear_depth.values[:, under]
@@ -201,7 +201,7 @@ def test_worn_profile_of_an_overhanging_roller():
     body = FiniteLengthSpace(length=0.4e-3, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=0.5e-3), max_pressure=1.5e9, end_distance=-0.05e-3)
     grid = choose_grid(case, cells_x=3, cells_y=8)
-    found = wear_in(case, K, [1e4], grid=grid)
+    found = wear_in(case, K, distance=[1e4], grid=grid)
     profile = worn_profile(case, found)
     drop = profile.drop(np.array([-0.24e-3, 0.0, 0.24e-3]), 0.5e-3)
     assert drop[[0, 2]].tolist() == [0.0, 0.0]
@@ -211,7 +211,7 @@ def test_worn_profile_of_an_overhanging_roller():
 @pytest.mark.slow
 def test_mean_depths_on_columns():
     case = roller_on(profile=FullCrown(crown_radius=0.05))
-    found = wear_in(case, K, [1e3])
+    found = wear_in(case, K, distance=[1e3])
     edges = np.append(found.x_bounds.values[:, 0], found.x_bounds.values[-1, 1])
     grid = Grid.from_edges(edges, (float(found.y[0]), float(found.y[-1])), found.sizes["y"])
     again = Case(
@@ -228,7 +228,7 @@ def test_profile_infinite_at_its_ends():
     profile = Lundberg(amplitude=0.2e-6)
     assert np.isinf(profile.drop(np.array([0.2e-3]), 0.4e-3)).all()
     case = roller_on(profile=profile)
-    found = wear_in(case, K, [1e4], grid=choose_grid(case, cells_x=3, cells_y=8))
+    found = wear_in(case, K, distance=[1e4], grid=choose_grid(case, cells_x=3, cells_y=8))
     taken = worn_profile(case, found)
     assert taken.terms[0] is profile
     assert np.isfinite(taken.terms[1].drop(np.array([-0.2e-3, 0.2e-3]), 0.4e-3)).all()
@@ -257,20 +257,20 @@ def test_bad_input(sharp, changes, named):
     case, grid = sharp
     arguments = {"coefficient": K, "distance": 1e3, "grid": grid} | changes
     with pytest.raises(InvalidInputError, match=named):
-        wear_in(case, arguments.pop("coefficient"), arguments.pop("distance"), **arguments)
+        wear_in(case, arguments.pop("coefficient"), distance=arguments.pop("distance"), **arguments)
 
 
 def test_bad_cases_and_states(sharp, worn, rolling):
     case, grid = sharp
     with pytest.raises(InvalidInputError, match=r"case\.motion"):
-        wear_in(Case(body=case.body, roller=case.roller, max_pressure=1e9, motion=Shift(y=1e-6)), K, 1.0)
+        wear_in(Case(body=case.body, roller=case.roller, max_pressure=1e9, motion=Shift(y=1e-6)), K, distance=1.0)
     coupled = Case(body=case.body, roller=case.roller, max_pressure=1e9, motion=Rolling(), coupled=True, friction=0.1)
     with pytest.raises(InvalidInputError, match=r"case\.coupled"):
-        wear_in(coupled, K, 1.0)
+        wear_in(coupled, K, distance=1.0)
     with pytest.raises(InvalidInputError, match="grid"):
-        wear_in(case, K, 2e5, after=worn, grid=grid)
+        wear_in(case, K, distance=2e5, after=worn, grid=grid)
     with pytest.raises(InvalidInputError, match="where the wear begins"):
-        wear_in(case, K, 1e4, after=worn)
+        wear_in(case, K, distance=1e4, after=worn)
     with pytest.raises(InvalidInputError, match=r"distance = 0\.5"):
         worn_profile(case, worn, 0.5)
     with pytest.raises(InvalidInputError, match="wear_depth"):
@@ -281,13 +281,13 @@ def test_continuation_under_another_load(sharp, worn):
     case, _ = sharp
     lighter = replace(case, max_pressure=None, load=0.5 * case.normal_load)
     further = xr.DataArray([100.0, 150.0], dims="way", attrs={"units": "km"})
-    found = wear_in(lighter, K, further, after=worn)
+    found = wear_in(lighter, K, distance=further, after=worn)
     assert found.distance.values.tolist() == [1e5, 1.5e5]
     gained = found.worn_volume[-1] - found.worn_volume[0]
     assert float(gained) == pytest.approx(K * lighter.normal_load * 5e4, rel=1e-6)
     smaller = replace(case, roller=replace(case.roller, radius=4e-3))
     with pytest.raises(InvalidInputError, match=r"after = 'solved with roller.radius = 0.005'"):
-        wear_in(smaller, K, 2e5, after=worn)
+        wear_in(smaller, K, distance=2e5, after=worn)
     with pytest.raises(InvalidInputError, match=r"worn = 'solved with end_distance = 0.0001'"):
         worn_profile(replace(case, end_distance=0.0), worn)
 
@@ -295,7 +295,12 @@ def test_continuation_under_another_load(sharp, worn):
 def test_finite_drop_at_both_ends():
     """75 cells on 0.6 mm have middles where the roller begins and ends."""
     case = roller_on()
-    worn = wear_in(case, K, [0.0, 1e3], grid=Grid((0.0, 0.6e-3), (-0.13e-3, 0.13e-3), 75, 16))
+    worn = wear_in(
+        case,
+        K,
+        distance=[0.0, 1e3],
+        grid=Grid(x_range=(0.0, 0.6e-3), y_range=(-0.13e-3, 0.13e-3), cells_x=75, cells_y=16),
+    )
     pressed = (worn.pressure > 0).any(("distance", "y"))
     assert np.isfinite(worn.profile_drop.isel(distance=-1)).where(pressed, True).all()
     np.testing.assert_array_equal(np.isfinite(worn.profile_drop), np.isfinite(worn.profile_drop)[:, ::-1])
@@ -311,7 +316,7 @@ def test_slip_and_work_of_uniform_friction() -> None:
     creepage = 0.1 * friction * smooth.hertz_half_width / 5e-3
     case = replace(smooth, friction=friction, motion=Rolling(longitudinal_creepage=creepage))
     by_slip, by_work = (
-        float(wear_in(case, coefficient, [0.0, 10.0], law=law).worn_volume[-1])
+        float(wear_in(case, coefficient, distance=[0.0, 10.0], law=law).worn_volume[-1])
         for law, coefficient in (("slip", 1e-17), ("work", 1e-17 / friction))
     )
     assert by_slip == pytest.approx(by_work, rel=1e-3)

@@ -93,7 +93,7 @@ class Resultants:
         return 0.0 if self.lever is None else abs(float((pressure * self.lever).sum() / pressure.sum()))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ContactIterate:
     """Where the iteration ended."""
 
@@ -142,7 +142,9 @@ def solve_complementarity(
             break
     pressure = resultants.restored(state.pressure)
     motion = tuple(float(amount) for amount in state.motion)
-    return ContactIterate(pressure, motion, state.applications, converged, tuple(history))
+    return ContactIterate(
+        pressure=pressure, motion=motion, applications=state.applications, converged=converged, history=tuple(history)
+    )
 
 
 class _State:

@@ -158,7 +158,7 @@ class Settings(NamedTuple):
     max_iterations: int = 500
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Contact:
     """Solution of a contact."""
 
@@ -240,17 +240,17 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
         tolerance=settings.tolerance,
     )
     return Contact(
-        shape,
-        settings,
-        pressure,
-        np.where(np.isfinite(opening), opening, np.inf),
-        displacement - motions.body.height(grid.x),
-        approach,
-        tilt,
-        iterate.applications,
-        iterate.converged and certificate.holds(settings.tolerance),
-        motions,
-        certificate,
+        shape=shape,
+        settings=settings,
+        pressure=pressure,
+        gap=np.where(np.isfinite(opening), opening, np.inf),
+        displacement=displacement - motions.body.height(grid.x),
+        approach=approach,
+        tilt=tilt,
+        iterations=iterate.applications,
+        converged=iterate.converged and certificate.holds(settings.tolerance),
+        motions=motions,
+        certificate=certificate,
     )
 
 
@@ -272,11 +272,12 @@ def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referr
 
     def solve(motion: RigidMotion, start: FloatArray | None) -> ContactIterate:
         problem = ContactProblem(
-            grid,
-            shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
-            shape.prescribed.resultants(grid),
-            shape.coupled_friction,
-            *settings,
+            grid=grid,
+            gap=shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
+            resultants=shape.prescribed.resultants(grid),
+            friction=shape.coupled_friction,
+            tolerance=settings.tolerance,
+            max_iterations=settings.max_iterations,
         )
         return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
@@ -18,7 +19,6 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.displacement import displacement_under
 from contactstudy.fields.loads import TopLoad
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import Points
 
 
 class Prescribed(NamedTuple):

@@ -43,7 +43,7 @@ class ContactOperator(Protocol):
         ...
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class ContactProblem:
     """A contact to solve, checked."""
 
@@ -177,7 +177,7 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
         # Difference of the displacements under the last two tractions.
         bending_change = float(np.ptp((bent - bent_before)[previous > 0])) / scale
         if max(tolerance, change) <= problem.tolerance and bending_change <= 0.5 * problem.tolerance:
-            return ContactIterate(previous, iterate.motion, applications, True, iterate.history)
+            return replace(iterate, pressure=previous, applications=applications, converged=True)
         tolerance = max(0.5 * problem.tolerance, ROUND_ACCURACY * change)
         iterate = solve_normal(operator, replace(problem, gap=problem.gap + bent, tolerance=tolerance), previous)
         applications += iterate.applications
@@ -185,4 +185,4 @@ def solve_coupled(operator: ContactOperator, problem: ContactProblem) -> Contact
             break
         weights = problem.grid.weights
         change = float((weights * np.abs(iterate.pressure - previous)).sum() / (weights * iterate.pressure).sum())
-    return ContactIterate(iterate.pressure, iterate.motion, applications, False, iterate.history)
+    return replace(iterate, applications=applications, converged=False)

@@ -29,7 +29,7 @@ STEEPEST = 2.6  # largest ratio of neighbouring widths. Accuracy.
 MOST_COLUMNS = 600  # columns at which the refinement ends, whatever is settled
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class AxialShape:
     """Shape of the indenter along the axis."""
 

@@ -56,7 +56,7 @@ class Sample(NamedTuple):
     pressure: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class EndLaw:
     """Law of the pressure at a singular end."""
 
@@ -85,15 +85,15 @@ class EndLaw:
             exponent = float(optimum.x)
         fits = [_fit(edges, row, width * factor, exponent)[0] for factor in (1.0, 2.0)]
         if not np.isfinite(fits).all():  # pressed on too few columns
-            outermost = (1 - exponent) * row[0] * width**exponent
-            return EndLaw(self.kind, exponent, float(outermost), np.inf, fitted)
+            outermost = float((1 - exponent) * row[0] * width**exponent)
+            return replace(self, exponent=exponent, intensity=outermost, intensity_error=np.inf, fitted=fitted)
         share = 1.0 if exponent == RIGID else ELASTIC_SHARE
         error = share * abs(fits[0] - fits[1]) + STEP_ERROR * fits[0]
         if 0 < room < NEAREST * width:  # the columns do not resolve the law
             error = np.inf
         elif FARTHEST * width > LEAST_ROOM * room:
             error += NARROW_ERROR * fits[0]
-        return EndLaw(self.kind, exponent, fits[0], error, fitted)
+        return replace(self, exponent=exponent, intensity=fits[0], intensity_error=error, fitted=fitted)
 
 
 def elastic_exponent(edge: float, face: float) -> float:
@@ -113,7 +113,7 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     """Law of a pressed end; None if its pressure is finite."""
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
-        return EndLaw("power", exponent) if samples[-1].pressure > 0 else None
+        return EndLaw(kind="power", exponent=exponent) if samples[-1].pressure > 0 else None
     if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
         return None
     if min(sample.pressure for sample in samples[-3:]) <= 0:
@@ -123,12 +123,12 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
         for before, after in pairwise(samples[-3:])
     ]
     if min(growth) > LEAST_GROWTH:
-        return EndLaw("power", exponent)
+        return EndLaw(kind="power", exponent=exponent)
     steps = [
         (after.pressure - before.pressure) / np.log(before.width / after.width) for before, after in pairwise(samples)
     ]
     if len(steps) >= 4 and sum(steps[-2:]) > LASTING_STEPS * sum(steps[-4:-2]) > 0:
-        return EndLaw("logarithm", 0.0)
+        return EndLaw(kind="logarithm", exponent=0.0)
     return None
 
 
@@ -186,7 +186,7 @@ CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0
 WIDEST_BLEND = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class CornerLaw:
     """Logarithmic pressure at a convex corner."""
 
@@ -215,17 +215,18 @@ def corner_law(
     pressed = [bool(values[0].any()) for _, values in outward]
     if not all(pressed):
         room = max(float(distances[-1]) for distances, _ in outward)
-        end = EndLaw("power", exponent).with_intensity(*outward[pressed.index(True)], room)
-        return CornerLaw(x, slope, intensity, np.nan, np.nan, end)
+        end = EndLaw(kind="power", exponent=exponent).with_intensity(*outward[pressed.index(True)], room)
+        return CornerLaw(x=x, slope=slope, intensity=intensity, distance=np.nan, distance_error=np.nan, end=end)
     centre = int((pressure[index - 1] + pressure[index]).argmax())
     sides = [(distances, values[:, centre]) for distances, values in outward]
     width = max(float(distances[1]) for distances, _ in sides)
     fits = [[_log_distance(*side, width * factor, intensity) for side in sides] for factor in (1.0, 2.0)]
     logs = np.mean(fits, axis=1)
     if not np.isfinite(logs).all():
-        return CornerLaw(x, slope, intensity, np.nan, np.inf)
+        return CornerLaw(x=x, slope=slope, intensity=intensity, distance=np.nan, distance_error=np.inf)
     distance = float(np.exp(logs[0]))
-    return CornerLaw(x, slope, intensity, distance, distance * abs(float(np.expm1(logs[1] - logs[0]))))
+    error = distance * abs(float(np.expm1(logs[1] - logs[0])))
+    return CornerLaw(x=x, slope=slope, intensity=intensity, distance=distance, distance_error=error)
 
 
 def _log_distance(edges: FloatArray, row: FloatArray, width: float, intensity: float) -> float:

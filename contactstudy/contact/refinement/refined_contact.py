@@ -236,7 +236,7 @@ def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None) 
     """Contact of a case to solve on cells; default: the load or approach of the case."""
     gap = case.gap(grid)
     prescribed = (prescribed or prescribed_load(case)).checked(gap, grid)
-    return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, case.coupled_friction)
+    return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
 
 
 def prescribed_load(case: Case) -> Prescribed:
@@ -282,7 +282,14 @@ class _ColumnSolver:
         gap = shape.gap.values
         columns = _roller_columns(grid, edges)
         guess = _padded(start, grid, edges) if start is not None and start.any() else None
-        problem = ContactProblem(grid, gap, shape.prescribed.resultants(grid), 0.0, tolerance, 500)
+        problem = ContactProblem(
+            grid=grid,
+            gap=gap,
+            resultants=shape.prescribed.resultants(grid),
+            friction=0.0,
+            tolerance=tolerance,
+            max_iterations=500,
+        )
         operator = contact_operator(shape)
         iterate = solve_normal(operator, problem, guess)
         check_window(shape.body, iterate.pressure)
@@ -335,12 +342,12 @@ def _axial_shape(case: Case) -> AxialShape:
     corners = case.slope_jumps
     resolved = as_shape(case.roller.profile).second_interpolation() is None
     return AxialShape(
-        start,
-        stop,
-        half_width,
-        half_width**2 / (2 * case.roller.radius),
-        case.lowest,
-        (_face_beyond(distances[0], near), _face_beyond(distances[1], near)),
+        start=start,
+        stop=stop,
+        half_width=half_width,
+        depth=half_width**2 / (2 * case.roller.radius),
+        height=case.lowest,
+        room=(_face_beyond(distances[0], near), _face_beyond(distances[1], near)),
         exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
         # The factor of the body's image is not that of the roller's.
         corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),

@@ -81,7 +81,7 @@ Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
 """From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedColumns:
     """Columns of a refined contact."""
 
@@ -127,7 +127,7 @@ class RoughColumns(NamedTuple):
 
 def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
     """First columns, with a peak to some percent."""
-    state = _Refinement(solve, shape, first_edges(shape))
+    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape))
     for theta in (FIRST_THETA, SECOND_THETA):
         state.refine(theta)
     return RoughColumns(state.edges, state.pressure, (state.laws[0], state.laws[1]))
@@ -135,7 +135,7 @@ def rough_columns(solve: Solve, shape: AxialShape) -> RoughColumns:
 
 def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: FloatArray | None = None) -> RefinedColumns:
     """Refine columns, from the edges `begin` of a rough contact, until peak and end pressures settle to `accuracy`."""
-    state = _Refinement(solve, shape, first_edges(shape) if begin is None else begin)
+    state = _Refinement(solve=solve, shape=shape, edges=first_edges(shape) if begin is None else begin)
     theta = FIRST_THETA if begin is None else SECOND_THETA
     while True:
         state.refine(theta)
@@ -147,7 +147,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: Floa
         theta *= SHRINK
 
 
-@dataclass(eq=False)
+@dataclass(kw_only=True, eq=False)
 class _Refinement:
     """Where the refinement stands."""
 
@@ -270,18 +270,18 @@ class _Refinement:
             for side, law in enumerate(self.laws)
         ]
         return RefinedColumns(
-            self.edges,
-            self.pressure,
-            self.peaks[-1],
-            (peak_errors[0], peak_errors[1]),
-            self.ends[-1],
-            (first, last),
-            self.loads[-1],
-            (load_errors[0], load_errors[1]),
-            (laws[0], laws[1]),
-            settled,
-            self.edges if self.first is None else self.first,
-            floor / scale,
+            edges=self.edges,
+            pressure=self.pressure,
+            peaks=self.peaks[-1],
+            peak_errors=(peak_errors[0], peak_errors[1]),
+            ends=self.ends[-1],
+            end_errors=(first, last),
+            loads=self.loads[-1],
+            load_errors=(load_errors[0], load_errors[1]),
+            laws=(laws[0], laws[1]),
+            settled=settled,
+            first=self.edges if self.first is None else self.first,
+            least_error=floor / scale,
         )
 
 

@@ -63,7 +63,7 @@ class CoulombProblem:
         return max(float(np.hypot(*self.rigid_slip(amplitudes)).max(initial=0.0)), np.finfo(float).tiny)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CoulombSolution:
     """Tractions under Coulomb's law."""
 
@@ -172,7 +172,9 @@ def solve_coulomb(problem: CoulombProblem, start: Guess | None = None) -> Coulom
             traction, amplitudes = balance_tractions(problem, start, scale)
             slip, share = problem.slip(traction, amplitudes), 1.0
             sticks, visited = np.hypot(*traction) < (1 - GUESS_TOLERANCE) * bound, set()
-    return CoulombSolution(traction, slip, sticks, amplitudes, steps, converged)
+    return CoulombSolution(
+        traction=traction, slip=slip, sticks=sticks, amplitudes=amplitudes, steps=steps, converged=converged
+    )
 
 
 def _first_share(cells: BoolArray, share: float) -> BoolArray:

@@ -73,7 +73,7 @@ class ColumnsInverse:
         edges, count = grid.x_edges[first : last + 2], int(stop - start + 1)
         self._rows, self._padded = int(last - first + 1), 2 * count
         self._widths = np.diff(edges)
-        columns = ColumnsRequest(edges, grid.dy, count, (-np.inf, np.inf))
+        columns = ColumnsRequest(edges=edges, dy=grid.dy, cells_y=count, extent=(-np.inf, np.inf))
         xx, xy, yy = (
             sum(
                 columns.kernel(Response(*pair), material.poisson) / (4 * np.pi * material.shear_modulus)

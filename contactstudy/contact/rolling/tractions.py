@@ -61,7 +61,7 @@ FEWEST_CELLS = 6
 PARTS = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RollingCells:
     """Cells of a contact in steady rolling along +y."""
 
@@ -111,7 +111,13 @@ class RollingCells:
         # A tied cell has the number of the last unknown cell before it.
         numbers = np.cumsum(free).reshape(free.shape) - 1
         unknown = np.argwhere(free).T
-        return cls(unknown, offset[tuple(unknown)], tied_cells, numbers[tuple(tied_cells)], np.array(ratio))
+        return cls(
+            unknown=unknown,
+            offset=offset[tuple(unknown)],
+            tied=tied_cells,
+            to=numbers[tuple(tied_cells)],
+            ratio=np.array(ratio),
+        )
 
     def on_grid(self, traction: FloatArray, shape: tuple[int, int]) -> FloatArray:
         """Tractions on all cells (2, x, y) from the unknown ones (2, unknown)."""
@@ -376,7 +382,7 @@ def _shift_cells(bound: FloatArray) -> RollingCells:
     """Cells of a shifted contact: all cells that carry a traction are unknown."""
     unknown = np.argwhere(bound > 0).T
     empty = np.zeros((2, 0), dtype=np.int64)
-    return RollingCells(unknown, np.zeros(unknown.shape[1]), empty, empty[0], np.zeros(0))
+    return RollingCells(unknown=unknown, offset=np.zeros(unknown.shape[1]), tied=empty, to=empty[0], ratio=np.zeros(0))
 
 
 def guess_from_coarse(coarse: CoarseTractions, cells: RollingCells, bound: FloatArray, modes: tuple[str, ...]) -> Guess:

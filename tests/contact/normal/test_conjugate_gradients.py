@@ -18,7 +18,7 @@ from contactstudy.contact.normal.conjugate_gradients import (
 from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
-GRID = Grid((0.0, 3.0), (-1.0, 1.0), 18, 12)
+GRID = Grid(x_range=(0.0, 3.0), y_range=(-1.0, 1.0), cells_x=18, cells_y=12)
 BODY_OPERATOR = surface_operator(FiniteLengthSpace(material=Material(1.0, 0.3), length=3.0), GRID)
 
 

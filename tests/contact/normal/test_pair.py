@@ -12,7 +12,7 @@ from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 
 STEEL, SOFT = Material(210e9, 0.3), Material(70e9, 0.3)
-GRID = Grid((0.0, 1.6e-3), (-4e-4, 4e-4), 16, 12)
+GRID = Grid(x_range=(0.0, 1.6e-3), y_range=(-4e-4, 4e-4), cells_x=16, cells_y=12)
 BODY = FiniteLengthSpace(material=STEEL, length=1.6e-3, model="mirror")
 
 
@@ -51,7 +51,7 @@ def test_like_half_spaces_are_twice_as_soft_and_so_is_what_scales_one() -> None:
 
 @pytest.mark.parametrize("unit", [1.0, 1e-3, 1e6])
 def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
-    grid = Grid((0.0, 1.6 * unit), (-unit, unit), 16, 4)
+    grid = Grid(x_range=(0.0, 1.6 * unit), y_range=(-unit, unit), cells_x=16, cells_y=4)
     for start, alike in ((0.4, True), (0.4 + 1e-13, True), (0.4 + 1e-7, False), (0.45, False)):
         counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8 * unit), start * unit)
         whole = Counterbody(FiniteLengthSpace(material=SOFT, length=1.6 * unit), (start - 0.4) * unit)

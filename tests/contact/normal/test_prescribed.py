@@ -69,7 +69,7 @@ def test_approach_and_load_are_two_ways_to_prescribe_one_contact(body):
     case = case_with(body=body, end_distance=2 * HALF_WIDTH)
     grid = choose_grid(case)
     gap = xr.DataArray(case.gap(grid), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-    by_load = solve_contact(body, gap, case.normal_load)
+    by_load = solve_contact(body, gap, load=case.normal_load)
     by_approach = solve_contact(body, gap, approach=float(by_load.approach))
     assert bool(by_approach.converged)
     assert float(by_approach["normal_load"]) == pytest.approx(case.normal_load, rel=1e-5)
@@ -136,7 +136,9 @@ def test_self_affine_surfaces_converge(seed: int):
 def test_roughness_on_other_cells_is_interpolated():
     case = case_with()
     grid = choose_grid(case)
-    wider = Grid((-0.1 * LENGTH, 1.1 * LENGTH), (-5 * HALF_WIDTH, 5 * HALF_WIDTH), 150, 90)
+    wider = Grid(
+        x_range=(-0.1 * LENGTH, 1.1 * LENGTH), y_range=(-5 * HALF_WIDTH, 5 * HALF_WIDTH), cells_x=150, cells_y=90
+    )
 
     def sloping(on: Grid) -> xr.DataArray:  # bilinear, so that interpolation is exact
         heights = 1e-3 * (on.x[:, None] - 0.5 * LENGTH) + 2e-3 * on.y
@@ -213,7 +215,7 @@ def test_a_load_near_the_end_of_a_short_contact_acts_where_it_was_prescribed():
     body = FiniteLengthSpace(length=2e-3, material=STEEL)
     crowned = Roller(radius=5e-3, length=10e-3, profile=profiles.FullCrown(0.2))
     arguments = {"body": body, "max_pressure": 1.5e9, "end_distance": -9.9e-3, "load_position": 5e-5}
-    for grid in (None, Grid((0.0, 2e-3), (-4e-4, 4e-4), 320, 64)):
+    for grid in (None, Grid(x_range=(0.0, 2e-3), y_range=(-4e-4, 4e-4), cells_x=320, cells_y=64)):
         result = solve(Case(roller=crowned, **arguments), grid, stresses=False)
         assert bool(result.converged)
         assert float(result.load_position) == pytest.approx(5e-5, abs=1e-9)

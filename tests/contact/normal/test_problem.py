@@ -50,10 +50,12 @@ class Counting:
 def ball(grid: Grid, load: float | None = 0.05, *, friction: float = 0.0, deep: float = 0.0) -> ContactProblem:
     gap = 0.05 * ((grid.x[:, None] - 0.1) ** 2 + grid.y**2) - deep
     total = None if load is None else load / grid.cell_area
-    return ContactProblem(grid, gap, Resultants(total), friction, 1e-6, 500)
+    return ContactProblem(
+        grid=grid, gap=gap, resultants=Resultants(total), friction=friction, tolerance=1e-6, max_iterations=500
+    )
 
 
-GRID = Grid((-1.5, 1.5), (-1.5, 1.5), 24, 20)
+GRID = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=24, cells_y=20)
 UNLIKE = Grid.between(np.cumsum([-1.5, 0.1, 0.3, 0.4, 0.2, 0.1, 0.3, 0.6, 1.0]), (-1.5, 1.5), 20)
 GRADED = Grid.between(np.concatenate([np.linspace(-1.5, 0.3, 11), np.linspace(0.4, 1.5, 12)]), (-1.5, 1.5), 20)
 
@@ -106,7 +108,9 @@ def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:
 def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
     lever, _ = tilting(grid, 0.2)
     plane = 0.3 + 0.1 * grid.x[:, None] + 0.0 * grid.y
-    coarse = ContactProblem(grid, plane, Resultants(2.0, lever), 0.0, 1e-6, 500).coarser()
+    coarse = ContactProblem(
+        grid=grid, gap=plane, resultants=Resultants(2.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
+    ).coarser()
     joined = coarse.grid
     assert joined.shape == (grid.cells_x // 2, grid.cells_y // 2)
     middles = 0.5 * (grid.x_edges[2::2] + grid.x_edges[:-2:2])
@@ -120,7 +124,9 @@ def test_cells_joined_in_twos_keep_areas_heights_and_levers(grid: Grid) -> None:
 def test_cells_with_nothing_to_touch_do_not_count_where_cells_are_joined() -> None:
     gap = np.broadcast_to(GRADED.x[:, None], GRADED.shape).copy()
     gap[:3] = np.inf
-    coarse = ContactProblem(GRADED, gap, Resultants(1.0), 0.0, 1e-6, 500).coarser()
+    coarse = ContactProblem(
+        grid=GRADED, gap=gap, resultants=Resultants(1.0), friction=0.0, tolerance=1e-6, max_iterations=500
+    ).coarser()
     assert np.isinf(coarse.gap[0]).all()
     assert coarse.gap[1] == pytest.approx(GRADED.x[3])
     middle = 0.5 * (GRADED.x_edges[4] + GRADED.x_edges[6])
@@ -132,7 +138,9 @@ def test_a_tilted_shape_that_is_free_to_tilt_is_levelled(grid: Grid) -> None:
     lever, arm = tilting(grid, 0.2)
     flat = np.where(grid.x[:, None] > 1.2, np.inf, 0.05 * grid.y**2 + 0.0 * grid.x[:, None])
     tilted = flat + 0.3 * (grid.x[:, None] - 0.2)
-    asked = ContactProblem(grid, tilted, Resultants(1.0, lever), 0.0, 1e-6, 500)
+    asked = ContactProblem(
+        grid=grid, gap=tilted, resultants=Resultants(1.0, lever), friction=0.0, tolerance=1e-6, max_iterations=500
+    )
     facing = np.isfinite(flat)
     assert _levelled(asked)[facing] == pytest.approx(flat[facing], abs=1e-12)
     assert _levelled(replace(asked, resultants=Resultants(1.0))) is asked.gap
@@ -157,7 +165,7 @@ def test_a_first_guess_follows_the_gap_below_a_level() -> None:
 
 def test_the_squared_pressure_goes_on_outside_a_hertz_contact() -> None:
     """Inside it is ``p0**2 (1 - r**2 / a**2)``; just outside it falls on with about the same slope."""
-    grid = Grid((-1.5, 1.5), (-1.5, 1.5), 60, 60)
+    grid = Grid(x_range=(-1.5, 1.5), y_range=(-1.5, 1.5), cells_x=60, cells_y=60)
     asked = ball(grid)
     operator = Counting(grid)
     found = solve_normal(operator, asked)
@@ -194,7 +202,7 @@ def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
     tolerance: float, friction: float, unit: float
 ) -> None:
     """Of the displacement's variation, in any unit: strong friction settles slowly."""
-    grid = Grid((-1.5 * unit, 1.5 * unit), (-1.5 * unit, 1.5 * unit), 16, 16)
+    grid = Grid(x_range=(-1.5 * unit, 1.5 * unit), y_range=(-1.5 * unit, 1.5 * unit), cells_x=16, cells_y=16)
     body = HalfSpace(material=Material(0.91, 0.0))
     own = surface_operator(body, grid, LOADS)
     bent: list[FloatArray] = []
@@ -209,7 +217,14 @@ def test_the_last_round_bends_the_surface_by_less_than_the_tolerance(
     operator = Noting(grid)
     operator.own = own
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2) / unit
-    asked = ContactProblem(grid, gap, Resultants(0.05 * unit**2 / grid.cell_area), friction, tolerance, 500)
+    asked = ContactProblem(
+        grid=grid,
+        gap=gap,
+        resultants=Resultants(0.05 * unit**2 / grid.cell_area),
+        friction=friction,
+        tolerance=tolerance,
+        max_iterations=500,
+    )
     found = solve_coupled(operator, asked)
     assert found.converged
     moved = float(np.ptp((bent[-1] - bent[-2])[found.pressure > 0]))

@@ -34,7 +34,12 @@ SHAPES: dict[str, Callable[[FloatArray], FloatArray]] = {
 def asked(height: Callable[[FloatArray], FloatArray], unit: float = 1.0, start: float = 0.0) -> AxialShape:
     """Half-width 1, depth 0.05; lengths in some unit, and from some place on."""
     return AxialShape(
-        start, start + unit * LENGTH, unit, 0.05 * unit, lambda x: unit * height((x - start) / unit), (0.0, 0.0)
+        start=start,
+        stop=start + unit * LENGTH,
+        half_width=unit,
+        depth=0.05 * unit,
+        height=lambda x: unit * height((x - start) / unit),
+        room=(0.0, 0.0),
     )
 
 
@@ -77,7 +82,9 @@ def test_neither_unit_nor_place_decides_anything(name: str, unit: float, start: 
 
 @pytest.mark.parametrize("half_width", [0.01, 0.3, 1.0, 4.0, 100.0])
 def test_columns_double_from_either_end_up_to_a_widest(half_width: float) -> None:
-    edges = first_edges(AxialShape(0.0, LENGTH, half_width, 1.0, np.zeros_like, (0.0, 0.0)))
+    edges = first_edges(
+        AxialShape(start=0.0, stop=LENGTH, half_width=half_width, depth=1.0, height=np.zeros_like, room=(0.0, 0.0))
+    )
     widths = np.diff(edges)
     narrowest = min(FIRST_COLUMN * half_width, LENGTH / (4 * WIDEST))
     assert 0.5 * narrowest < widths[0] <= narrowest * (1 + 1e-9)
@@ -99,7 +106,16 @@ def test_a_straight_incline_has_the_columns_of_a_level(slope: float) -> None:
 
 
 def test_a_shape_that_bends_everywhere_ends_at_the_most_columns() -> None:
-    edges = first_edges(AxialShape(0.0, LENGTH, 1e-3, 1e-9, lambda x: 1e-9 * np.sin(300 * x), (0.0, 0.0)))
+    edges = first_edges(
+        AxialShape(
+            start=0.0,
+            stop=LENGTH,
+            half_width=1e-3,
+            depth=1e-9,
+            height=lambda x: 1e-9 * np.sin(300 * x),
+            room=(0.0, 0.0),
+        )
+    )
     assert MOST_COLUMNS < edges.size <= 2 * MOST_COLUMNS
     assert centres_of(np.array([1.0, 2.0, 5.0])).tolist() == [1.5, 3.5]
 

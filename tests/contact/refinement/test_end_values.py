@@ -52,7 +52,7 @@ def test_a_peak_in_a_half_is_not_that_of_the_other() -> None:
 
 def test_ends_without_pressure_and_singular_ends() -> None:
     values = np.append(np.zeros(3), np.ones(EDGES.size - 4))
-    peaks, ends, _ = read_ends(EDGES, spread(values), (None, EndLaw("power", 0.5)))
+    peaks, ends, _ = read_ends(EDGES, spread(values), (None, EndLaw(kind="power", exponent=0.5)))
     assert ends == (0.0, np.inf)
     assert peaks == (pytest.approx(1.0), np.inf)
     falling = values.copy()

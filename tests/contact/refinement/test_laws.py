@@ -29,7 +29,7 @@ def graded_edges(width: float) -> FloatArray:
 def test_intensity_of_a_rigid_end_is_that_of_the_power_law(intensity: float, bend: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, intensity, bend)[:, None] * np.array([0.4, 1.0, 0.4])
-    law = EndLaw("power", 0.5).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, np.inf)
     assert law.intensity == pytest.approx(intensity, rel=1e-6)
     assert 0 < law.intensity_error < 5e-3 * intensity
 
@@ -39,7 +39,9 @@ def test_intensity_is_read_where_the_end_itself_is_pressed_most() -> None:
     edges = graded_edges(1e-3)
     end = column_means(edges, 0.5, 2.0, 0.0)
     elsewhere = np.where(edges[1:] > 0.03, 10 * end.max(), 0.0)
-    law = EndLaw("power", 0.5).with_intensity(edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf)
+    law = EndLaw(kind="power", exponent=0.5).with_intensity(
+        edges, np.stack([0.5 * end, end, elsewhere], axis=1), np.inf
+    )
     assert law.intensity == pytest.approx(2.0, rel=1e-6)
     lifted = law.with_intensity(edges, np.stack([elsewhere, elsewhere], axis=1), np.inf)
     assert (lifted.intensity, lifted.intensity_error) == (0.0, np.inf)
@@ -51,7 +53,7 @@ def test_an_end_pressed_on_few_columns_has_no_error_of_its_intensity(exponent: f
     edges = graded_edges(1e-3)
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None].copy()
     pressure[5:] = 0.0
-    law = EndLaw("power", exponent).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(kind="power", exponent=exponent).with_intensity(edges, pressure, np.inf)
     assert law.intensity_error == np.inf
     assert law.intensity > 0
     if exponent == 0.5:
@@ -62,7 +64,7 @@ def test_an_end_pressed_on_few_columns_has_no_error_of_its_intensity(exponent: f
 def test_exponent_of_an_elastic_end_is_fitted(exponent: float) -> None:
     edges = graded_edges(1e-3)
     pressure = column_means(edges, exponent, 2.0, -0.5)[:, None]
-    law = EndLaw("power", np.nan).with_intensity(edges, pressure, np.inf)
+    law = EndLaw(kind="power", exponent=np.nan).with_intensity(edges, pressure, np.inf)
     assert law.exponent == pytest.approx(exponent, abs=1e-3)
     assert law.intensity == pytest.approx(2.0, rel=1e-2)
 
@@ -114,7 +116,7 @@ def samples(pressure: FloatArray) -> list[Sample]:
 @given(exponent=st.floats(0.15, 0.5))
 def test_growing_as_a_power_is_told(exponent: float) -> None:
     known, unknown = (law_of(samples(HALVINGS**-exponent), theory) for theory in (RIGID, np.nan))
-    assert known == EndLaw("power", RIGID)
+    assert known == EndLaw(kind="power", exponent=RIGID)
     assert unknown is not None
     assert unknown.kind == "power"
     assert np.isnan(unknown.exponent)
@@ -126,7 +128,7 @@ def test_growing_as_a_logarithm_is_told(share: float) -> None:
     law = law_of(growing, np.nan)
     assert law is not None
     assert (law.kind, law.exponent) == ("logarithm", 0.0)
-    assert law_of(growing, 0.2264) == EndLaw("power", 0.2264)
+    assert law_of(growing, 0.2264) == EndLaw(kind="power", exponent=0.2264)
     assert np.isnan(law.with_intensity(graded_edges(1e-3), np.ones((32, 1)), np.inf).intensity)
 
 
@@ -145,7 +147,7 @@ def test_an_end_that_is_pressed_on_first_share_columns_only_has_no_law() -> None
 
 
 def test_exponent_of_theory_is_the_law_of_a_pressed_end() -> None:
-    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw("power", RIGID)
+    assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.9, 0.9, 0.8])), RIGID) == EndLaw(kind="power", exponent=RIGID)
     assert law_of(samples(np.array([1.0, 1.0, 1.0, 1.0, 0.5, 0.2, 0.0])), RIGID) is None
 
 
@@ -179,9 +181,9 @@ def test_columns_between_3_and_64_widths_from_the_end_count(unit: float) -> None
     def found(first: float) -> EndLaw:
         other = pressure.copy()
         other[int(np.flatnonzero(first == EDGES)[0])] *= 1.5
-        return EndLaw("power", 0.5).with_intensity(unit * EDGES, other, np.inf)
+        return EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, other, np.inf)
 
-    plain = EndLaw("power", 0.5).with_intensity(unit * EDGES, pressure, np.inf)
+    plain = EndLaw(kind="power", exponent=0.5).with_intensity(unit * EDGES, pressure, np.inf)
     assert plain.intensity == pytest.approx(2.0)
     for first in (2.0, 128.0):
         assert found(first) == plain
@@ -198,17 +200,20 @@ def test_an_end_close_to_that_of_the_body_has_a_larger_error(width: float) -> No
     edges = width * EDGES
     pressure = column_means(edges, 0.5, 2.0, 0.0)[:, None]
     wide, narrow = (
-        EndLaw("power", 0.5).with_intensity(edges, pressure, room * width).intensity_error for room in (129.0, 127.0)
+        EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, room * width).intensity_error
+        for room in (129.0, 127.0)
     )
     assert wide == pytest.approx(3e-3 * 2.0)
     assert narrow - wide == pytest.approx(0.08 * 2.0)
-    nearly_flush = EndLaw("power", 0.5).with_intensity(edges, pressure, 2.9 * width)
+    nearly_flush = EndLaw(kind="power", exponent=0.5).with_intensity(edges, pressure, 2.9 * width)
     assert nearly_flush.intensity_error == np.inf
 
 
 def test_no_elastic_end_is_sharper_than_a_rigid_one() -> None:
     edges = graded_edges(1e-3)
-    law = EndLaw("power", np.nan).with_intensity(edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf)
+    law = EndLaw(kind="power", exponent=np.nan).with_intensity(
+        edges, column_means(edges, 0.54, 2.0, 0.0)[:, None], np.inf
+    )
     assert 0.49 < law.exponent <= 0.5
 
 

@@ -84,7 +84,7 @@ def test_tractions_are_found_at_the_approach() -> None:
 
 
 def test_given_cells_and_rough_surfaces_take_it_too() -> None:
-    cells = Grid((0.2e-3, 0.6e-3), (-0.2e-3, 0.2e-3), 64, 64)
+    cells = Grid(x_range=(0.2e-3, 0.6e-3), y_range=(-0.2e-3, 0.2e-3), cells_x=64, cells_y=64)
     assert float(solve(BALL, cells, stresses=False).normal_load) == pytest.approx(HERTZ, rel=0.02)
     flat = xr.DataArray(np.zeros((2, 2)), dims=("x", "y"), coords={"x": [-1e-2, 1e-2], "y": [-1e-2, 1e-2]})
     straight = replace(SHORT, body=HalfSpace(material=STEEL), tilt=0.0, coupled=False)

@@ -125,7 +125,19 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
     shape = Shape(case.body, grid, ArrayKey(np.zeros(grid.shape)), Prescribed(1.0))
     none = np.zeros(grid.shape)
     certificate = Certificate(0.0, 0.0, 0.0, 0.0)
-    contact = Contact(shape, Settings(), pressure, none, none, 0.0, 0.0, 1, True, np.inf, certificate)
+    contact = Contact(
+        shape=shape,
+        settings=Settings(),
+        pressure=pressure,
+        gap=none,
+        displacement=none,
+        approach=0.0,
+        tilt=0.0,
+        iterations=1,
+        converged=True,
+        motions=np.inf,
+        certificate=certificate,
+    )
     zeros = dict.fromkeys(("force_x", "force_y", "moment_z", "work"), 0.0)
     pair = np.stack([none] * 2)
     tractions = Tractions(traction=pair, slip=pair, sticks=none > 1, rigid=rigid, **zeros)

@@ -32,7 +32,15 @@ Y = (np.arange(16) - 7.5) / 8
 
 def shape(length: float = LENGTH, *, room: tuple[float, float] = (0.0, 0.0), elastic: bool = False) -> AxialShape:
     known = [np.nan if elastic or each == 0 else RIGID for each in room]
-    return AxialShape(0.0, length, HALF_WIDTH, 0.05, lambda x: np.zeros_like(x), room, (known[0], known[1]))
+    return AxialShape(
+        start=0.0,
+        stop=length,
+        half_width=HALF_WIDTH,
+        depth=0.05,
+        height=lambda x: np.zeros_like(x),
+        room=room,
+        exponents=(known[0], known[1]),
+    )
 
 
 def pressed(pressure: FloatArray) -> ColumnPressure:
@@ -87,7 +95,14 @@ def test_first_columns_are_narrow_at_both_ends_and_symmetric(length: float) -> N
 
 def test_first_columns_are_split_where_the_shape_bends() -> None:
     fillet, kink = 3.0, 17.0
-    bent = AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet, (0.0, 0.0))
+    bent = AxialShape(
+        start=0.0,
+        stop=LENGTH,
+        half_width=HALF_WIDTH,
+        depth=0.05,
+        height=lambda x: 0.5 * np.maximum(x - kink, 0) ** 2 / fillet,
+        room=(0.0, 0.0),
+    )
     widths = np.diff(first_edges(bent))
     plain = np.diff(first_edges(shape()))
     assert widths.size > plain.size
@@ -202,10 +217,22 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
         return pressed(pressure * along(own(edges)[back], None, tolerance).pressure[back])
 
     room, known = (3.0, 0.0), (RIGID, np.nan)
-    plain = refine_columns(along, AxialShape(0.0, LENGTH, HALF_WIDTH, 0.05, height, room, known), 0.02)
-    limits, beyond = unit * (place + np.array([0.0, LENGTH])), (unit * room[side], unit * room[1 - side])
-    sharp = known[:: 1 - 2 * side]
-    elsewhere = AxialShape(*limits, unit * HALF_WIDTH, unit * 0.05, lambda x: unit * height(own(x)), beyond, sharp)
+    plain = refine_columns(
+        along,
+        AxialShape(
+            start=0.0, stop=LENGTH, half_width=HALF_WIDTH, depth=0.05, height=height, room=room, exponents=known
+        ),
+        0.02,
+    )
+    elsewhere = AxialShape(
+        start=unit * place,
+        stop=unit * (place + LENGTH),
+        half_width=unit * HALF_WIDTH,
+        depth=unit * 0.05,
+        height=lambda x: unit * height(own(x)),
+        room=(unit * room[side], unit * room[1 - side]),
+        exponents=known[:: 1 - 2 * side],
+    )
     other = refine_columns(solve, elsewhere, 0.02)
     assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
     assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
@@ -261,8 +288,15 @@ def test_a_step_at_an_end_is_marked_by_what_the_line_to_the_end_adds(side: int, 
     along[40:] = 1.0
     if side:
         edges, along = LENGTH - edges[::-1], along[::-1]
-    asked = AxialShape(0.0, unit * LENGTH, unit * HALF_WIDTH, 0.05 * unit, np.zeros_like, (0.0, 0.0))
-    state = _Refinement(lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), asked, unit * edges)
+    asked = AxialShape(
+        start=0.0,
+        stop=unit * LENGTH,
+        half_width=unit * HALF_WIDTH,
+        depth=0.05 * unit,
+        height=np.zeros_like,
+        room=(0.0, 0.0),
+    )
+    state = _Refinement(solve=lambda *_: pressed(along[:, None] * np.sqrt(1 - Y**2)), shape=asked, edges=unit * edges)
     for theta, marked in ((0.19, True), (0.21, False)):
         assert state._marks(theta)[-side] == marked
 
@@ -318,7 +352,7 @@ def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float])
 
 
 def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
-    state = _Refinement(averaged(FOLLOWED["rises to one end"]), shape(), first_edges(shape()))
+    state = _Refinement(solve=averaged(FOLLOWED["rises to one end"]), shape=shape(), edges=first_edges(shape()))
     with caplog.at_level("INFO"):
         for theta in (0.5, 0.3, 0.2):
             state.refine(theta)
@@ -361,7 +395,7 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
 
 
 @pytest.mark.parametrize("side", [0, 1])
-@pytest.mark.parametrize("law", [None, EndLaw("power", 0.5)])
+@pytest.mark.parametrize("law", [None, EndLaw(kind="power", exponent=0.5)])
 def test_a_rough_contact_is_singular_where_a_sharp_end_is_pressed_or_has_a_law(side: int, law: EndLaw | None) -> None:
     pressure = np.zeros((4, 3))
     pressure[-side] = 1.0

@@ -168,11 +168,11 @@ def test_the_law_holds_at_free_ends(body: Body, motion: Rolling | Shift) -> None
 
 
 def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
-    grid = Grid((0.0, 3.0), (-1.4, 1.4), 15, 28)
+    grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     body = FiniteLengthSpace(length=3.0, material=STEEL)
     result = solve_contact(
-        body, gap, 1.0, FRICTION, counterbody=Counterbody(body), motion=Rolling(longitudinal_creepage=0.1)
+        body, gap, load=1.0, friction=FRICTION, counterbody=Counterbody(body), motion=Rolling(longitudinal_creepage=0.1)
     )
     holds(result)
     peak = float(result.pressure.max())
@@ -184,14 +184,14 @@ def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
 
 
 def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
-    grid = Grid((0.0, 3.0), (-1.4, 1.4), 15, 28)
+    grid = Grid(x_range=(0.0, 3.0), y_range=(-1.4, 1.4), cells_x=15, cells_y=28)
     gap = xr.DataArray(0.5 * grid.y**2 + 0 * grid.x[:, None], coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
     longer, same = FiniteLengthSpace(length=3.0, material=STEEL), FiniteLengthSpace(length=3.0, material=STEEL)
-    still = solve_contact(longer, gap, 1.0, 0.1, counterbody=Counterbody(same), motion=Rolling())
+    still = solve_contact(longer, gap, load=1.0, friction=0.1, counterbody=Counterbody(same), motion=Rolling())
     assert float(np.hypot(still.traction_x, still.traction_y).max()) < 1e-8 * float(still.pressure.max())
     inside = Counterbody(FiniteLengthSpace(length=2.0, material=STEEL), start=0.4)
     shorter = gap.where((gap.x > 0.4) & (gap.x < 2.4), np.inf)
-    moved = solve_contact(longer, shorter, 0.7, 0.1, counterbody=inside, motion=Rolling())
+    moved = solve_contact(longer, shorter, load=0.7, friction=0.1, counterbody=inside, motion=Rolling())
     assert float(np.abs(moved.traction_x).max()) > 0.03 * float(moved.pressure.max())
     assert float(moved.friction_work) > 0
 

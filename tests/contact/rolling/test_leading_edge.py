@@ -140,6 +140,6 @@ def test_beyond_the_last_cell_a_displacement_stays() -> None:
     pressure = np.ones((1, 6))
     displacement = np.random.default_rng(0).standard_normal((1, 6))
     found = RollingCells.of(pressure, pressure)
-    longer = RollingCells(found.unknown, found.offset, found.tied, found.to, found.ratio)
+    longer = RollingCells(unknown=found.unknown, offset=found.offset, tied=found.tied, to=found.to, ratio=found.ratio)
     whole = np.pad(displacement, ((0, 0), (0, 2)), mode="edge")
     assert found.derivative(displacement, 0.5) == pytest.approx(longer.derivative(whole, 0.5))

@@ -17,9 +17,9 @@ from contactstudy.contact.rolling.tractions import (
     guess_from_last,
 )
 
-COARSE = Grid((0.0, 6.0), (0.0, 4.0), 6, 4)
-FINE = Grid((0.0, 6.0), (0.0, 4.0), 12, 8)
-ALONG_Y_ONLY = Grid((0.0, 6.0), (0.0, 4.0), 6, 8)
+COARSE = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=4)
+FINE = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=12, cells_y=8)
+ALONG_Y_ONLY = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=8)
 
 
 def found_on(grid: Grid, traction: FloatArray, sticks: FloatArray) -> Tractions:
@@ -31,7 +31,7 @@ def found_on(grid: Grid, traction: FloatArray, sticks: FloatArray) -> Tractions:
 def all_cells(grid: Grid) -> RollingCells:
     none = np.zeros((2, 0), dtype=np.int64)
     unknown = np.argwhere(np.ones(grid.shape, bool)).T
-    return RollingCells(unknown, np.zeros(unknown.shape[1]), none, none[0], np.zeros(0))
+    return RollingCells(unknown=unknown, offset=np.zeros(unknown.shape[1]), tied=none, to=none[0], ratio=np.zeros(0))
 
 
 def plane(grid: Grid) -> FloatArray:

@@ -130,7 +130,7 @@ def test_place_along_the_axis_decides_nothing(motion: Rolling | Shift) -> None:
 @pytest.mark.parametrize("motion", [Rolling(longitudinal_creepage=0.03), Rolling(lateral_creepage=-0.03, spin=0.02)])
 def test_work_is_what_tractions_lose_on_the_slip(motion: Rolling) -> None:
     """Of a rigid ball on a soft body, which the pressure moves along the surface as well."""
-    grid = Grid((-1.3, 1.3), (-1.3, 1.3), 40, 40)
+    grid = Grid(x_range=(-1.3, 1.3), y_range=(-1.3, 1.3), cells_x=40, cells_y=40)
     gap = 0.05 * (grid.x[:, None] ** 2 + grid.y**2)
     body = HalfSpace(material=Material(0.91, 0.1))
     for model in ("exact", "fastsim"):
@@ -227,7 +227,7 @@ def test_a_leading_cell_that_slips_has_a_slip() -> None:
 def test_few_columns_and_many_rows(columns: int) -> None:
     """Coarser cells exist down to a single column between free ends."""
     body = FiniteLengthSpace(length=1.0, material=Material(0.91, 0.3))
-    grid = Grid((0.0, 1.0), (-2.0, 2.0), columns, 768)
+    grid = Grid(x_range=(0.0, 1.0), y_range=(-2.0, 2.0), cells_x=columns, cells_y=768)
     gap = np.broadcast_to(0.05 * grid.y**2, grid.shape)
     shape = Shape(body, grid, ArrayKey(gap), Prescribed(0.05))
     motion = Rolling(longitudinal_creepage=0.01)

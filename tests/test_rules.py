@@ -1,0 +1,95 @@
+"""Rules of CONTRIBUTING.md for arguments: no long row of values without names."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import contactstudy
+
+MOST_FIELDS = 4  # of a dataclass with positional arguments
+MOST_ARGUMENTS = 5  # positional, in a call
+MOST_PARAMETERS = 7  # of a function
+MOST_POSITIONAL = 2  # of a function with more parameters
+
+ROOT = Path(contactstudy.__file__).parent
+MODULES = {str(path.relative_to(ROOT)): path.read_text() for path in sorted(ROOT.rglob("*.py"))}
+
+
+def violations(modules: dict[str, str]) -> list[str]:
+    """Violations in the source text of modules: module, line and rule."""
+    trees = {name: list(ast.walk(ast.parse(text))) for name, text in modules.items()}
+    nodes = [node for tree in trees.values() for node in tree]
+    classes = {node.name: node for node in nodes if isinstance(node, ast.ClassDef)}
+    variadic = {node.name for node in nodes if isinstance(node, ast.FunctionDef) and node.args.vararg} | {"chain"}
+    return [
+        f"{name}:{node.lineno}: {rule}"
+        for name, tree in trees.items()
+        for node in tree
+        for rule in broken_rules(node, classes, variadic)
+    ]
+
+
+def broken_rules(node: ast.AST, classes: dict[str, ast.ClassDef], variadic: set[str]) -> Iterator[str]:
+    """Rules that a class, a call or a function breaks."""
+    if isinstance(node, ast.ClassDef):
+        decorators = [ast.unparse(decorator) for decorator in node.decorator_list]
+        positional = any("dataclass" in text and "kw_only=True" not in text for text in decorators)
+        if positional and len(fields(node, classes)) > MOST_FIELDS:
+            yield f"{node.name} has more than {MOST_FIELDS} fields and is not keyword-only"
+    elif isinstance(node, ast.Call) and len(node.args) > MOST_ARGUMENTS:
+        callee = ast.unparse(node.func).rpartition(".")[2]
+        if callee not in variadic:
+            yield f"call of {callee} with more than {MOST_ARGUMENTS} positional arguments"
+    elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+        positional = [entry.arg for entry in (*node.args.posonlyargs, *node.args.args)]
+        positional = positional[positional[:1] in (["self"], ["cls"]) :]
+        if len(positional) + len(node.args.kwonlyargs) > MOST_PARAMETERS:
+            if "Parameters\n----" not in (ast.get_docstring(node) or ""):
+                yield f"{node.name} has more than {MOST_PARAMETERS} parameters and does not document them"
+            if len(positional) > MOST_POSITIONAL:
+                yield f"{node.name} takes more than {MOST_POSITIONAL} of its many parameters by position"
+
+
+def fields(node: ast.ClassDef, classes: dict[str, ast.ClassDef]) -> set[str]:
+    """Names of the fields of a dataclass, inherited ones included."""
+    annotated = [entry for entry in node.body if isinstance(entry, ast.AnnAssign)]
+    names = {ast.unparse(entry.target) for entry in annotated if "ClassVar" not in ast.unparse(entry.annotation)}
+    return names.union(
+        *(fields(classes[name], classes) for base in node.bases if (name := ast.unparse(base)) in classes)
+    )
+
+
+def test_the_package_obeys_the_rules() -> None:
+    assert not violations(MODULES)
+
+
+FIELDS = "\n    ".join(f"{name}: int" for name in "abcde")
+NUMPYDOC = '\n    """Solve.\n\n    Parameters\n    ----------\n    a, b, c, d, e, f, g, h : int\n    """'
+
+
+@pytest.mark.parametrize(
+    ("text", "count"),
+    [
+        (f"@dataclass(frozen=True)\nclass Five:\n    {FIELDS}", 1),
+        (f"@dataclass(frozen=True, kw_only=True)\nclass Five:\n    {FIELDS}", 0),
+        (
+            "@dataclass\nclass A:\n    a: int\n    b: int\n    c: int\n@dataclass\nclass B(A):\n    d: int\n    e: int",
+            1,
+        ),
+        ("module.solve(1, 2, 3, 4, 5, 6)", 1),
+        ("solve(1, 2, 3, 4, 5, f=6)", 0),
+        ("def joined(*parts): ...\njoined(1, 2, 3, 4, 5, 6)", 0),
+        (f"def solve(a, b, *, c, d, e, f, g, h):{NUMPYDOC}", 0),
+        (f"def solve(a, b, c, *, d, e, f, g, h):{NUMPYDOC}", 1),
+        ("def solve(a, b, *, c, d, e, f, g, h): ...", 1),
+        ("def solve(a, b, c, d, e, f, g): ...", 0),
+        ("class A:\n    def solve(self, a, b, c, d, e, f, g): ...", 0),
+        ("class A:\n    def solve(self, a, b, c, d, e, f, g, h): ...", 2),
+    ],
+)
+def test_a_violation_is_one(text: str, count: int) -> None:
+    assert len(violations({"module.py": text})) == count
