@@ -26,6 +26,8 @@ class FilmSettings:
     ----------
     tolerance : float
         Tolerance: net outflow of a cell over the flow ``um h_c``, and load over the prescribed one. Accuracy.
+    level_tolerance : float
+        Tolerance on levels that serve for the error and as a start. Speed.
     steps : tuple of float
         Pseudo-time steps, in a / um, before the steady state. Speed.
     newton_steps : int
@@ -45,6 +47,7 @@ class FilmSettings:
     """
 
     tolerance: float = 1e-8
+    level_tolerance: float = 1e-3
     steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
     newton_steps: int = 12
     linear_tolerance: float = 1e-2
@@ -448,15 +451,19 @@ class _Iteration:
         return precondition(solved)
 
 
+def _within_columns(matrix: sparse.csr_array, cells: int) -> sparse.coo_array:
+    """Entries between cells of the same column, of which each has some `cells`."""
+    entries = matrix.tocoo()
+    same = entries.row // cells == entries.col // cells
+    return sparse.coo_array((entries.data[same], (entries.row[same], entries.col[same])), entries.shape)
+
+
 def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
     """Diagonal of the derivative by the distance times the columns' stiffness: array (cell)."""
     columns, cells = stiffness.shape[:2]
-    entries = by_distance.tocoo()
-    row, source = entries.row, entries.col
-    same = row // cells == source // cells
-    row, source, value = row[same], source[same], entries.data[same]
-    products = value * stiffness[row // cells, source % cells, row % cells]
-    return np.asarray(np.bincount(row, products, minlength=columns * cells), dtype=np.float64)
+    entries = _within_columns(by_distance, cells)
+    products = entries.data * stiffness[entries.row // cells, entries.col % cells, entries.row % cells]
+    return np.asarray(np.bincount(entries.row, products, minlength=columns * cells), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -474,11 +481,11 @@ class _Columns:
         before, after = np.zeros((2, columns, cells))
         before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
         after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
-        inverses = np.empty((columns, cells, cells))
-        for column, stiffness in enumerate(problem.column_stiffness):
-            part = slice(column * cells, (column + 1) * cells)
-            matrix = linearised.by_pressure[part, part].toarray()
-            matrix += linearised.by_distance[part, part] @ stiffness
+        by_distance = _within_columns(linearised.by_distance, cells).tocsr()
+        inverses = (by_distance @ problem.column_stiffness.reshape(-1, cells)).reshape(columns, cells, cells)
+        by_pressure = _within_columns(linearised.by_pressure, cells)
+        inverses[by_pressure.row // cells, by_pressure.row % cells, by_pressure.col % cells] += by_pressure.data
+        for column, matrix in enumerate(inverses):
             if column:
                 matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]
             inverses[column] = linalg.inv(matrix, overwrite_a=True, check_finite=False)
