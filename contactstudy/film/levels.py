@@ -247,15 +247,17 @@ class FilmOnCells(NamedTuple):
     joined: JoinedCells
 
 
-def cells_of(film: FilmCase, level: int) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
-    """Return the cells of a level, with narrow columns at both ends of the contact, and their window along y."""
+def cells_of(
+    film: FilmCase, level: int, closures: tuple[float, float]
+) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
+    """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
     resolution, scale = film.resolution, film.resolution.ratio**-level
     start, stop = (end / film.half_width for end in film.case.contact_range)
     first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale**2
     growth = resolution.columns_growth * scale**0.7
 
     def width(x: float) -> float:
-        nearest = min(abs(x - end) for end in film.contact_ends)
+        nearest = min(abs(x - closure) for closure in closures)
         widest = min(resolution.widest_column, 0.2 * (stop - start))
         return float(min(first + growth * max(nearest - 2 * first, 0.0), widest))
 
@@ -283,6 +285,7 @@ def cells_of(film: FilmCase, level: int) -> tuple[FilmCells, JoinedCells, tuple[
 def film_on_level(
     film: FilmCase,
     level: int,
+    closures: tuple[float, float],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:
@@ -293,9 +296,16 @@ def film_on_level(
     StepFailedError
         If the iteration does not converge.
     """
-    cells, joined, window = cells_of(film, level)
+    cells, joined, window = cells_of(film, level, closures)
     with one_blas_thread():
         return _solved(film, cells, joined, window, settings, start)
+
+
+def solve_further(solved: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
+    with one_blas_thread():
+        state = _between_cells(solved, solved.problem)
+        return solved._replace(solution=solve_newton(solved.problem, state, settings, steady=True))
 
 
 def _solved(

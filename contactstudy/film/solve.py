@@ -19,7 +19,7 @@ from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level
+from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level, solve_further
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
 ACCURACIES = (2e-3, 0.2)
@@ -196,15 +196,17 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
     coarse = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
     levels: list[FilmOnCells] = []
     films: list[Films] = []
+    closures = film.contact_ends
     error, change = np.inf, dict.fromkeys(NAMES, 0.0)
     for level in range(film.resolution.levels):
         try:
-            levels.append(film_on_level(film, level, coarse, levels[-1] if levels else start))
+            closures = closures if not levels else _closures(films[-1], levels[-1], closures)
+            levels.append(film_on_level(film, level, closures, coarse, levels[-1] if levels else start))
         except StepFailedError as failure:
             if not levels and start is not None:
                 return _refined(film, accuracy, settings)
             if len(levels) < 2:
-                raise _film_error(film, failure, level) from None
+                raise _film_error(film, failure, level, closures) from None
             break
         films.append(films_of(film, levels[-1]))
         if level == 0:
@@ -218,20 +220,29 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
         if error <= accuracy:
             break
     try:
-        levels.append(film_on_level(film, len(films) - 1, settings, levels[-1]))
+        levels.append(solve_further(levels[-1], settings))
     except StepFailedError as failure:
-        raise _film_error(film, failure, len(films) - 1) from None
+        raise _film_error(film, failure, len(films) - 1, closures) from None
     steps = [sum(getattr(solved.solution, name) for solved in levels) for name in ("newton_steps", "linear_steps")]
     return _Refined(levels[-1], films_of(film, levels[-1]), errors, error, len(films), *steps)
 
 
-def _film_error(film: FilmCase, failure: StepFailedError, level: int) -> FilmError:
+def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) -> tuple[float, float]:
+    """Columns of the least films at both ends, over the half-width: equal for films of near speeds."""
+    if not films.first_x < films.last_x:
+        return closures
+    x = solved.problem.cells.x
+    first, last = (float(x[np.abs(x - least).argmin()]) for least in (films.first_x, films.last_x))
+    return first, last
+
+
+def _film_error(film: FilmCase, failure: StepFailedError, level: int, closures: tuple[float, float]) -> FilmError:
     """Return the error of a film that has not been found, with the place where it closes."""
     from contactstudy.film.levels import cells_of
 
     if failure.closed is None:
         return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
-    cells = cells_of(film, level)[0]
+    cells = cells_of(film, level, closures)[0]
     x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), failure.closed, strict=True))
     return FilmError(
         f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
