@@ -192,16 +192,17 @@ class FilmCase:
         film = moes_line(self.moes_load(self.largest_line_load), self.moes_lubricant)
         return float(film * self.case.roller.radius * np.sqrt(2 * self.speed_number))
 
-    @property
+    @cached_property
     def inlet_length(self) -> float:
-        """Length over which the film forms, over the half-width."""
+        """Length over which the film forms, over the half-width, in steps: near speeds have the same cells."""
         width = hertz.line_half_width(
             hertz.line_max_pressure(self.largest_line_load, self.case.roller.radius, self.case.modulus),
             self.case.roller.radius,
             self.case.modulus,
         )
         share = (self.central_film * self.case.roller.radius / width**2) ** (2 / 3)  # eq. (403)
-        return float(share * width / self.half_width)
+        ratio = self.resolution.ratio
+        return float(ratio ** np.round(np.log(share * width / self.half_width) / np.log(ratio)))
 
     @cached_property
     def fluid(self) -> Fluid:
@@ -247,16 +248,16 @@ class FilmOnCells(NamedTuple):
 
 
 def cells_of(
-    film: FilmCase, level: int, places: tuple[float, ...]
+    film: FilmCase, level: int, closures: tuple[float, float]
 ) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
-    """Return the cells of a level, with narrow columns at some `places` along x, over the half-width."""
+    """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
     resolution, scale = film.resolution, film.resolution.ratio**-level
     start, stop = (end / film.half_width for end in film.case.contact_range)
     first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale**2
     growth = resolution.columns_growth * scale**0.7
 
     def width(x: float) -> float:
-        nearest = min(abs(x - place) for place in places)
+        nearest = min(abs(x - closure) for closure in closures)
         widest = min(resolution.widest_column, 0.2 * (stop - start))
         return float(min(first + growth * max(nearest - 2 * first, 0.0), widest))
 
@@ -284,7 +285,7 @@ def cells_of(
 def film_on_level(
     film: FilmCase,
     level: int,
-    places: tuple[float, ...],
+    closures: tuple[float, float],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:
@@ -295,9 +296,16 @@ def film_on_level(
     StepFailedError
         If the iteration does not converge.
     """
-    cells, joined, window = cells_of(film, level, places)
+    cells, joined, window = cells_of(film, level, closures)
     with one_blas_thread():
         return _solved(film, cells, joined, window, settings, start=start)
+
+
+def solve_further(solved: FilmOnCells, settings: FilmSettings) -> FilmOnCells:
+    """Continue on the same cells, to the tolerance of the settings; raise StepFailedError if that fails."""
+    with one_blas_thread():
+        state = _between_cells(solved, solved.problem)
+        return solved._replace(solution=solve_newton(solved.problem, state, settings, steady=True))
 
 
 def _solved(
@@ -322,9 +330,8 @@ def _solved(
         loads: Mapping[Load, FloatArray] = {Load.NORMAL: spread}
         return operator(loads)[columns] / film.height
 
-    dry = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
     # The lines to which the motion of the roller refers move as in the dry contact.
-    gap = shape.gap.values - dry.motions.total.height(grid.x)
+    gap = shape.gap.values - film.dry.motions.total.height(grid.x)
     one = np.zeros((cells.shape[0], grid.cells_y))
     one[:, 0] = 1.0
     lever = None
@@ -347,6 +354,7 @@ def _solved(
     if start is not None:
         state = _between_cells(start, problem) if isinstance(start, FilmOnCells) else _of_result(film, start, problem)
         return FilmOnCells(problem, solve_newton(problem, state, settings, steady=True), grid, columns, joined)
+    dry = contact_of(shape, Settings(film.resolution.dry_tolerance, 500))
     solution = solve_from_dry(problem, _dry_state(film, problem, dry, columns, joined), settings)
     return FilmOnCells(problem, solution, grid, columns, joined)
 

@@ -15,6 +15,9 @@ from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.film.reynolds import FilmCells, Flow, Fluid, Law
 
+INVERSE_STEPS = 8
+"""Steps to the distance of rough surfaces at a height of the film: the next step removes what they leave. Speed."""
+
 LOGGER = logging.getLogger(__name__)
 
 
@@ -26,6 +29,8 @@ class FilmSettings:
     ----------
     tolerance : float
         Tolerance: net outflow of a cell over the flow ``um h_c``, and load over the prescribed one. Accuracy.
+    level_tolerance : float
+        Tolerance on levels that serve for the error and as a start. Speed.
     steps : tuple of float
         Pseudo-time steps, in a / um, before the steady state. Speed.
     newton_steps : int
@@ -45,6 +50,7 @@ class FilmSettings:
     """
 
     tolerance: float = 1e-8
+    level_tolerance: float = 1e-3
     steps: tuple[float, ...] = (0.3, 0.9, 2.7, 8.1, 24.0, 73.0)
     newton_steps: int = 12
     linear_tolerance: float = 1e-2
@@ -111,6 +117,22 @@ class FilmProblem:
     def resultants(self) -> FloatArray:
         """Sums that the rigid motions prescribe: array (motion, cell)."""
         return np.asarray(self.motions * self.cells.areas.ravel())
+
+    def film(self, distance: FloatArray) -> Law:
+        """Mean height of the film at a distance of the surfaces."""
+        return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
+
+    def distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
+        """Distance of the surfaces at a mean height of the film: Newton's method for its logarithm, from a `start`."""
+        if self.mean_height is None:
+            return height
+        # Apart, rough surfaces are at most the height that they have in touch closer than their film is high.
+        touching = self.mean_height(np.zeros_like(height)).value
+        distance = np.where(height > touching, np.maximum(start, height - touching), start)
+        for _ in range(INVERSE_STEPS):
+            film = self.mean_height(distance)
+            distance = distance + film.value / film.slope * np.log(height / film.value)
+        return distance
 
     @property
     def prescribed(self) -> FloatArray:
@@ -297,7 +319,7 @@ class _Iteration:
         problem = self.problem
         cells, distance = problem.cells, state.distance
         ones = np.ones(cells.shape)
-        film = Law(distance, ones) if problem.mean_height is None else problem.mean_height(distance)
+        film = problem.film(distance)
         asperities = Law(0 * ones, 0 * ones) if problem.asperities is None else problem.asperities(distance)
         fluid_pressure = state.pressure - asperities.value
         flow = cells.flow(problem.fluid, fluid_pressure, film)
@@ -335,8 +357,15 @@ class _Iteration:
         """Iterate to a pseudo-time step, or, without one, to the steady state; raise if it does not converge."""
         settings = self.settings
         most = settings.newton_steps if mass is not None else 3 * settings.newton_steps
+
+        def least_film(state: FilmState) -> float:
+            smooth = self.problem.mean_height is None
+            return float(state.distance.min()) / self.problem.central_film if smooth else np.inf
+
         for _ in range(most):
             linearised = self.linearise(state, step, mass)
+            if not np.isfinite(linearised.residual).all():
+                break
             solution = self.solution(state, linearised)
             if mass is None and solution.converged:
                 return solution
@@ -344,12 +373,10 @@ class _Iteration:
             state, part, largest = self.updated(state, change)
             if mass is not None and part == 1 and largest < 1e-3:
                 return self.solution(state, self.linearise(state, step, mass))
-            if not np.isfinite(largest):
-                break
-            if self.problem.mean_height is None and state.distance.min() < settings.closed * self.problem.central_film:
+            if least_film(state) < settings.closed:
                 break
         closed = None
-        if state.distance.min() < settings.nearly_closed * self.problem.central_film:
+        if least_film(state) < settings.nearly_closed:
             row, cell = np.unravel_index(int(state.distance.argmin()), state.distance.shape)
             closed = int(row), int(cell)
         raise StepFailedError(f"no convergence within {most} Newton steps", closed)
@@ -393,10 +420,12 @@ class _Iteration:
         largest = float(np.abs(pressure).max())
         part = min(1.0, settings.largest_change / max(largest, 1e-300))
         linear = state.distance + part * distance
-        # The bound applies to a closing cell alone; the next step removes the mismatch.
-        moved_distance = linear
-        if problem.mean_height is None:
-            moved_distance = np.maximum(linear, (1 - settings.largest_closing) * state.distance)
+        # The bound applies to a closing cell alone, and between rough surfaces the film is linear in the step, not the
+        # distance; the next step removes the mismatch.
+        film = problem.film(state.distance)
+        height = film.value + film.slope * (linear - state.distance)
+        height = np.maximum(height, (1 - settings.largest_closing) * film.value)
+        moved_distance = problem.distance(height, state.distance)
         moved = FilmState(
             state.pressure + part * pressure,
             state.motion + part * motion,
@@ -448,15 +477,19 @@ class _Iteration:
         return precondition(solved)
 
 
+def _within_columns(matrix: sparse.csr_array, cells: int) -> sparse.coo_array:
+    """Entries between cells of the same column, of which each has some `cells`."""
+    entries = matrix.tocoo()
+    same = entries.row // cells == entries.col // cells
+    return sparse.coo_array((entries.data[same], (entries.row[same], entries.col[same])), entries.shape)
+
+
 def _diagonals(stiffness: FloatArray, by_distance: sparse.csr_array) -> FloatArray:
     """Diagonal of the derivative by the distance times the columns' stiffness: array (cell)."""
     columns, cells = stiffness.shape[:2]
-    entries = by_distance.tocoo()
-    row, source = entries.row, entries.col
-    same = row // cells == source // cells
-    row, source, value = row[same], source[same], entries.data[same]
-    products = value * stiffness[row // cells, source % cells, row % cells]
-    return np.asarray(np.bincount(row, products, minlength=columns * cells), dtype=np.float64)
+    entries = _within_columns(by_distance, cells)
+    products = entries.data * stiffness[entries.row // cells, entries.col % cells, entries.row % cells]
+    return np.asarray(np.bincount(entries.row, products, minlength=columns * cells), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False)
@@ -474,11 +507,11 @@ class _Columns:
         before, after = np.zeros((2, columns, cells))
         before[1:] = linearised.by_pressure.diagonal(-cells).reshape(-1, cells)
         after[:-1] = linearised.by_pressure.diagonal(cells).reshape(-1, cells)
-        inverses = np.empty((columns, cells, cells))
-        for column, stiffness in enumerate(problem.column_stiffness):
-            part = slice(column * cells, (column + 1) * cells)
-            matrix = linearised.by_pressure[part, part].toarray()
-            matrix += linearised.by_distance[part, part] @ stiffness
+        by_distance = _within_columns(linearised.by_distance, cells).tocsr()
+        inverses = (by_distance @ problem.column_stiffness.reshape(-1, cells)).reshape(columns, cells, cells)
+        by_pressure = _within_columns(linearised.by_pressure, cells)
+        inverses[by_pressure.row // cells, by_pressure.row % cells, by_pressure.col % cells] += by_pressure.data
+        for column, matrix in enumerate(inverses):
             if column:
                 matrix -= before[column][:, None] * inverses[column - 1] * after[column - 1]
             inverses[column] = linalg.inv(matrix, overwrite_a=True, check_finite=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import warnings
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,7 +19,7 @@ from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level
+from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level, solve_further
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
 ACCURACIES = (2e-3, 0.2)
@@ -106,7 +107,7 @@ def solve_film(
         raise InvalidInputError("accuracy", limit, f"from {ACCURACIES[0]:g} to {ACCURACIES[1]:g} of the central film")
     began = time.perf_counter()
     if start is not None:
-        require(start, "film_thickness", "pressure", "moes_load", "film_levels", argument="start")
+        require(start, "film_thickness", "pressure", "moes_load", argument="start")
     refined = _refined(film, limit, settings, start)
     result = _labelled(film, refined)
     seconds = time.perf_counter() - began
@@ -117,7 +118,7 @@ def solve_film(
             ConvergenceWarning,
             stacklevel=2,
         )
-    _warn_of_viscosity(film, refined.finest)
+    _warn_of_viscosity(film, refined.solved)
     described = describe(result, "lubricated contact of a roller with an elastic body")
     recorded = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
     return with_provenance(described, case, recorded, {"film": seconds})
@@ -179,9 +180,9 @@ NAMES = {
 
 
 class _Refined(NamedTuple):
-    """Film on the finest level, its values and their errors, and the largest error over the central film."""
+    """Film on the finest level, its values and their errors, and the largest over the central film."""
 
-    finest: FilmOnCells
+    solved: FilmOnCells
     films: Films
     errors: dict[str, float]
     error: float
@@ -192,55 +193,63 @@ class _Refined(NamedTuple):
 
 def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Refined:
     """Film on finer and finer levels until its values change by less than the accuracy."""
-    places, previous, solved = film.contact_ends, None, None
-    steps = [0, 0]
-    errors, error, changes = dict.fromkeys(NAMES, np.nan), np.inf, []
-    first = 0 if start is None else int(start["film_levels"]) - 2
-    for level in range(first, film.resolution.levels):
+    coarse = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
+    levels: list[FilmOnCells] = []
+    films: list[Films] = []
+    closures = film.contact_ends
+    error, change = np.inf, dict.fromkeys(NAMES, 0.0)
+    for level in range(film.resolution.levels):
         try:
-            solved = film_on_level(film, level, places, settings, start if solved is None else solved)
+            closures = closures if not levels else _closures(films[-1], levels[-1], closures)
+            levels.append(film_on_level(film, level, closures, coarse, levels[-1] if levels else start))
         except StepFailedError as failure:
-            if solved is None and start is not None:
+            if not levels and start is not None:
                 return _refined(film, accuracy, settings)
-            if solved is None or previous is None or not np.isfinite(error):
-                raise _film_error(film, failure, level, places) from None
+            if len(levels) < 2:
+                raise _film_error(film, failure, level, closures) from None
             break
-        films = films_of(film, solved)
-        steps[0] += solved.solution.newton_steps
-        steps[1] += solved.solution.linear_steps
-        if previous is not None:
-            changes.append({name: abs(getattr(films, name) - getattr(previous, name)) for name in NAMES})
-            # Where the least cell lies jumps from level to level: the change before counts as well.
-            kept = {
-                name: max(0.5 * each[name] if each is not changes[-1] else each[name] for each in changes[-2:])
-                for name in NAMES
-            }
-            errors = {name: SAFETY * kept[name] + ROUNDING * getattr(films, name) for name in NAMES}
-            error = max(errors.values()) / films.central
-        previous = films
+        films.append(films_of(film, levels[-1]))
+        if level == 0:
+            continue
+        # Where the least cell lies jumps from level to level: the change before counts as well.
+        before, change = change, {name: abs(getattr(films[-1], name) - getattr(films[-2], name)) for name in NAMES}
+        errors = {
+            name: SAFETY * max(change[name], 0.5 * before[name]) + ROUNDING * getattr(films[-1], name) for name in NAMES
+        }
+        error = max(errors.values()) / films[-1].central
         if error <= accuracy:
             break
-        places = (films.first_x, films.last_x) if films.first_x < films.last_x else film.contact_ends
-    assert solved is not None
-    assert previous is not None
+    try:
+        levels.append(solve_further(levels[-1], settings))
+    except StepFailedError as failure:
+        raise _film_error(film, failure, len(films) - 1, closures) from None
     return _Refined(
-        finest=solved,
-        films=previous,
+        solved=levels[-1],
+        films=films_of(film, levels[-1]),
         errors=errors,
         error=error,
-        levels=first + len(changes) + 1,
-        newton_steps=steps[0],
-        linear_steps=steps[1],
+        levels=len(films),
+        newton_steps=sum(solved.solution.newton_steps for solved in levels),
+        linear_steps=sum(solved.solution.linear_steps for solved in levels),
     )
 
 
-def _film_error(film: FilmCase, failure: StepFailedError, level: int, places: tuple[float, ...]) -> FilmError:
+def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) -> tuple[float, float]:
+    """Columns of the least films at both ends, over the half-width: equal for films of near speeds."""
+    if not films.first_x < films.last_x:
+        return closures
+    x = solved.problem.cells.x
+    first, last = (float(x[np.abs(x - least).argmin()]) for least in (films.first_x, films.last_x))
+    return first, last
+
+
+def _film_error(film: FilmCase, failure: StepFailedError, level: int, closures: tuple[float, float]) -> FilmError:
     """Return the error of a film that has not been found, with the place where it closes."""
     from contactstudy.film.levels import cells_of
 
     if failure.closed is None:
         return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
-    cells = cells_of(film, level, places)[0]
+    cells = cells_of(film, level, closures)[0]
     x, y = (film.half_width * axis[cell] for axis, cell in zip((cells.x, cells.y), failure.closed, strict=True))
     return FilmError(
         f"the film of smooth surfaces closes at x = {x:.4g} m, y = {y:.4g} m: give asperities=Asperities(rms=...), "
@@ -297,7 +306,7 @@ def _least(positions: FloatArray, values: FloatArray) -> _Least:
 
 def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
     """Label a film: on uniform cells along y, in the coordinates of the case."""
-    solved, solution, grid = refined.finest, refined.finest.solution, refined.finest.grid
+    solved, solution, grid = refined.solved, refined.solved.solution, refined.solved.grid
     # The lubricant flows along +y on the solver's cells.
     turned = film.speeds.entrainment < 0
     sign = -1 if turned else 1

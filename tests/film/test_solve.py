@@ -89,6 +89,19 @@ def test_surfaces_that_move_backwards_mirror_the_film(crowned):
     assert turned.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
 
 
+def test_the_next_speed_takes_cells_and_film_of_the_former_one(crowned):
+    case = film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown())
+    faster = replace(case, motion=cs.Sliding(body_speed=1.02, roller_speed=1.02))
+    computed = cs.cache.info().kinds["surface operators"].computed
+    warm = solve_film(faster, accuracy=0.1, start=crowned)
+    assert cs.cache.info().kinds["surface operators"].computed == computed
+    cold = solve_film(faster, accuracy=0.1)
+    assert int(warm.newton_steps) < 0.6 * int(cold.newton_steps)
+    for name in ("central_film", "least_film"):
+        assert float(warm[name]) == pytest.approx(float(cold[name]), rel=1e-7)
+        assert float(warm[f"{name}_error"]) == pytest.approx(float(cold[f"{name}_error"]), rel=1e-2)
+
+
 def test_asperities_carry_what_the_film_does_not():
     rough = Asperities(rms=5e-8)
     with warnings.catch_warnings():

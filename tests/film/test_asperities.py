@@ -1,0 +1,49 @@
+"""Rough surfaces in the iteration: distances at given heights of the film, and states without a residual."""
+
+import numpy as np
+import pytest
+
+from contactstudy.film import Asperities
+from contactstudy.film.newton import SETTINGS, FilmProblem, StepFailedError, solve_newton, start_of
+from contactstudy.film.reynolds import FilmCells, Fluid, Law
+
+CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 9), open_ends=False)
+ROUGH = Asperities(rms=1e-7)
+
+
+def problem(**named):
+    ones = Law(np.ones(8), np.zeros(8))
+    values = {
+        "cells": CELLS,
+        "fluid": Fluid(density=lambda _: ones, fluidity=lambda p: Law(np.ones_like(p), np.zeros_like(p)), speed=1.0),
+        "gap": np.ones(CELLS.shape),
+        "displace": lambda pressure: 0.1 * pressure,
+        "column_stiffness": 0.1 * np.eye(8)[None],
+        "load": 1.0,
+        "lever": None,
+        "central_film": 1.0,
+        "mean_height": ROUGH.mean_height(1e-6),
+    }
+    return FilmProblem(**(values | named))
+
+
+@pytest.mark.parametrize("start", [-4.0, -1.0, 0.0, 3.0])
+@pytest.mark.parametrize("growth", [0.4, 1.0, 1e3, 1e6])
+def test_the_distance_at_a_height_of_the_film(start, growth):
+    rough = problem()
+    distance = np.full(CELLS.shape, 0.1 * start)
+    height = growth * rough.film(distance).value
+    assert rough.film(rough.distance(height, distance)).value == pytest.approx(height, rel=1e-6)
+
+
+def test_the_distance_of_smooth_surfaces_is_the_film():
+    smooth = problem(mean_height=None)
+    height = np.linspace(0.1, 2.0, 8)[None]
+    assert smooth.distance(height, 0 * height) == pytest.approx(height)
+
+
+def test_a_state_without_a_residual_does_not_converge():
+    rough = problem()
+    state = start_of(rough, np.ones(CELLS.shape), np.zeros(1), np.full(CELLS.shape, np.nan))
+    with pytest.raises(StepFailedError):
+        solve_newton(rough, state, SETTINGS, steady=False)
