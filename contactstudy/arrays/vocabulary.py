@@ -394,6 +394,9 @@ FILM = {  # film thickness and derived quantities
     "film_levels": Variable(SCALAR, "1", "", "levels of cells of the film"),
     "end_film_ratio": Variable(SCALAR, "1", "", "least film thickness over that of the middle section"),
     "least_film_ratio": Variable(SCALAR, "1", r"\Lambda_\mathrm{m}", "least film thickness over the roughness"),
+    "slice_film": Variable(
+        X, "m", "", "central film of a line contact with the dry load per length of each slice, Moes"
+    ),
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
     "traction_coefficient": Variable(("slide_roll_ratio",), "1", r"\mu", "traction over the load"),
     "power_loss": Variable(("slide_roll_ratio",), "W", "", "power that sliding and rolling take"),

@@ -169,6 +169,11 @@ class FilmCase:
         """Moes' load number of a load per length, N/m."""
         return float(line_load / (2 * self.case.modulus * self.case.roller.radius * np.sqrt(2 * self.speed_number)))
 
+    def moes_film(self, line_load: float) -> float:
+        """Central film of a line contact with a load per length by Moes' formula, metres."""
+        film = moes_line(self.moes_load(line_load), self.moes_lubricant)
+        return float(film * self.case.roller.radius * np.sqrt(2 * self.speed_number))
+
     @property
     def moes_lubricant(self) -> float:
         """Moes' lubricant number."""
@@ -189,8 +194,14 @@ class FilmCase:
     @cached_property
     def central_film(self) -> float:
         """Central film by Moes' formula where the load per length is largest, metres: a scale."""
-        film = moes_line(self.moes_load(self.largest_line_load), self.moes_lubricant)
-        return float(film * self.case.roller.radius * np.sqrt(2 * self.speed_number))
+        return self.moes_film(self.largest_line_load)
+
+    def slice_film(self, x: FloatArray) -> FloatArray:
+        """Central film of a line contact with the dry load per length at each position, metres; NaN without load."""
+        grid = self.dry.shape.grid
+        column = np.clip(np.searchsorted(grid.x_edges, x) - 1, 0, grid.cells_x - 1)
+        line = self.dry.pressure[column].sum(axis=1) * grid.dy
+        return np.array([self.moes_film(load) if load else np.nan for load in line.tolist()])
 
     @cached_property
     def inlet_length(self) -> float:

@@ -67,13 +67,13 @@ def solve_film(
     -------
     Dataset
         `film_thickness` and `pressure` (x, y), with `asperity_pressure` and the film ratio `film_ratio` (x) between
-        rough surfaces; `central_film` in the
-        middle of the contact; `least_film` and its place ``_x``, ``_y``; `least_film_middle` in the middle section,
-        `least_film_first` and `least_film_last` towards either end, the latter two with ``_x``; each film with its
-        error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`, `moes_load`, `moes_lubricant` of the largest
-        load per length; `asperity_load_share`. Certificate: `mass_error`, largest net outflow of a full cell over the
-        central flow times the cell's width; `film_load_error`; `film_complementarity_error`. `newton_steps`,
-        `linear_steps`, `film_levels`.
+        rough surfaces; `slice_film` (x), Moes' formula for the dry load per length of each slice, as bearing programs
+        compute it; `central_film` in the middle of the contact; `least_film` and its place ``_x``, ``_y``;
+        `least_film_middle` in the middle section, `least_film_first` and `least_film_last` towards either end, the
+        latter two with ``_x``; each film with its error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`,
+        `moes_load`, `moes_lubricant` of the largest load per length; `asperity_load_share`. Certificate: `mass_error`,
+        largest net outflow of a full cell over the central flow times the cell's width; `film_load_error`;
+        `film_complementarity_error`. `newton_steps`, `linear_steps`, `film_levels`.
 
     Raises
     ------
@@ -353,7 +353,7 @@ def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
         "hertz_half_width": film.half_width,
         "hertz_max_pressure": film.pressure,
     }
-    profiles = {}
+    profiles = {"slice_film": (("x",), film.slice_film(grid.x))}
     if film.asperities is not None:
         narrow = np.full(grid.cells_x, np.nan)
         narrow[solved.columns] = film.height * solution.film.min(axis=1) / film.asperities.rms

@@ -114,16 +114,19 @@ def plot_film_line(
     axis, fixed, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
     line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed: position})
     along = line[axis].values / unit.length
-    styles = line_styles(2)
-    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **styles[0])
+    film_style, pressure_style, slice_style = line_styles(3)
+    ax.plot(along, 1e6 * line["film_thickness"].values, label="film", **film_style)
+    if axis == "x" and "slice_film" in case:
+        slices = case["slice_film"].sel(x=line["x"])
+        ax.plot(along, 1e6 * slices.values, label="slices, Moes' formula", **slice_style)
     other = ax.twinx()
-    other.plot(along, line["pressure"].values / unit.stress, label="pressure", **styles[1])
+    other.plot(along, line["pressure"].values / unit.stress, label="pressure", **pressure_style)
     ax.set_ylim(0.0, 3e6 * float(case["central_film"]))
     other.set_ylim(bottom=0.0)
     if axis == "y":
         reach = REACH * float(case["hertz_half_width"]) / unit.length
         ax.set_xlim(-reach, reach)
     other.set_ylabel(unit.stress_label("pressure"))
-    ax.legend(handles=[*ax.lines, *other.lines], frameon=False, fontsize="small")
+    ax.legend(handles=[*ax.lines, *other.lines], loc="lower center", frameon=False, fontsize="small")
     label_axes(ax, unit.axis(axis), "film thickness, $h$ (µm)", other)
     return ax

@@ -8,6 +8,7 @@ import pytest
 
 import contactstudy as cs
 from contactstudy.film import Asperities, solve_film
+from contactstudy.film.formulas import moes_line
 from contactstudy.film.line_contact import solve_line
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
@@ -80,6 +81,20 @@ def test_the_middle_of_a_long_roller_is_a_line_contact():
     line = solve_line(float(film.moes_load), float(film.moes_lubricant), finest=0.1)
     error = float(film.central_film_error) + 5e-3 * float(film.central_film)
     assert abs(float(film.central_film) - line.central * scale) < error
+    middle = float(film.slice_film.sel(x=50 * HALF_WIDTH, method="nearest"))
+    assert middle == pytest.approx(line.central * scale, rel=0.04)
+
+
+def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
+    case = replace(film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown()), lubricant=None, motion=cs.Sliding())
+    dry = cs.solve(case, accuracy=0.05, stresses=False)
+    load = dry.pressure.sum("y") * float(dry.y[1] - dry.y[0])
+    root = np.sqrt(2 * oil_of(case, 10.0, 5.0).viscosity / (2 * case.modulus * RADIUS))
+    for x in (8 * HALF_WIDTH, 2 * HALF_WIDTH):
+        number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
+        expected = moes_line(number, 5.0) * RADIUS * root
+        assert float(crowned.slice_film.sel(x=x, method="nearest")) == pytest.approx(float(expected), rel=1e-2)
+    assert float(crowned.slice_film.min()) > 1.5 * float(crowned.least_film)
 
 
 def test_surfaces_that_move_backwards_mirror_the_film(crowned):
