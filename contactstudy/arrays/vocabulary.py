@@ -397,6 +397,9 @@ FILM = {  # film thickness and derived quantities
     "slice_film": Variable(
         X, "m", "", "central film of a line contact with the dry load per length of each slice, Moes"
     ),
+    "viscosity_ratio": Variable(
+        SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the film of the middle section"
+    ),
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
     "traction_coefficient": Variable(("slide_roll_ratio",), "1", r"\mu", "traction over the load"),
     "power_loss": Variable(("slide_roll_ratio",), "W", "", "power that sliding and rolling take"),

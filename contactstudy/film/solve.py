@@ -28,6 +28,8 @@ ACCURACIES = (2e-3, 0.2)
 SAFETY, ROUNDING = 1.5, 1e-3
 """Stated error over the change from the level before, and least stated error over the value. Accuracy."""
 
+VISCOSITY_EXPONENT = 1.3  # viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics.
+
 BARUS_LIMIT = 25.0
 """Logarithm of the viscosity ratio above which an oil is solid: the law holds to less. Physics."""
 
@@ -71,9 +73,9 @@ def solve_film(
         compute it; `central_film` in the middle of the contact; `least_film` and its place ``_x``, ``_y``;
         `least_film_middle` in the middle section, `least_film_first` and `least_film_last` towards either end, the
         latter two with ``_x``; each film with its error ``<name>_error``. `entrainment_speed`, `slide_roll_ratio`,
-        `moes_load`, `moes_lubricant` of the largest load per length; `asperity_load_share`. Certificate: `mass_error`,
-        largest net outflow of a full cell over the central flow times the cell's width; `film_load_error`;
-        `film_complementarity_error`. `newton_steps`, `linear_steps`, `film_levels`.
+        `moes_load`, `moes_lubricant` of the largest load per length; `asperity_load_share` and the `viscosity_ratio`
+        kappa of ISO 281. Certificate: `mass_error`, largest net outflow of a full cell over the central flow times the
+        cell's width; `film_load_error`; `film_complementarity_error`. `newton_steps`, `linear_steps`, `film_levels`.
 
     Raises
     ------
@@ -362,6 +364,10 @@ def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:
         scalars["roughness_rms"] = film.asperities.rms
         scalars["least_film_ratio"] = scalars["least_film"] / film.asperities.rms
         scalars["least_film_ratio_error"] = scalars["least_film_error"] / film.asperities.rms
+        # The ends are outside ISO 281: kappa refers to the film of the middle section.
+        scalars["viscosity_ratio"] = (scalars["least_film_middle"] / film.asperities.rms) ** VISCOSITY_EXPONENT
+        relative = scalars["least_film_middle_error"] / scalars["least_film_middle"]
+        scalars["viscosity_ratio_error"] = VISCOSITY_EXPONENT * relative * scalars["viscosity_ratio"]
     return xr.Dataset(
         {name: (("x", "y"), values) for name, values in fields.items()} | profiles | scalars,
         coords={"x": grid.x, "y": y} | cell_coordinates(grid),

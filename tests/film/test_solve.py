@@ -126,6 +126,9 @@ def test_asperities_carry_what_the_film_does_not():
     assert 0.0 < float(mixed.asperity_load_share) < 1.0
     assert float(mixed.film_thickness.min()) > 0.0
     assert bool((mixed.asperity_pressure <= mixed.pressure * (1 + 1e-9)).all())
+    # A surface as rough as the film is thick has a viscosity ratio of 1.
+    assert float(mixed.viscosity_ratio) == pytest.approx((float(mixed.least_film_middle) / 5e-8) ** 1.3)
+    assert float(mixed.viscosity_ratio_error) > 0.0
 
 
 @pytest.mark.parametrize(
