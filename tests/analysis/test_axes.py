@@ -20,7 +20,7 @@ def test_axis_without_a_single_dimension(dims: tuple[str, str]) -> None:
 def test_positions_of_a_study(opened: xr.Dataset) -> None:
     place = analysis.positions(opened["pressure"], "x")
     assert place.dims == ("e_over_a", "friction", "body", "x_over_a")
-    assert axis_dimensions(opened["von_mises"]) == {"x": "x_over_a", "y": "y_field", "z": "z"}
+    assert axis_dimensions(opened["von_mises"]) == {"x": "x_over_a", "y": "y_field_over_a", "z": "z_over_a"}
 
 
 def test_missing_positions() -> None:

@@ -106,7 +106,7 @@ def test_units_decide_nothing(edges: str, motion: Rolling | Shift) -> None:
         assert other.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
     assert np.array_equal(plain.sticks, other.sticks)
     for name in ("bound_error", "slip_error", "force_error"):
-        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-3, abs=1e-12)
+        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-2, abs=1e-12)
 
 
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
