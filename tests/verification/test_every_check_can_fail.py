@@ -251,7 +251,7 @@ def results_that_depend_on_the_grid(patch: Patch) -> None:
     real = contact.solve_contact
 
     def wrong(body, gap, load, **named):
-        found = real(body, gap, load, **named)
+        found = real(body, gap, load=load, **named)
         factor = 1 + 0.05 * np.sin(gap.size)
         return found.assign(pressure=factor * found["pressure"], approach=factor * found["approach"])
 
