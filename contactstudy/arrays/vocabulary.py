@@ -394,9 +394,7 @@ FILM = {  # film thickness and derived quantities
     "film_levels": Variable(SCALAR, "1", "", "levels of cells of the film"),
     "end_film_ratio": Variable(SCALAR, "1", "", "least film thickness over that of the middle section"),
     "least_film_ratio": Variable(SCALAR, "1", r"\Lambda_\mathrm{m}", "least film thickness over the roughness"),
-    "slice_film": Variable(
-        X, "m", "", "central film of a line contact with the dry load per length of each slice, Moes"
-    ),
+    "slice_film": Variable(X, "m", "", "film of each slice by Moes' formula, from the dry load per length"),
     "viscosity_ratio": Variable(
         SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the film of the middle section"
     ),

@@ -22,15 +22,8 @@ from contactstudy.contact.refinement.refined_contact import contact_shape, refin
 from contactstudy.film.asperities import Asperities
 from contactstudy.film.cells import JoinedCells, graded_edges, uniform_count
 from contactstudy.film.formulas import moes_line
-from contactstudy.film.newton import (
-    FilmProblem,
-    FilmSettings,
-    FilmSolution,
-    FilmState,
-    solve_from_dry,
-    solve_newton,
-    start_of,
-)
+from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
+from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, start_of
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread

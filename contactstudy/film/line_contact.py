@@ -10,15 +10,8 @@ from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 from contactstudy.film.cells import graded_edges
 from contactstudy.film.formulas import moes_line
-from contactstudy.film.newton import (
-    SETTINGS,
-    FilmProblem,
-    FilmSettings,
-    FilmSolution,
-    solve_from_dry,
-    solve_newton,
-    start_of,
-)
+from contactstudy.film.newton import SETTINGS, FilmSettings, solve_from_dry, solve_newton
+from contactstudy.film.problem import FilmProblem, FilmSolution, start_of
 from contactstudy.film.reynolds import FilmCells, Fluid, Law
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")

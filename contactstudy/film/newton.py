@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -13,10 +11,8 @@ from scipy import linalg, sparse
 
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ContactStudyError
-from contactstudy.film.reynolds import FilmCells, Flow, Fluid, Law
-
-INVERSE_STEPS = 8
-"""Steps to the distance of rough surfaces at a height of the film: the next step removes what they leave. Speed."""
+from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState
+from contactstudy.film.reynolds import Flow, Law
 
 LOGGER = logging.getLogger(__name__)
 
@@ -65,146 +61,6 @@ class FilmSettings:
 
 SETTINGS = FilmSettings()
 """Default settings."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FilmProblem:
-    """A film to solve, in the units of `FilmCells`.
-
-    Attributes
-    ----------
-    cells : FilmCells
-        Cells.
-    fluid : Fluid
-        Laws of the lubricant.
-    gap : array (x, y)
-        Gap before deformation.
-    displace : callable
-        Displacement of the surfaces apart, array (x, y), under a pressure.
-    column_stiffness : array (x, y, y)
-        Displacement of a column's cells under a pressure that all columns carry alike.
-    load : float
-        Prescribed sum of the pressure times the areas.
-    lever : array (x) or None
-        Distances from the load's position, over the largest of them, if the shape is free to tilt.
-    central_film : float
-        Central film as estimated before the solution: the scale of tolerances.
-    asperities : callable or None
-        Mean pressure of the asperities at a distance of the surfaces.
-    mean_height : callable or None
-        Mean height of the film between rough surfaces at a distance of these.
-    """
-
-    cells: FilmCells
-    fluid: Fluid
-    gap: FloatArray
-    displace: Callable[[FloatArray], FloatArray]
-    column_stiffness: FloatArray
-    load: float
-    lever: FloatArray | None
-    central_film: float
-    asperities: Callable[[FloatArray], Law] | None = None
-    mean_height: Callable[[FloatArray], Law] | None = None
-
-    @cached_property
-    def motions(self) -> FloatArray:
-        """Heights of the rigid motions: array (motion, cell)."""
-        ones = np.ones(self.cells.shape)
-        motions = [ones] if self.lever is None else [ones, self.lever[:, None] * ones]
-        return np.stack([motion.ravel() for motion in motions])
-
-    @cached_property
-    def resultants(self) -> FloatArray:
-        """Sums that the rigid motions prescribe: array (motion, cell)."""
-        return np.asarray(self.motions * self.cells.areas.ravel())
-
-    def film(self, distance: FloatArray) -> Law:
-        """Mean height of the film at a distance of the surfaces."""
-        return Law(distance, np.ones_like(distance)) if self.mean_height is None else self.mean_height(distance)
-
-    def distance(self, height: FloatArray, start: FloatArray) -> FloatArray:
-        """Distance of the surfaces at a mean height of the film: Newton's method for its logarithm, from a `start`."""
-        if self.mean_height is None:
-            return height
-        # Apart, rough surfaces are at most the height that they have in touch closer than their film is high.
-        touching = self.mean_height(np.zeros_like(height)).value
-        distance = np.where(height > touching, np.maximum(start, height - touching), start)
-        for _ in range(INVERSE_STEPS):
-            film = self.mean_height(distance)
-            distance = distance + film.value / film.slope * np.log(height / film.value)
-        return distance
-
-    @property
-    def prescribed(self) -> FloatArray:
-        """Values of these sums: load, and moment about the load's position."""
-        return np.array([self.load, 0.0][: len(self.motions)])
-
-
-class FilmState(NamedTuple):
-    """Unknowns of an iteration.
-
-    Attributes
-    ----------
-    pressure : array (x, y)
-        Pressure on the surfaces, fluid and asperities.
-    motion : array (motion)
-        Rigid motion: height and, if free, tilt.
-    distance : array (x, y)
-        Distance of the surfaces, an unknown as well: a start may be interpolated from other cells.
-    mismatch : array (x, y)
-        Distance less the one by pressure and motion.
-    """
-
-    pressure: FloatArray
-    motion: FloatArray
-    distance: FloatArray
-    mismatch: FloatArray
-
-
-def start_of(problem: FilmProblem, pressure: FloatArray, motion: FloatArray, distance: FloatArray) -> FilmState:
-    """Return a state from values that need not fit together."""
-    rigid = (motion @ problem.motions).reshape(problem.gap.shape)
-    return FilmState(pressure, motion, distance, distance - problem.gap - problem.displace(pressure) - rigid)
-
-
-class FilmSolution(NamedTuple):
-    """A film that has been solved.
-
-    Attributes
-    ----------
-    state : FilmState
-        Pressure and distance of the surfaces.
-    fluid_pressure, asperity_pressure, film : array (x, y)
-        Pressures of the fluid and of the asperities; mean height of the film.
-    flow : array (x, y + 1)
-        Flow along y through the faces.
-    outflow : array (x, y)
-        Net outflow of each cell per width.
-    cavitated : array of bool (x, y)
-        Cells with a broken film.
-    residual, load_error, complementarity_error, mismatch : float
-        Certificate: largest net outflow of a full cell over the central film, error of load and moment over the load,
-        largest net inflow of a cavitated cell over the central film, and largest mismatch of the distance over it.
-    newton_steps, linear_steps : int
-        Steps taken.
-    converged : bool
-        Whether the tolerance was reached.
-    """
-
-    state: FilmState
-    fluid_pressure: FloatArray
-    asperity_pressure: FloatArray
-    film: FloatArray
-    flow: FloatArray
-    outflow: FloatArray
-    cavitated: BoolArray
-    residual: float
-    load_error: float
-    complementarity_error: float
-    mismatch: float
-    newton_steps: int
-    linear_steps: int
-    converged: bool
 
 
 class StepFailedError(ContactStudyError):

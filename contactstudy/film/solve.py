@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator
 from contactstudy import checks
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates
-from contactstudy.arrays.variables import describe, require
+from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.case.case import Case
 from contactstudy.checks import FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
@@ -121,7 +121,7 @@ def solve_film(
             stacklevel=2,
         )
     _warn_of_viscosity(film, refined.solved)
-    described = describe(result, "lubricated contact of a roller with an elastic body")
+    described = without_error(describe(result, "lubricated contact of a roller with an elastic body"), "slice_film")
     recorded = {"accuracy": limit, "inlet": inlet, "rms": None if asperities is None else asperities.rms}
     return with_provenance(described, case, recorded, {"film": seconds})
 

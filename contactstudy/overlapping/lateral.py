@@ -107,7 +107,7 @@ class LateralColumns:
         even, odd = (waves[:, selected].reshape(-1, waves.shape[2]) for waves in (self.even, self.odd))
         return (even, odd) if load.sign_y > 0 else (odd, -even)
 
-    def at_positions(self) -> LateralColumns:
+    def sum_at_positions(self) -> LateralColumns:
         """Columns whose amplitudes are the parts of the sum at one position each: fewer for few positions along y."""
         along_nodes, waves = self.along_x.swapaxes(0, 1), np.concatenate([self.even, self.odd], axis=2)
         along_x, parities, positions = [], [], []
@@ -189,7 +189,7 @@ def lateral_columns(
     )
     if panel.interpolation is not None:
         columns = _interpolate_columns(columns, panel.nodes, panel.interpolation)
-    return columns.at_positions() if 2 * y.size * len(parts) < columns.parities.size else columns
+    return columns.sum_at_positions() if 2 * y.size * len(parts) < columns.parities.size else columns
 
 
 def _interpolate_columns(columns: LateralColumns, nodes: FloatArray, interpolation: FloatArray) -> LateralColumns:

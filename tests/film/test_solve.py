@@ -95,6 +95,7 @@ def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
         expected = moes_line(number, 5.0) * RADIUS * root
         assert float(crowned.slice_film.sel(x=x, method="nearest")) == pytest.approx(float(expected), rel=1e-2)
     assert float(crowned.slice_film.min()) > 1.5 * float(crowned.least_film)
+    assert crowned.slice_film.attrs["error_kind"] == "not estimated"
 
 
 def test_surfaces_that_move_backwards_mirror_the_film(crowned):

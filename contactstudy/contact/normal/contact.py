@@ -38,7 +38,8 @@ CONVERGED_TOLERANCES = 10.0
 OPEN_TOLERANCES = 10.0
 """Least open gap of `open_pressure_error`, over the tolerance and the variation of the displacement."""
 
-SYMMETRIC = 1e-10  # rounding of a symmetric gap over the largest, and of symmetric edges over the window. Accuracy.
+SYMMETRY_ROUNDING = 1e-10
+"""Rounding of a symmetric gap over the largest, and of symmetric edges over the window. Accuracy."""
 
 
 @dataclass(frozen=True)
@@ -108,7 +109,7 @@ class Shape(NamedTuple):
         if self.surface is not None:
             return []
         low, high = self.grid.x_range
-        rounding, position = SYMMETRIC * (high - low), self.prescribed.load_position
+        rounding, position = SYMMETRY_ROUNDING * (high - low), self.prescribed.load_position
         centres = [0.5 * sum(self.body.extent)]
         if self.counterbody is not None:
             centres.append(self.counterbody.start + 0.5 * sum(self.counterbody.body.extent))
@@ -122,7 +123,7 @@ class Shape(NamedTuple):
         return [
             axis
             for axis, even in enumerate((even_x, not self.coupled_friction))
-            if even and np.abs(gap - np.flip(gap, axis)).max() < SYMMETRIC * gap.max()
+            if even and np.abs(gap - np.flip(gap, axis)).max() <= SYMMETRY_ROUNDING * gap.max()
         ]
 
     def referred(self, solve: SolveReferred, tolerance: float, start: FloatArray | None = None) -> Referred:
@@ -210,7 +211,8 @@ def contact_of(shape: Shape, settings: Settings, start: ArrayKey | None = None) 
     grid, clearance = shape.grid, shape.gap.values
     with one_blas_thread():
         iterate, motions = _iterate(shape, settings, start)
-        # Symmetric problems are convex: the mean of a solution and its image is a solution, and its fields cost less.
+        # The solution of a symmetric problem equals its image; so does the mean of an iterate and its image, and the
+        # fields of symmetric loads need half of the wavenumbers.
         pressure = iterate.pressure.copy()
         for axis in shape.reflections():
             pressure = 0.5 * (pressure + np.flip(pressure, axis))

@@ -105,8 +105,8 @@ def test_units_decide_nothing(edges: str, motion: Rolling | Shift) -> None:
         length, pressure = POWERS.get(name, (0, 0) if rolls else (1, 0))
         assert other.rigid[name] == pytest.approx(amount * LENGTH**length * PRESSURE**pressure, rel=1e-6)
     assert np.array_equal(plain.sticks, other.sticks)
-    for name in ("bound_error", "slip_error", "force_error"):
-        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-2, abs=1e-12)
+    for name in ("bound_error", "slip_error", "force_error"):  # differences of the values above
+        assert getattr(other, name) == pytest.approx(getattr(plain, name), rel=1e-3, abs=1e-9)
 
 
 @pytest.mark.parametrize("motion", [MOTIONS["all"], MOTIONS["shift"], replace(MOTIONS["all"], model="fastsim")])
