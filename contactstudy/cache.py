@@ -127,33 +127,36 @@ def limit(nbytes: int) -> None:
         _store = smaller
 
 
+def recall(kind: str, key: Hashable) -> Any | None:
+    """Return the cached value of a key, or None, and count it."""
+    with _lock:
+        entry = _store.get((kind, key))
+        _counts.setdefault(kind, [0, 0])[0 if entry else 1] += 1
+    return entry.value if entry else None
+
+
+def retain(kind: str, key: Hashable, value: object, nbytes: int) -> None:
+    """Cache a value in place of the one of this key; all threads share it, and its arrays become read-only."""
+    _protect(value)
+    with _lock:
+        _store.pop((kind, key), None)
+        if nbytes <= _store.maxsize:
+            _store[kind, key] = _Entry(value, nbytes)
+
+
 def cached(
     kind: str, nbytes: Callable[[Any], int]
 ) -> Callable[[Callable[Arguments, Value]], Callable[Arguments, Value]]:
-    """Cache the values of a function by its hashable arguments; `nbytes` is the size of a value.
-
-    Values are shared by all threads; their arrays become read-only.
-    """
+    """Cache the values of a function by its hashable arguments; `nbytes` is the size of a value."""
 
     def decorator(compute: Callable[Arguments, Value]) -> Callable[Arguments, Value]:
-        counts = _counts.setdefault(kind, [0, 0])
-
         @wraps(compute)
         def look_up(*arguments: Arguments.args, **named: Arguments.kwargs) -> Value:
-            key = (kind, (arguments, tuple(named.items())))
-            with _lock:
-                entry = _store.get(key)
-                counts[0 if entry else 1] += 1
-            if entry:
-                value: Value = entry.value
-                return value
-            value = compute(*arguments, **named)
-            _protect(value)
-            entry = _Entry(value, nbytes(value))
-            with _lock:
-                if entry.nbytes <= _store.maxsize:
-                    # Two threads may compute equal values: the first remains.
-                    value = _store.setdefault(key, entry).value
+            key = (arguments, tuple(named.items()))
+            value: Value | None = recall(kind, key)
+            if value is None:
+                value = compute(*arguments, **named)
+                retain(kind, key, value, nbytes(value))
             return value
 
         return look_up

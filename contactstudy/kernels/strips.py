@@ -31,6 +31,7 @@ from itertools import product
 
 import numpy as np
 
+from contactstudy.cache import recall, retain
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.kernels.convolution import even_spectrum, odd_spectrum
 from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, cell_kernel, mirrored_kernel
@@ -241,7 +242,9 @@ class ColumnsRequest:
         """Influence of strips with factors, and of their images of sign `image`: array (wavenumber, cell, cell)."""
         edges, (low, high) = self.edges, self.extent
         lateral = Lateral(self.dy, self.cells_y, strips[0][1].sign_y > 0)
-        pairs = _Pairs.of(edges, lateral)
+        # Columns that have been split share the influences between the others, to the last bit.
+        key = (strips, image, lateral, self.extent)
+        pairs = _Pairs.of(edges, lateral, recall("column pairs", key))
         for factor, strip in strips:
             pairs.add(factor, strip, np.subtract.outer(edges, edges))
             if np.isfinite(low):
@@ -249,6 +252,7 @@ class ColumnsRequest:
             if np.isfinite(high):
                 from_high = np.add.outer(high - edges, high - edges)
                 pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
+        retain("column pairs", key, pairs, pairs.nbytes)
         kernel = pairs.transformed()
         if np.isfinite(low) and np.isfinite(high):
             images = FarImages(high - low, image, IMAGE_POINTS)
@@ -265,56 +269,69 @@ class ColumnsRequest:
 class _Pairs:
     """Sum of influences between columns, before the transform along y."""
 
-    widths: FloatArray  # widths of the columns, metres
+    edges: FloatArray  # edges of the columns, metres
     lateral: Lateral  # cells along y
     total: FloatArray  # (cell, cell, offset): the sum, contiguous along y
-    table: FloatArray  # (edge, edge, offset): memory for double primitives
+    missing: BoolArray  # (cell, cell): pairs below the diagonal and on it that are to be added
 
     @classmethod
-    def of(cls, edges: FloatArray, lateral: Lateral) -> _Pairs:
-        """Zero influence between columns with these edges."""
-        count, offsets = edges.size, lateral.edges.size
-        total, table = (np.zeros((size, size, offsets)) for size in (count - 1, count))
-        return cls(np.diff(edges), lateral, total, table)
+    def of(cls, edges: FloatArray, lateral: Lateral, known: _Pairs | None) -> _Pairs:
+        """Zero influence between columns with these edges; those between columns of `known` are complete."""
+        count = edges.size - 1
+        total = np.zeros((count, count, lateral.edges.size))
+        missing = np.ones((count, count), bool)
+        if known is not None:
+            index = np.minimum(np.searchsorted(known.edges[:-1], edges[:-1]), known.edges.size - 2)
+            same = np.flatnonzero((known.edges[index] == edges[:-1]) & (known.edges[index + 1] == edges[1:]))
+            total[np.ix_(same, same)] = known.total[np.ix_(index[same], index[same])]
+            missing[np.ix_(same, same)] = False
+        return cls(edges, lateral, total, np.tril(missing))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory held, bytes."""
+        return self.total.nbytes + self.missing.nbytes
 
     def add(self, factor: float, strip: Strip, distances: FloatArray, *, image: bool = False) -> None:
         """Add `factor` times the influence of columns with edges at signed `distances`; at their sums for an image."""
-        widths, total, table, y = self.widths, self.total, self.table, self.lateral.edges
+        widths, total, y = np.diff(self.edges), self.total, self.lateral.edges
         separation = 0.25 * (distances[1:, 1:] + distances[1:, :-1] + distances[:-1, 1:] + distances[:-1, :-1])
-        far = np.tril(separation > FAR_COLUMNS * np.maximum.outer(widths, widths))
+        far = separation > FAR_COLUMNS * np.maximum.outer(widths, widths)
         # Edges of columns near each other.
         near = np.zeros(distances.shape, bool)
         for corner in product((slice(None, -1), slice(1, None)), repeat=2):
-            near[corner] |= np.tril(~far)
+            near[corner] |= self.missing & ~far
         backwards = 1 if image else strip.sign_x
+        table = np.empty((*distances.shape, y.size))
         for rows, columns in _blocks(near | near.T, y.size):
             values = strip.double_primitive(distances[rows, columns, None], y)
             table[columns, rows] = backwards * values
             table[rows, columns] = values
-        # The edges of an image run backwards; eq. (37).
-        factors = np.where(far | far.T, 0.0, -factor if image else factor) / (widths[:, None] * widths)
-        step = max(1, BLOCK // (widths.size * y.size))
-        for start in range(0, widths.size, step):
-            stop = min(start + step, widths.size)
-            lower, upper = slice(start, stop), slice(start + 1, stop + 1)
-            part = table[upper, :-1] + table[lower, 1:]
-            part -= table[upper, 1:]
-            part -= table[lower, :-1]
-            part *= factors[lower, :, None]
-            total[lower] += part
-        for rows, columns in _blocks(far, y.size):
+        for rows, columns in _blocks(self.missing & ~far, y.size):
+            values = table[rows + 1, columns] + table[rows, columns + 1]
+            values -= table[rows + 1, columns + 1]
+            values -= table[rows, columns]
+            # The edges of an image run backwards; eq. (37).
+            values *= ((-factor if image else factor) / (widths[rows] * widths[columns]))[:, None]
+            _add_both(total, rows, columns, values, backwards)
+        for rows, columns in _blocks(self.missing & far, y.size):
             x, squares = separation[rows, columns, None], (widths[rows] ** 2 + widths[columns] ** 2)[:, None]
             # Expansion of eq. (35) about the centres, to fourth order.
             values = factor * (strip.kernel(x, y) + squares / 24 * strip.curvature(x, y))
-            total[rows, columns] += values
-            above = rows > columns  # the image of a column may be far from the column
-            total[columns[above], rows[above]] += backwards * values[above]
+            _add_both(total, rows, columns, values, backwards)
 
     def transformed(self) -> FloatArray:
         """Return the sum over the wavenumber along y: array (wavenumber, cell, cell)."""
-        cells = self.widths.size
+        cells = self.edges.size - 1
         flat = self.total.reshape(cells**2, -1)
         return np.asarray((self.lateral.matrix.T @ flat.T).reshape(-1, cells, cells))
+
+
+def _add_both(total: FloatArray, rows: IntArray, columns: IntArray, values: FloatArray, backwards: int) -> None:
+    """Add the influences (pair, offset) of pairs of columns, and `backwards` times them of the exchanged pairs."""
+    total[rows, columns] += values
+    above = rows > columns  # the image of a column may be far from the column
+    total[columns[above], rows[above]] += backwards * values[above]
 
 
 def _blocks(marked: BoolArray, offsets: int) -> Iterator[tuple[IntArray, IntArray]]:
