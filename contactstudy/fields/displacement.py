@@ -10,12 +10,13 @@ from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body, Part
 from contactstudy.checks import FloatArray
-from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed
-from contactstudy.fields.part import REFERENCE_LENGTHS
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
+from contactstudy.fields.part import REFERENCE_LENGTHS, kernel_factor, reference_distance
 from contactstudy.fields.positions import Positions, field_positions
-from contactstudy.kernels.field import displacement_influence, half_space_field
+from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.harmonics import end_displacement
+from contactstudy.overlapping.field import unit_fields
+from contactstudy.overlapping.harmonics import DISPLACEMENT, end_displacement
 
 COMPONENTS = ("u_x", "u_y", "u_z")
 
@@ -118,15 +119,39 @@ def _part_displacement(
 ) -> dict[Load, FloatArray]:
     """Displacements (3, x, y, z) of one part of a body, before its weight."""
     material, extent = body.material, part.extent
-    length = extent[1] - extent[0]
-    reference = REFERENCE_LENGTHS * length
+    length, reference = extent[1] - extent[0], reference_distance(extent)
     fields = {}
     for load in loads:
         influence = displacement_influence(load, material.poisson, length, reference)
         field = half_space_field(cells, influence, grid, points, extent=extent, shape=shape)
-        fields[load] = field / (4 * np.pi * material.shear_modulus)
+        fields[load] = kernel_factor(material) * field
     if part.freed and cells.any():
         problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=loads)
         for load, from_ends in end_displacement(problem, points, reference=reference).items():
             fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
     return fields
+
+
+POINTS = 32  # positions along x per evaluation. Speed: memory.
+
+
+def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float) -> FloatArray:
+    """Return the normal displacement at y = 0 and a depth under a unit load on each cell: array (x, cell_x, cell_y)."""
+    material, normal = body.material, COMPONENTS.index("u_z")
+    total = np.zeros((x.size, *grid.shape))
+    for part in body.parts:
+        length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
+        influence = displacement_influence(load, material.poisson, length, reference)
+        for start in range(0, x.size, POINTS):
+            section = slice(start, start + POINTS)
+            points = Points(x[section], -grid.y, np.array([z]))
+            field = half_space_influence(influence, grid, points, extent=part.extent)[normal, ..., 0]
+            total[section] += part.weight * kernel_factor(material) * field
+        if part.freed:
+            problem = unit_problem(part.freed, material.poisson, grid, load)
+            line = Points(x, np.zeros(1), np.array([z]))
+            finite = reference if np.isfinite(reference) else None
+            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference=finite):
+                field = np.einsum("xniz,njy->xij", amplitudes[normal], filters[normal], optimize=True)
+                total += part.weight / (2 * material.shear_modulus) * field
+    return total

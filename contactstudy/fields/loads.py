@@ -92,6 +92,12 @@ def end_problem(
     )
 
 
+def unit_problem(freed: FreedEnds, poisson: float, grid: Grid, load: Load) -> EndProblem:
+    """Problem of the ends for unit loads on the cells along x."""
+    (problem,) = end_problem(freed, poisson, np.zeros(grid.shape), None, grid, loads=(load,)).alike()
+    return problem
+
+
 UNIFORM = "uniform"  # value of `inside_cells` for loads that are uniform in each cell
 
 

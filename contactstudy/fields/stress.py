@@ -16,15 +16,14 @@ from contactstudy.bodies.models import Body, Part
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.fields.largest import Largest, largest_stress, largest_with_points, place_search
-from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed
+from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
 from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
-from contactstudy.kernels.field import half_space_stress
+from contactstudy.kernels.field import half_space_field, half_space_influence, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import UnitFields, unit_fields
 from contactstudy.overlapping.harmonics import STRESS, end_stress
-from contactstudy.overlapping.problem import CORNER_OFFSET, EndProblem
-from contactstudy.overlapping.quadrature import Resolution
+from contactstudy.overlapping.problem import CORNER_OFFSET
 from contactstudy.stress import von_mises
 
 
@@ -164,7 +163,8 @@ def _mirrored_stress(
     """Stresses (6, x, y, z) in the half-space; the stresses under a pressure are shared by all frictions."""
     axes = Points(*(axis.values for axis in points))
     values = None if shape is None else shape.values
-    return half_space_stress(load, cells.values, poisson, grid, axes, extent=extent, shape=values)
+    influence = stress_influence(load, poisson)
+    return half_space_field(cells.values, influence, grid, axes, extent=extent, shape=values)
 
 
 def _part_stress(
@@ -266,31 +266,18 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
 
     def __init__(self, body: Body, grid: Grid, points: Points, load: Load) -> None:
         self._grid, self._shape = grid, (6, *(axis.size for axis in points))
-        distances = points.y[:, None] - grid.y[None, :] + grid.y[0]
+        distances = points.y[:, None] - grid.y[None, :]
         unique, indices = np.unique(np.round(distances / grid.dy, 9), return_inverse=True)
         self._distance = indices.reshape(distances.shape)
         self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique.size, points.z.size))
         self._ends: list[UnitFields] = []
         poisson = body.material.poisson
         for part in body.parts:
-            for cell in range(grid.cells_x):
-                unit = np.zeros(grid.shape)
-                unit[cell, 0] = part.weight
-                self._half_space[cell] += half_space_stress(
-                    load, unit, poisson, grid, points._replace(y=unique * grid.dy), extent=part.extent
-                )
+            from_row = points._replace(y=unique * grid.dy)
+            field = half_space_influence(stress_influence(load, poisson), grid, from_row, extent=part.extent)
+            self._half_space += part.weight * field.transpose(2, 0, 1, 3, 4)
             if part.freed:
-                length, mirrored_once = part.freed
-                resolution = Resolution().for_loads((load,))
-                problem = EndProblem(
-                    length=length,
-                    poisson=poisson,
-                    cells=np.zeros(grid.shape),
-                    loads=(load,),
-                    grid=grid,
-                    resolution=resolution,
-                    mirrored_once=mirrored_once,
-                )
+                problem = unit_problem(part.freed, poisson, grid, load)
                 reference = reference_distance(part.extent)
                 grows = load.sign_x < 0 and np.isfinite(reference)
                 for amplitudes, filters in unit_fields(problem, STRESS, points, reference=reference if grows else None):

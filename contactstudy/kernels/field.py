@@ -17,8 +17,8 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.column_fields import columns_field
 from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.corner_sums import OFFSET_TOLERANCE, AlignedPoints, aligned_points
-from contactstudy.kernels.fine_cells import FineCells
-from contactstudy.kernels.images import Influence
+from contactstudy.kernels.fine_cells import FineCells, mirrored
+from contactstudy.kernels.images import CHEBYSHEV_X, FarImages, Influence, snapped
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import DISPLACEMENT_CORNERS, STRESS_CORNERS
 from contactstudy.kernels.strips import row_level, strips_of
@@ -128,6 +128,32 @@ def _uniform_field(
     return field
 
 
+def half_space_influence(
+    influence: Influence, grid: Grid, points: Points, *, extent: tuple[float, float]
+) -> FloatArray:
+    """Field (component, x, cell, y, z) of a unit load on each cell along x, with all images, at distances y from it."""
+    image, columns, half = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
+    distances = snapped(points.x[:, None] - mirrored(grid.x_edges, extent), float(grid.widths.min()))[..., None]
+    periodic = bool(np.isfinite(extent).all())
+    far = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
+    first = columns if np.isfinite(extent[0]) else 0
+    layers = []
+    for depth in points.z.tolist():
+        corner = influence.corner_at(depth)
+        rows = corner(distances, points.y + half) - corner(distances, points.y - half)
+        cells = rows[:, :, :-1] - rows[:, :, 1:]
+        field = cells[:, :, first : first + columns].copy()
+        for start in range(0, cells.shape[2], columns):
+            if start != first:
+                field += image * cells[:, :, start : start + columns][:, :, ::-1]
+        if periodic:
+            kernel = far.influence(corner, points.y, grid.dy, np.array(influence.image_level))
+            loaded = far.means(grid.x_edges - extent[0]) * grid.widths
+            field += np.einsum("xp,cpqy,qi->cxiy", far.values(points.x - extent[0]), kernel, loaded, optimize=True)
+        layers.append(field)
+    return np.stack(layers, axis=-1)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _LoadedCells:
     """A load on uniform cells and its mirror image; the period is twice the length."""
@@ -195,19 +221,9 @@ STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))
 """Parities along x and along y of the components xx, yy, zz, xy, xz, yz under a pressure."""
 
 
-def half_space_stress(
-    load: Load,
-    cells: FloatArray,
-    poisson: float,
-    grid: Grid,
-    points: Points,
-    *,
-    extent: tuple[float, float],
-    shape: FloatArray | None = None,
-) -> FloatArray:
-    """Stresses xx, yy, zz, xy, xz, yz (6, x, y, z) of the half-space under a load and its mirror images, Pa."""
-    influence = Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
-    return half_space_field(cells, influence, grid, points, extent=extent, shape=shape)
+def stress_influence(load: Load, poisson: float) -> Influence:
+    """Stresses xx, yy, zz, xy, xz, yz of a unit load."""
+    return Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
 
 
 DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))

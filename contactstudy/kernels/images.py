@@ -122,17 +122,21 @@ class FarImages:
         return total
 
 
+def polynomial_count(half: float, distance: float, error: float = INTERPOLATION_ERROR) -> int:
+    """Points of a polynomial on a span ``2 half`` for the field of loads at a `distance` from all of it."""
+    # Each point divides the error by ``exp(asinh(distance / half))``.
+    return int(np.ceil(-np.log(error) / np.arcsinh(distance / half))) + 1
+
+
 def interpolation_points(
     values: FloatArray, distance: float, error: float = INTERPOLATION_ERROR
 ) -> tuple[FloatArray, FloatArray | None]:
     """Points for the interpolation of a field of distant loads, and its matrix (value, point), None at `values`."""
-    # For loads at a `distance` from all points of a span ``2 s`` each point divides the error by ``exp(asinh(distance /
-    # s))``.
     low, high = float(values.min()), float(values.max())
     half = 0.5 * (high - low)
     if not half:
         return values[:1], np.ones((values.size, 1)) if values.size > 1 else None
-    count = int(np.ceil(-np.log(error) / np.arcsinh(distance / half))) + 1
+    count = polynomial_count(half, distance, error)
     if count >= values.size:
         return values, None
     points, matrix = _chebyshev_points(values - 0.5 * (low + high), half, count)

@@ -20,6 +20,6 @@ panel          part of the range of a wavenumber (or of positions) with Gauss no
 column         function of x as a right-hand side of the equation set; a load is a sum of columns times functions of y
 synthesis      from the solutions for all columns back to positions along y
 view           a load and positions in one set of axial modes, from end I or from end II
-shortest       smallest distance of a position from a loaded corner; it bounds all wavenumbers
+shortest       smallest distance of a position or a step of the load from a corner; it bounds all wavenumbers
 =============  =======================================================================================================
 """

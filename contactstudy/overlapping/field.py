@@ -220,7 +220,7 @@ def _panel_amplitudes(
     problem, places = task.problem, task.places
     distances = [points.distance for points in places]
     nearest = min(float(distance.min()) for distance in distances)
-    shortest = max(nearest, problem.corner_offset)
+    shortest = problem.smallest_scale(nearest)
     for panel in problem.panels(task.y, shortest, task.reference):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break

@@ -170,7 +170,7 @@ class OverlappingOperators:
         x, y, z = positions
         x = np.where(problem.from_end(x) < offset, np.where(x < offset, offset, length - offset), x)
         z = np.maximum(z, offset)
-        shortest = float(min(problem.from_end(x).min(), z.min()))
+        shortest = problem.smallest_scale(float(min(problem.from_end(x).min(), z.min())))
         unit_loads = np.eye(problem.grid.cells_x)[problem.cell_of_column]
         parities = np.zeros(problem.grid.cells_x, dtype=np.int64)
         bands = []

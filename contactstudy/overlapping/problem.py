@@ -117,6 +117,14 @@ class EndProblem:
         """Size of a cell, metres; of graded cells the size along y."""
         return self.finest or finest_cell(self.grid)
 
+    def smallest_scale(self, nearest: float) -> float:
+        """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
+        # The field of a load near a corner depends on its steps there, at distant positions as well.
+        edges, load = self.columns
+        steps = np.diff(load, axis=0).any(axis=1) if load.any() else np.ones(edges.size - 2, bool)
+        inner = edges[1:-1][steps]
+        return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
+
     def from_end(self, x: FloatArray) -> FloatArray:
         """Distance of positions from the nearest end."""
         return np.minimum(x, self.length - x)

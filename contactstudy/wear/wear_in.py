@@ -83,13 +83,13 @@ class WornContact:
         with one_blas_thread():
             operator = WearingOperator(contact_operator(shape), compliance[:, None], grid.dy)  # eq. (604)
 
-            def solve(motion: RigidMotion, guess: FloatArray | None) -> ContactIterate:
+            def solve(motion: RigidMotion, guess: FloatArray | None, tolerance: float) -> ContactIterate:
                 problem = ContactProblem(
                     grid=grid,
                     gap=shape.gap.values + depth[:, None] - motion.height(grid.x),
                     resultants=shape.prescribed.resultants(grid),
                     friction=shape.coupled_friction,
-                    tolerance=self.settings.tolerance,
+                    tolerance=tolerance,
                     max_iterations=self.settings.max_iterations,
                 )
                 if shape.coupled_friction:

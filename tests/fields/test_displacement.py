@@ -8,6 +8,7 @@ import xarray as xr
 
 from contactstudy import (
     FiniteLengthSpace,
+    Grid,
     HalfSpace,
     InvalidInputError,
     Material,
@@ -16,6 +17,10 @@ from contactstudy import (
     stress_field,
     surface_displacement,
 )
+from contactstudy.arrays.points import Points
+from contactstudy.fields.displacement import displacement_under, normal_influence
+from contactstudy.fields.loads import TopLoad
+from contactstudy.kernels.load import Load
 
 MATERIAL = Material(young=0.91, poisson=0.3)
 BODIES = {
@@ -106,3 +111,33 @@ def test_every_component_has_its_unit(eccentric: xr.DataArray) -> None:
 def test_bad_input(arguments, parameter: str, eccentric: xr.DataArray) -> None:
     with pytest.raises(InvalidInputError, match=parameter):
         displacement_field(BODIES["finite length"], eccentric, **arguments)
+
+
+def test_deep_displacement_does_not_depend_on_the_other_positions() -> None:
+    # Pressure near an end: the ends' part at a distant point depends on wavelengths of this distance.
+    body = FiniteLengthSpace(length=1.0, material=Material(1.0, 0.3))
+    edges = [0.0, 0.005, 0.007, 0.01, 0.02, 0.05, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0]
+    grid = Grid.between(edges, (-0.01, 0.01), 8)
+    cells = np.zeros(grid.shape)
+    cells[1] = 1.0
+    loads = {Load.NORMAL: TopLoad(cells)}
+
+    def sunk(x: list[float], z: list[float]) -> float:
+        points = Points(np.array(x), np.zeros(1), np.array(z))
+        return float(displacement_under(body, loads, grid, points)[2, -1, 0, -1])
+
+    alone = sunk([0.6], [1.0])
+    assert sunk([0.001, 0.6], [0.001, 1.0]) == pytest.approx(alone, rel=1e-6)
+    assert sunk([0.1, 0.6], [1.0]) == pytest.approx(alone, rel=1e-6)
+
+
+def test_influence_on_a_plane_sums_to_the_displacement() -> None:
+    body = FiniteLengthSpace(length=1.0, material=Material(1.0, 0.3))
+    grid = Grid.between([0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0], (-0.2, 0.2), 4)
+    cells = np.random.default_rng(2).random(grid.shape)
+    x = np.array([0.2, 0.7])
+    for load in Load:
+        points = Points(x, np.zeros(1), np.array([0.8]))
+        expected = displacement_under(body, {load: TopLoad(cells)}, grid, points)[2, :, 0, 0]
+        summed = np.tensordot(normal_influence(body, grid, load, x, 0.8), cells, axes=2)
+        np.testing.assert_allclose(summed, expected, atol=1e-5 * np.abs(expected).max())

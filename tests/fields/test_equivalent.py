@@ -18,7 +18,7 @@ from contactstudy import (
     solve,
 )
 from contactstudy.arrays.points import Points
-from contactstudy.kernels.field import half_space_stress
+from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping import problem
 from contactstudy.overlapping.lateral import POLES
@@ -35,7 +35,9 @@ def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
     y = grid.y[[10, 28, 33, 50]]
 
     def on_ends(load: Load, cells: np.ndarray) -> np.ndarray:
-        return half_space_stress(load, cells, 0.3, grid, Points(np.array([0.0, 8.0]), y, depths), extent=(0.0, 8.0))[0]
+        return half_space_field(
+            cells, stress_influence(load, 0.3), grid, Points(np.array([0.0, 8.0]), y, depths), extent=(0.0, 8.0)
+        )[0]
 
     left = on_ends(Load.NORMAL, loads["P_h1"].values) + friction * on_ends(Load.ALONG_Y, pressure.values)
     # The top load is known on cells here, and within the window only.

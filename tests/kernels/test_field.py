@@ -10,7 +10,13 @@ from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
 from contactstudy.kernels.convolution import centred_field
-from contactstudy.kernels.field import STRESS_PARITIES, displacement_influence, half_space_field, half_space_stress
+from contactstudy.kernels.field import (
+    STRESS_PARITIES,
+    displacement_influence,
+    half_space_field,
+    half_space_influence,
+    stress_influence,
+)
 from contactstudy.kernels.fine_cells import REACH
 from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
@@ -159,7 +165,7 @@ def test_no_unit_makes_a_load_symmetric_about_mid_length(load: np.ndarray, unit:
 def test_kept_kernels_belong_to_their_material_and_quantity(load: np.ndarray):
     y, extent = GRID.y, (0.0, 2.0)
     first = stresses(load, GRID.x, y, extent)
-    softer = half_space_stress(Load.NORMAL, load, 0.1, GRID, Points(GRID.x, y, Z), extent=extent)
+    softer = half_space_field(load, stress_influence(Load.NORMAL, 0.1), GRID, Points(GRID.x, y, Z), extent=extent)
     assert np.abs(softer - first[0]).max() > 1e-2
     displacements(load, GRID.x, y, extent)
     np.testing.assert_array_equal(stresses(load, GRID.x, y, extent), first)
@@ -180,3 +186,19 @@ def test_every_cell_counts_at_every_other(extent: tuple[float, float], loaded: t
     beside = [(values[:, None] + 0.013 * np.arange(2)).ravel() for values in (x, y)]
     apart = stresses(load, *beside, extent)[:, :, ::2, ::2]
     np.testing.assert_allclose(stresses(load, x, y, extent), apart, atol=1e-8)
+
+
+@pytest.mark.parametrize("load", list(Load))
+@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, np.inf), (-np.inf, 3.0), (0.0, 3.0)])
+def test_the_influence_of_cells_sums_to_the_field(extent: tuple[float, float], load: Load) -> None:
+    grid = Grid.from_edges([0.0, 0.1, 0.25, 0.5, 1.0, 1.6, 2.2, 2.7, 3.0], (-1.0, 1.0), 10)
+    cells = np.random.default_rng(1).random(grid.shape)
+    points = Points(np.array([0.4, 1.3, 2.9]), np.array([0.05]), np.array([0.7, 2.0]))
+    for influence in (
+        displacement_influence(load, 0.3, extent[1] - extent[0], 30.0),
+        stress_influence(load, 0.3),
+    ):
+        field = half_space_field(cells, influence, grid, points, extent=extent)[:, :, 0]
+        by_cell = half_space_influence(influence, grid, points._replace(y=points.y - grid.y), extent=extent)
+        summed = np.einsum("cxiyz,iy->cxz", by_cell, cells)
+        np.testing.assert_allclose(summed, field, atol=1e-6 * np.abs(field).max())

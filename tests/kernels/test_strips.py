@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import fft, integrate
 
-from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace
+from contactstudy import FiniteLengthSpace, Grid, HalfSpace, Material, QuarterSpace, cache
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.fields.part import ColumnsOperator
@@ -311,3 +311,19 @@ def test_rows_without_a_net_load_need_no_level() -> None:
         for load in (P, X, Y):
             found = row_level(strips_of(Response(displacement, load), 0.3), load.sign_x, 0.8, 8.0)
             assert (found != 0) == ((displacement, load) in ((P, P), (Y, Y)))
+
+
+@pytest.mark.parametrize("response", [Response(Load.NORMAL, Load.NORMAL), Response(Load.ALONG_X, Load.NORMAL)])
+def test_influences_of_split_columns_do_not_depend_on_those_computed_before(response: Response) -> None:
+    coarse = np.array([0.0, 0.02, 0.05, 0.2, 0.4, 0.8, 1.0])
+    fine = np.sort(np.append(coarse, [0.01, 0.3, 0.9]))
+
+    def kernel(edges: np.ndarray) -> np.ndarray:
+        request = ColumnsRequest(edges=edges, dy=0.03, cells_y=8, extent=(0.0, 1.0), reference=10.0)
+        return request.kernel(response, 0.3)
+
+    cache.clear()
+    alone = kernel(fine)
+    cache.clear()
+    kernel(coarse)
+    np.testing.assert_array_equal(kernel(fine), alone)

@@ -7,7 +7,7 @@ import pytest
 
 from contactstudy import Grid
 from contactstudy.arrays.points import Points
-from contactstudy.kernels.field import half_space_stress
+from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators, Positions
 from contactstudy.overlapping.problem import EndProblem
@@ -84,10 +84,12 @@ def test_a_face_load_frees_its_end_of_what_the_opposite_half_space_leaves_there_
         np.concatenate([cells + added] * 3),
         Grid(x_range=(-2.4, 4.8), y_range=(-4.0, 4.0), cells_x=36, cells_y=32),
     )
-    left = half_space_stress(Load.NORMAL, copies, 0.3, three, Points(np.zeros(1), y, z), extent=(-np.inf, np.inf))[0, 0]
+    left = half_space_field(
+        copies, stress_influence(Load.NORMAL, 0.3), three, Points(np.zeros(1), y, z), extent=(-np.inf, np.inf)
+    )[0, 0]
     behind = np.array([length])
-    opposite = half_space_stress(Load.NORMAL, second.T, 0.3, face, Points(z, y, behind), extent=(0.0, np.inf))[
-        2, :, :, 0
-    ]
+    opposite = half_space_field(
+        second.T, stress_influence(Load.NORMAL, 0.3), face, Points(z, y, behind), extent=(0.0, np.inf)
+    )[2, :, :, 0]
     assert first[16:24:3, 2:20:4] == pytest.approx(left + opposite.T, abs=1e-2)
     assert np.abs(opposite).max() > 0.05

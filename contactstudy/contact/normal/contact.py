@@ -272,13 +272,13 @@ def _iterate(shape: Shape, settings: Settings, first: ArrayKey | None) -> Referr
     """Pressure of a contact, and the motion of the reference lines."""
     grid, operator = shape.grid, contact_operator(shape)
 
-    def solve(motion: RigidMotion, start: FloatArray | None) -> ContactIterate:
+    def solve(motion: RigidMotion, start: FloatArray | None, tolerance: float) -> ContactIterate:
         problem = ContactProblem(
             grid=grid,
             gap=shape.gap.values - shape.prescribed.lowered - motion.height(grid.x),
             resultants=shape.prescribed.resultants(grid),
             friction=shape.coupled_friction,
-            tolerance=settings.tolerance,
+            tolerance=tolerance,
             max_iterations=settings.max_iterations,
         )
         return solve_coupled(operator, problem) if shape.coupled_friction else solve_normal(operator, problem, start)

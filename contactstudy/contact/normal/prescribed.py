@@ -10,15 +10,16 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
-from contactstudy.arrays.points import Points
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
+from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.conjugate_gradients import ContactIterate, Resultants
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.displacement import displacement_under
-from contactstudy.fields.loads import TopLoad
+from contactstudy.fields.displacement import normal_influence
+from contactstudy.kernels.images import polynomial_count
 from contactstudy.kernels.load import Load
+from contactstudy.overlapping.quadrature import cell_moments, lagrange, panel_nodes
 
 
 class Prescribed(NamedTuple):
@@ -74,8 +75,8 @@ class Prescribed(NamedTuple):
         return float(np.abs(grid.x - self.load_position).max())
 
 
-LINE_POINTS = 16  # points of the least-squares line along a body. Accuracy.
 ROUNDS = 20  # rounds after which a prescribed tilt or approach counts as not reached. Speed.
+INEXACT = 1e-3  # tolerance of the contact over the error of the motion of the lines. Speed.
 
 
 class RigidMotion(NamedTuple):
@@ -89,18 +90,52 @@ class RigidMotion(NamedTuple):
         return np.asarray(self.level + self.tilt * x[:, None])
 
 
+class ReferenceLine(NamedTuple):
+    """Normal displacement of a body's reference line under loads on columns."""
+
+    x: FloatArray  # (point): positions on the line, and weights of a quadrature along it, metres
+    weights: FloatArray
+    influence: FloatArray  # (point, column, cell_y): displacement under a unit load, metres per Pa
+
+
+@cached("reference lines", lambda line: line.influence.nbytes)
+def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
+    """Line of a body, as smooth along x as the displacement of loads at its depth."""
+    low, high = np.clip(body.extent, *columns.x_range)
+    x, weights = panel_nodes(np.array([low, high]), polynomial_count(0.5 * (high - low), body.depth))
+    return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
+
+
+def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
+    """Columns for the field of loads at a depth, and the matrix (column, cell) that moves loads onto them."""
+    # The field is a polynomial of x: the loads on both have the same moments.
+    low, high = grid.x_range
+    count = polynomial_count(0.5 * (high - low), depth)
+    if count >= grid.cells_x:
+        return grid, np.eye(grid.cells_x)
+    edges = low + 0.5 * (high - low) * (1 - np.cos(np.pi * np.arange(count + 1) / count))
+    edges[-1] = high
+    panel = np.array(grid.x_range)
+    nodes, _ = panel_nodes(panel, count)
+    columns, cells = (cell_moments(panel, nodes, between) for between in (edges, grid.x_edges))
+    return Grid.between(edges, grid.y_range, grid.cells_y), np.asarray(np.linalg.solve(columns, cells))
+
+
 def line_motion(body: Body, grid: Grid, loads: Mapping[Load, FloatArray], position: float) -> RigidMotion:
     """Motion of a body's reference line under loads (Pa): least-squares slope, and displacement below a position."""
     if not np.isfinite(body.depth):
         return RigidMotion()
-    low, high = np.clip(body.extent, *grid.x_range)
-    x = low + (high - low) * (np.arange(LINE_POINTS) + 0.5) / LINE_POINTS
-    top = {load: TopLoad(cells) for load, cells in loads.items()}
-    line = np.append(x, np.clip(position, low, high))
-    place = Points(line, np.zeros(1), np.array([body.depth]))
-    displacement = displacement_under(body, top, grid, place)[2, :, 0, 0]
-    tilt = float(np.polynomial.polynomial.polyfit(x, displacement[:-1], 1)[1])
-    return RigidMotion(float(displacement[-1]) - tilt * position, tilt)
+    columns, onto_columns = distant_columns(grid, body.depth)
+    lines = {load: reference_line(body, columns, load) for load in loads}
+    displacement = sum(
+        (np.tensordot(lines[load].influence, onto_columns @ cells, axes=2) for load, cells in loads.items()),
+        start=np.zeros(1),
+    )
+    x, weights, _ = next(iter(lines.values()))
+    arm = x - np.average(x, weights=weights)
+    tilt = float((weights * arm) @ displacement / ((weights * arm) @ arm))
+    below = np.clip([position], *np.clip(body.extent, *grid.x_range))
+    return RigidMotion(float((lagrange(x, below) @ displacement)[0]) - tilt * position, tilt)
 
 
 class LineMotions(NamedTuple):
@@ -133,8 +168,8 @@ class Referred(NamedTuple):
     motions: LineMotions
 
 
-SolveReferred = Callable[[RigidMotion, FloatArray | None], ContactIterate]
-"""Contact on a gap less a motion of the lines, from a first guess of the pressure."""
+SolveReferred = Callable[[RigidMotion, FloatArray | None, float], ContactIterate]
+"""Contact on a gap less a motion of the lines, from a first guess of the pressure, to a tolerance."""
 
 
 def solve_referred(
@@ -152,9 +187,10 @@ def solve_referred(
     weights = np.array([1.0, length])
     trial, previous = np.zeros(2), np.zeros(2)
     relaxation, applications = 1.0, 0
-    guess = start
+    guess, error = start, 1.0 if any(held) else 0.0
     for number in range(ROUNDS):
-        iterate = solve(RigidMotion(*trial), guess)
+        inner = max(tolerance, INEXACT * error)
+        iterate = solve(RigidMotion(*trial), guess, inner)
         applications += iterate.applications
         guess = iterate.pressure
         motions = motions_of(guess)
@@ -162,7 +198,7 @@ def solve_referred(
         residual = np.where(held, motion - trial, 0.0)
         moved = float(np.linalg.norm(weights * motion))
         error = float(np.linalg.norm(weights * residual)) / moved if moved else 0.0
-        if error <= tolerance:
+        if max(error, inner) <= tolerance:
             return Referred(replace(iterate, applications=applications), motions)
         change = weights * (residual - previous)
         if number and change.any():
