@@ -289,9 +289,11 @@ class ColumnsOperator:
 
 
 def _times(matrices: FloatArray, spectrum: ComplexArray) -> ComplexArray:
-    """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell), as real products on pairs."""
-    pairs = spectrum.view(np.float64).reshape(*spectrum.shape, 2)
-    return np.ascontiguousarray(np.matmul(matrices, pairs)).view(np.complex128)[..., 0]
+    """Real matrices (wavenumber, cell, cell) times a spectrum (wavenumber, cell)."""
+    product = np.empty_like(spectrum)
+    product.real = (matrices @ spectrum.real[..., None])[..., 0]
+    product.imag = (matrices @ spectrum.imag[..., None])[..., 0]
+    return product
 
 
 def _inverted(matrix: FloatArray) -> FloatArray:
