@@ -13,10 +13,10 @@ from contactstudy.arrays.selections import place_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
-from contactstudy.plots.selection import describe_value, join_lines
+from contactstudy.plots.selection import describe_value
 from contactstudy.plots.singular import cap_field
 from contactstudy.plots.stress import plot_stress_plane
-from contactstudy.plots.style import line_styles, units
+from contactstudy.plots.style import fold_text, line_styles, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -123,7 +123,8 @@ def edge_effect_figure(
     distance = _level_distance([*entries, *comparison]) if distance is None else distance
     ax.set_xlim(0.0, distance)
     heading = "Pressure and stress near a free end" if stressed else "Pressure near a free end"
-    figure.suptitle(join_lines(remarks, TITLE_WIDTH, f"{heading}:" if remarks else heading), fontsize="medium")
+    title = f"{heading}: {'; '.join(remarks)}" if remarks else heading
+    figure.suptitle(fold_text(title, TITLE_WIDTH), fontsize="medium")
     if stressed:
         _draw_planes(parts[1], stressed, distance, depth)
     return figure
