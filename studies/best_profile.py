@@ -10,7 +10,7 @@ and computes the flat range of the optimum.
 
 Over 1 to 2 GPa and tilts up to 0.2 mrad the half-space needs twice the crown of Lundberg's formula, to keep
 its singular ends from touching; free ends yield, and three quarters of that crown are best. On the real body the
-half-space's design carries 8 % more pressure and lives 0.77 ± 0.15 times as long: the crown that guards against an edge
+half-space's design carries 7 % more pressure and lives 0.78 ± 0.14 times as long: the crown that guards against an edge
 peak which is not there costs length.
 """
 

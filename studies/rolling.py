@@ -10,6 +10,7 @@ python studies/rolling.py
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -20,14 +21,18 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import contactstudy as cs
+from contactstudy.plots.style import MARKERS, line_styles
 
 NAMES = ("traction_curve", "axial_slip", "spin", "partial_slip")
 
 BELOW = 0.19
 """Least depth over a of the compared von Mises stresses."""
 
-LINE: dict[str, Any] = {"color": "black", "markersize": 5, "markerfacecolor": "white"}
-"""Lines that differ by dashes and markers."""
+
+def marked_styles(count: int) -> Iterator[dict[str, Any]]:
+    """Styles of lines with different dashes, colours and markers."""
+    for style, marker in zip(line_styles(count), MARKERS, strict=False):
+        yield style | {"marker": marker, "markersize": 5}
 
 
 def full_sliding(study: xr.Dataset) -> xr.DataArray:
@@ -39,21 +44,13 @@ def draw_curve(ax: Axes, study: xr.Dataset) -> None:
     """Traction curves: free ends flush and inside the face, and half-spaces."""
     ratio = study["force_y"] / full_sliding(study)
     a = study["hertz_half_width"]
-    dashes = iter(["-", "--", "-", "--", "-.", ":"])
-    markers = iter("osD^vP")
+    styles = marked_styles(6)
     for length in study["roller_length"].values:
         size = f"roller of {float(length / a.max()):.0f}a"
         for body, e_over_a in (("finite-length", 0.0), ("finite-length", 2.0), ("half-space", 0.0)):
             curve = ratio.sel(roller_length=length, e_over_a=e_over_a, body=body)
             position = "half-spaces" if body == "half-space" else f"e = {e_over_a:g}a"
-            ax.plot(
-                1e3 * curve["longitudinal_creepage"],
-                curve,
-                next(dashes),
-                marker=next(markers),
-                label=f"{size}, {position}",
-                **LINE,
-            )
+            ax.plot(1e3 * curve["longitudinal_creepage"], curve, label=f"{size}, {position}", **next(styles))
     ax.axhline(0.0, color="0.8", linewidth=0.8, zorder=0)
     ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$")
     ax.set_ylabel("force over full sliding's")
@@ -63,31 +60,25 @@ def draw_micro_slip(ax: Axes, study: xr.Dataset) -> None:
     """Work lost and part that slips when a roller of the same material rolls freely."""
     slips = 1 - study["sticking_part"]
     loss = study["friction_work"] / full_sliding(study)
-    ax.errorbar(
-        study["e_over_a"],
-        1e3 * loss,
-        1e3 * study["friction_work_error"] / full_sliding(study),
-        linestyle="-",
-        marker="o",
-        label="work lost over $f W$, times $10^3$",
-        **LINE,
-    )
-    ax.plot(study["e_over_a"], slips, "--", marker="s", label="part of the contact that slips", **LINE)
+    error = 1e3 * study["friction_work_error"] / full_sliding(study)
+    styles = marked_styles(3)
+    ax.errorbar(study["e_over_a"], 1e3 * loss, error, label="work lost over $f W$, times $10^3$", **next(styles))
+    ax.plot(study["e_over_a"], slips, label="part of the contact that slips", **next(styles))
     creepage = 1e3 * study["longitudinal_creepage"]
-    ax.plot(study["e_over_a"], creepage, ":", marker="^", label=r"creepage found, $10^3\,\xi$", **LINE)
+    ax.plot(study["e_over_a"], creepage, label=r"longitudinal creepage, $10^3\,\xi$", **next(styles))
     ax.set_xlabel("distance of the roller's ends from the free ends, $e/a$")
 
 
 def draw_spin(ax: Axes, study: xr.Dataset) -> None:
     """Moment over full sliding's in opposite directions from mid-length, free ends and half-spaces."""
     ratio = study["moment_z"] / (0.25 * full_sliding(study) * study["contact_length"])
-    markers = iter("osD^")
+    styles = marked_styles(4)
     for length in study["roller_length"].values:
         size = f"{float(length / study['hertz_half_width'].max()):.0f}a"
-        for body, dash in (("finite-length", "-"), ("half-space", ":")):
+        for body in ("finite-length", "half-space"):
             curve = ratio.sel(roller_length=length, body=body)
             ends = "free ends" if body == "finite-length" else "half-spaces"
-            ax.plot(curve["spin"], curve, dash, marker=next(markers), label=f"roller of {size}, {ends}", **LINE)
+            ax.plot(curve["spin"], curve, label=f"roller of {size}, {ends}", **next(styles))
     ax.set_xlabel(r"spin, $\varphi$ (rad/m)")
     ax.set_ylabel("moment over $f W L / 4$")
 
@@ -101,15 +92,12 @@ def draw_stress(ax: Axes, study: xr.Dataset) -> None:
     below = near["von_mises"].sel(z_over_a=slice(BELOW, None))
     mises = below.max(("x_over_a", "y_field_over_a", "z_over_a")) / p0
     tension = near["sigma_yy"].sel(z_over_a=0.0).max(("x_over_a", "y_field_over_a")) / p0
-    markers = iter("osD^")
+    styles = marked_styles(4)
     ticks = np.arange(swept.size)
     for friction in study["friction"].values:
-        for values, dash, quantity in (
-            (mises, "-", "von Mises below $0.2a$"),
-            (tension, ":", "tension on the surface"),
-        ):
+        for values, quantity in ((mises, "von Mises below $0.2a$"), (tension, "tension on the surface")):
             curve = values.sel(friction=friction)
-            ax.plot(ticks, curve, dash, marker=next(markers), label=f"{quantity}, $f$ = {friction:g}", **LINE)
+            ax.plot(ticks, curve, label=f"{quantity}, $f$ = {friction:g}", **next(styles))
     ax.set_ylim(0.0, 1.15)
     ax.set_xticks(ticks, [f"{1e3 * value:g}" for value in swept.values])
     ax.set_xlabel(r"longitudinal creepage, $10^3\,\xi$ (the last is full sliding)")

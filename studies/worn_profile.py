@@ -42,7 +42,7 @@ class Task:
     mean_depths: tuple[float, ...] = (0.1e-6, 1e-6, 10e-6)
     pressures: tuple[float, ...] = (1.0e9, 1.5e9, 2.0e9)
     tilts: tuple[float, ...] = (0.0, 2e-4)
-    best_delta: float = 0.74
+    best_delta: float = 0.76
 
     @property
     def crown(self) -> cs.profiles.Lundberg:

@@ -116,8 +116,10 @@ def require(dataset: object, *names: str, argument: str = "dataset") -> None:
     if status is not None and status.ndim == 0 and str(status.item()) != "ok":
         reason = str(dataset["message"].item()) if "message" in dataset else ""
         raise InvalidInputError(argument, f"a {status.item()} case", "a solved case", reason)
-    hint = f"{missing[0]} is missing"
     entry = VARIABLES.get(missing[0])
+    if entry is None:
+        checks.known_name("variable", missing[0], map(str, dataset.data_vars))
+    hint = f"{missing[0]} is missing"
     if entry is not None and entry.dims:
         level = "fields" if "z" in entry.dims else "surface"
         hint += f"; a study keeps it at level {level!r}"

@@ -24,6 +24,7 @@ FIRST, SECOND, NEUTRAL = "#1f4e79", "#c05a00", "#8894a0"
 """Colours of the first case, of the second, and of all others."""
 
 PALETTE = "Viridis256"
+MARK = "#e8513a"  # legible on every colour of the palette
 HEIGHT = 290
 TOOLS = "pan,wheel_zoom,box_zoom,reset,save"
 TRIANGLE = {"marker": "triangle", "size": 11, "fill_color": None, "line_width": 1.5}
@@ -83,7 +84,7 @@ class AxialFigure:
 
 
 class ImageFigure:
-    """Field as an image with a colour bar; a depth increases downwards."""
+    """Field as an image with a colour bar and a cross at its largest value; a depth increases downwards."""
 
     def __init__(self, *, downwards: bool = False) -> None:
         self.figure = _new_figure(x_range=Range1d(0, 1), y_range=Range1d(0, 1))
@@ -91,6 +92,8 @@ class ImageFigure:
         self._source = ColumnDataSource({"image": [], "x": [], "y": [], "w": [], "h": []})
         self._mapper = LinearColorMapper(palette=PALETTE, low=0.0, high=1.0)
         self.figure.image(image="image", x="x", y="y", dw="w", dh="h", source=self._source, color_mapper=self._mapper)
+        self._largest = ColumnDataSource({"x": [], "y": []})
+        self.figure.scatter("x", "y", source=self._largest, marker="x", size=10, line_color=MARK, line_width=2)
         bar = ColorBar(color_mapper=self._mapper, ticker=BasicTicker(desired_num_ticks=6), width=12, padding=4)
         self.figure.add_layout(bar, "right")
         self.figure.grid.visible = False
@@ -105,9 +108,11 @@ class ImageFigure:
         self.figure.title.text = title
         if image is None:
             self._source.data = {"image": [], "x": [], "y": [], "w": [], "h": []}
+            self._largest.data = {"x": [], "y": []}
             return
         (left, right), (low, high) = image.horizontal, image.vertical
         self._source.data = {"image": [image.values], "x": [left], "y": [low], "w": [right - left], "h": [high - low]}
+        self._largest.data = {"x": [image.largest[1]], "y": [image.largest[2]]}
         self._mapper.update(high=max(limit, 1e-12))
         self.figure.x_range.update(start=left, end=right)
         deep = self._downwards and image.names[1].startswith("depth")

@@ -127,13 +127,17 @@ class Line(NamedTuple):
 
 
 class Image(NamedTuple):
-    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the largest colour."""
+    """Image (vertical, horizontal) of a field in a plane, limits and labels of both axes, and the largest colour.
+
+    `largest` is the largest value of the field within the limits, not of the pixels, and its place.
+    """
 
     values: Array
     horizontal: Span
     vertical: Span
     limit: float
     names: tuple[str, str]
+    largest: tuple[float, float, float]
     position: str = ""
 
 
@@ -208,7 +212,26 @@ def _image(
     first, second = (f"{labels[name]}{scale.length_name}" for name in names)
     (left, right), (low, high) = ((start / scale.length, stop / scale.length) for start, stop in spans)
     clipped = np.minimum(pixels, limit / scale.stress).astype(np.float32)
-    return Image(clipped, (left, right), (low, high), limit / scale.stress, (first, second))
+    largest = _largest(values, axes, spans, limit)
+    return Image(
+        values=clipped,
+        horizontal=(left, right),
+        vertical=(low, high),
+        limit=limit / scale.stress,
+        names=(first, second),
+        largest=(largest[0] / scale.stress, largest[1] / scale.length, largest[2] / scale.length),
+    )
+
+
+def _largest(
+    values: FloatArray, axes: tuple[FloatArray, FloatArray], spans: tuple[Span, Span], limit: float
+) -> tuple[float, float, float]:
+    """Largest value up to a limit between two positions along each axis, and its place; NaN without values."""
+    first, second = ((points >= low) & (points <= high) for points, (low, high) in zip(axes, spans, strict=True))
+    drawn = np.where(first[:, None] & second & (values <= limit), values, -np.inf)
+    row, column = np.unravel_index(int(drawn.argmax()), drawn.shape)
+    value = float(drawn[row, column])
+    return (value, float(axes[0][row]), float(axes[1][column])) if value > -np.inf else (np.nan, np.nan, np.nan)
 
 
 def to_pixels(

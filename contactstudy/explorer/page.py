@@ -208,8 +208,8 @@ class Page:
                 name = ("case: " if side == 0 else "second case: ") if self.compare.value else ""
                 singular = case is not None and case.has_pressure and case.singular_ends
                 clipped = ", clipped beside the singular end" if singular else ""
-                position = image.position if image is not None else ""
-                figure.show(image, limit, f"{name}{quantity}{unit}{position}{clipped}", vertical)
+                place = f"{image.position}, largest {image.largest[0]:.4g}" if image is not None else ""
+                figure.show(image, limit, f"{name}{quantity}{unit}{place}{clipped}", vertical)
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""

@@ -13,10 +13,10 @@ from contactstudy.arrays.selections import place_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.axial import plot_axial_pressure
-from contactstudy.plots.selection import describe_value, join_lines
+from contactstudy.plots.selection import describe_value
 from contactstudy.plots.singular import cap_field
 from contactstudy.plots.stress import plot_stress_plane
-from contactstudy.plots.style import line_styles, units
+from contactstudy.plots.style import fold_text, line_styles, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -27,7 +27,7 @@ LoadCase = Callable[[xr.Dataset], xr.Dataset]
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
 UNSOLVED = "a study with finished cases and stored pressures"
-TITLE_WIDTH = 100  # letters of a line
+TITLE_WIDTH = 60  # letters of a line
 PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve counts as level
 
 
@@ -115,15 +115,16 @@ def edge_effect_figure(
     first = [entry for entry in half_spaces if entry.end_distance == entries[0].end_distance] or half_spaces
     comparison = with_surfaces(first[:1])
     stressed = [entry for entry in entries if "von_mises" in entry.case]
-    height = 0.5 + 1.3 * len(stressed)
-    figure = pyplot.figure(figsize=(9.0, 4.2 + height), layout="constrained")
-    parts: Any = figure.subfigures(2, 1, height_ratios=(4.2, height)) if stressed else [figure]
+    height = 0.5 + 1.1 * len(stressed)
+    figure = pyplot.figure(figsize=(5.4, 4.0 + height), layout="constrained")
+    parts: Any = figure.subfigures(2, 1, height_ratios=(4.0, height)) if stressed else [figure]
     ax = parts[0].subplots()
     _draw_pressures(ax, entries, comparison)
     distance = _level_distance([*entries, *comparison]) if distance is None else distance
     ax.set_xlim(0.0, distance)
     heading = "Pressure and stress near a free end" if stressed else "Pressure near a free end"
-    figure.suptitle(join_lines(remarks, TITLE_WIDTH, f"{heading}:" if remarks else heading), fontsize="medium")
+    title = f"{heading}: {'; '.join(remarks)}" if remarks else heading
+    figure.suptitle(fold_text(title, TITLE_WIDTH), fontsize="medium")
     if stressed:
         _draw_planes(parts[1], stressed, distance, depth)
     return figure
@@ -159,7 +160,7 @@ def _draw_pressures(ax: Axes, entries: list[Entry], comparison: list[Entry]) -> 
     ax.set_ylim(0.0, 1.05 * highest)
     ax.axhline(1.0, color="0.7", linewidth=0.8, zorder=0)
     # The legend lies below the axis: within the axes it would cover the lines.
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False, fontsize="small", ncols=4)
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), frameon=False, fontsize="small", ncols=3)
 
 
 def _level_distance(entries: list[Entry]) -> float:

@@ -12,7 +12,7 @@ import xarray as xr
 from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.selections import place_of
 from contactstudy.errors import InvalidInputError
-from contactstudy.plots.style import SYMBOLS, escape_dollars, fold_text
+from contactstudy.plots.style import SYMBOLS, escape_dollars
 
 SCALES = {
     "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
@@ -79,16 +79,3 @@ def describe_value(name: str, value: Any, units: str, count: int = 1) -> str:
     text = quantity(float(value), units or "1") if number else escape_dollars(value)
     symbol = "$p_0$" if name == "max_pressure" else name.replace("_over_a", "/a").replace("_", " ")
     return f"{symbol} = {text}" + (f", one of {count} values" if count > 1 else "")
-
-
-def join_lines(parts: list[str], width: int, heading: str = "") -> str:
-    """Title of several values, in lines that break between the values."""
-    lines = [heading]
-    for number, part in enumerate(parts):
-        text = part + (";" if number + 1 < len(parts) else "")
-        line = f"{lines[-1]} {text}".strip()
-        if lines[-1] and len(line) > width:
-            lines.append(text)
-        else:
-            lines[-1] = line
-    return "\n".join(fold_text(line, width) for line in lines)

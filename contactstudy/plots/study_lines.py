@@ -16,7 +16,6 @@ from contactstudy.errors import ContactStudyError, InvalidInputError
 from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, edge_effect_figure
 from contactstudy.plots.selection import (
     describe_value,
-    join_lines,
     most_solved,
     scale_of,
     scale_values,
@@ -118,7 +117,7 @@ def plot_study_lines(
             describe_value(dim, value, str(dataset[dim].attrs.get("units", "1")), dataset.sizes[dim])
             for dim, value in values_beside.items()
         ]
-        figure.suptitle(join_lines(parts, 40 * columns), fontsize="medium")
+        figure.suptitle(fold_text("; ".join(parts), 40 * columns), fontsize="medium")
     return figure
 
 

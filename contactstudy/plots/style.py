@@ -45,6 +45,7 @@ LETTER_WIDTH = 0.073  # inches, of a label
 SHORTEST_LINE = 14  # letters
 LEGEND_WIDTH = 40  # letters of a name in a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
+BREAKS = (";:", ",")  # last letters of the phrases that stay together, longest phrases first
 MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
@@ -116,16 +117,33 @@ def line_styles(count: int) -> list[dict[str, Any]]:
 
 
 def fold_text(text: str, width: int) -> str:
-    """Break a text into lines of at most `width` letters between words; formulas stay whole."""
+    """Break a text into lines of at most `width` letters: after ; or :, else after commas, else between words."""
+    return "\n".join(_fold_words(WORD.findall(text), width, BREAKS))
+
+
+def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
+    """Lines of words, broken after the letters of the first entry of `breaks`; longer phrases after the next's."""
     lines: list[str] = []
-    for word in WORD.findall(text):
-        if lines and _visible_length(lines[-1]) + 1 + _visible_length(word) <= width:
-            lines[-1] += f" {word}"
-        elif "$" in word:
-            lines.append(word)
+    for phrase in _split_phrases(words, breaks[0]) if breaks else words:
+        if lines and _visible_length(f"{lines[-1]} {phrase}") <= width:
+            lines[-1] += f" {phrase}"
+        elif _visible_length(phrase) <= width or (not breaks and "$" in phrase):
+            lines.append(phrase)
+        elif breaks:
+            lines += _fold_words(WORD.findall(phrase), width, breaks[1:])
         else:
-            lines += [word[start : start + width] for start in range(0, len(word), width)]
-    return "\n".join(lines)
+            lines += [phrase[start : start + width] for start in range(0, len(phrase), width)]
+    return lines
+
+
+def _split_phrases(words: list[str], ends: str) -> list[str]:
+    """Phrases of words, each up to a word that ends with one of the letters `ends`."""
+    phrases: list[list[str]] = [[]]
+    for word in words:
+        phrases[-1].append(word)
+        if word.endswith(tuple(ends)):
+            phrases.append([])
+    return [" ".join(phrase) for phrase in phrases if phrase]
 
 
 def _visible_length(text: str) -> int:

@@ -27,6 +27,7 @@ BORDER_LEVEL = 0.01
 """Squared pressure over its largest value at the border of the contact: linear in the distance from the border."""
 
 MARGIN = 0.1  # Margin around the contact over its width
+ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
 VECTORS = ("traction", "slip")
 SURFACES = {"body": "temperature_rise", "roller": "roller_temperature_rise"}
 
@@ -101,13 +102,13 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
 
 
-def _crop(ax: Axes, surface: Surface, margin: float = MARGIN) -> None:
+def _crop(ax: Axes, surface: Surface) -> None:
     """Limit the axes to the contact with a margin."""
     for positions, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
         loaded = np.flatnonzero(surface.pressed.any(axis=axis))
         if loaded.size > 1:
             low, high = positions[loaded[0]], positions[loaded[-1]]
-            around = margin * (high - low)
+            around = MARGIN * (high - low)
             limit(low - around, high + around)
 
 
@@ -171,12 +172,13 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     si : bool
         Whether to draw mm and MPa instead of lengths over a and tractions over p0.
     arrows : int
-        Arrows along the longer side of the contact.
+        Arrows along x; half as many along y.
 
     Returns
     -------
     Axes
-        Cropped to the contact; the arrow above it is the scale.
+        Cropped to the contact; its axes have different scales. An arrow has the direction of the traction in equal
+        scales; the arrow above the axes is the scale of the lengths.
 
     Raises
     ------
@@ -206,13 +208,11 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     rows, columns = _arrow_cells(surface, arrows)
     traction = [surface.values(f"traction_{axis}")[rows, columns] / surface.unit.stress for axis in "xy"]
     largest = float(np.hypot(*traction).max(initial=0.0))
-    ax.set_aspect("equal")
-    _crop(ax, surface, 0.05)
+    _crop(ax, surface)
     if largest > 0:
-        spans = (np.ptp(values[surface.pressed.any(axis=i)]) for i, values in enumerate((surface.x, surface.y)))
-        scale = largest / (1.5 * max(spans) / arrows)
+        scale = largest * arrows / ARROW_LENGTH
         vectors = ax.quiver(
-            surface.x[columns], surface.y[rows], *traction, angles="xy", scale_units="xy", scale=scale, width=3e-3
+            surface.x[columns], surface.y[rows], *traction, scale_units="width", scale=scale, width=3e-3
         )
         label = f"${largest:.3g}\\,p_0$" if not si else f"{largest:.3g} MPa"
         ax.quiverkey(vectors, 0.86, 1.06, largest, label, labelpos="W", coordinates="axes")
@@ -223,12 +223,10 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
 
 
 def _arrow_cells(surface: Surface, arrows: int) -> tuple[IntArray, IntArray]:
-    """Rows and columns of evenly spread cells of the contact, `arrows` of them along its longer side."""
-    spans = [values[surface.pressed.any(axis=i)] for i, values in enumerate((surface.x, surface.y))]
-    step = max(float(np.ptp(span)) for span in spans) / arrows or 1.0
+    """Rows and columns of evenly spread cells of the contact, `arrows` along x, half as many along y."""
     indices = []
-    for values, span in zip((surface.x, surface.y), spans, strict=True):
-        count = max(1, round(float(np.ptp(span)) / step))
+    for axis, (values, count) in enumerate(((surface.x, arrows), (surface.y, (arrows + 1) // 2))):
+        span = values[surface.pressed.any(axis=axis)]
         targets = span[0] + (np.arange(count) + 0.5) * float(np.ptp(span)) / count
         indices.append(np.unique(np.abs(values[:, None] - targets).argmin(axis=0)))
     columns, rows = (index.ravel() for index in np.meshgrid(*indices, indexing="ij"))

@@ -378,7 +378,6 @@ def test_numbers_without_an_error_carry_the_mark(solved: xr.Dataset) -> None:
         ("tau_yz", "tau_yz is missing; a study keeps it at level 'fields'"),
         ("pressure", "pressure is missing; a study keeps it at level 'surface'"),
         ("hertz_half_width", "hertz_half_width is missing"),
-        ("luck", "luck is missing"),
     ],
 )
 def test_require_names_the_study_level_of_a_missing_variable(missing: str, hint: str) -> None:
@@ -386,6 +385,11 @@ def test_require_names_the_study_level_of_a_missing_variable(missing: str, hint:
         require(xr.Dataset({"gap": 0.0}), "gap", missing, argument="result")
     assert caught.value.hint == hint
     assert str(caught.value).startswith("result = ['gap']")
+
+
+def test_require_suggests_the_nearest_variable() -> None:
+    with pytest.raises(InvalidInputError, match=r"variable = 'peak_vonmises'.*did you mean 'peak_von_mises'\?"):
+        require(xr.Dataset({"gap": 0.0, "peak_von_mises": 0.0}), "peak_vonmises")
 
 
 def test_require_quotes_the_message_of_a_failed_case() -> None:

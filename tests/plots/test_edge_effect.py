@@ -15,6 +15,12 @@ def test_study_figure(opened):
     assert labels[-1].startswith("half-space")
 
 
+def test_legend_is_legible_in_a_column_of_360_pixels(opened):
+    figure = plots.plot_edge_effect(opened)
+    (text, *_) = figure.get_axes()[0].get_legend().get_texts()
+    assert text.get_fontsize() * 360 / (72 * figure.get_figwidth()) > 7
+
+
 def test_no_text_is_clipped(opened, assert_nothing_clipped):
     assert_nothing_clipped(plots.plot_edge_effect(opened))
 

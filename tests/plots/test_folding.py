@@ -65,3 +65,19 @@ def test_formulas_are_not_broken():
     assert fold_text("x" * 30, 20) == "x" * 20 + "\n" + "x" * 10
     assert fold_text(r"\$1 roller at \$2", 10) == "\\$1 roller\nat \\$2"
     assert np.all([len(line) <= 40 for line in fold_text(LONG, 40).split("\n")])
+
+
+def test_lines_break_between_values_then_clauses_then_words():
+    values = "profile = edge radius 0.05 mm, one of 2 values; friction = 0, one of 2 values; body = finite-length"
+    assert fold_text(values, 40).split("\n") == [
+        "profile = edge radius 0.05 mm,",
+        "one of 2 values;",
+        "friction = 0, one of 2 values;",
+        "body = finite-length",
+    ]
+    assert fold_text("friction = 0; body = finite-length", 20) == "friction = 0;\nbody = finite-length"
+    assert fold_text("Pressure near a free end: friction = 0", 30) == "Pressure near a free end:\nfriction = 0"
+    assert fold_text("distance of the roller's end from the free end, $e/a$", 40).split("\n") == [
+        "distance of the roller's end from the",
+        "free end, $e/a$",
+    ]

@@ -2,7 +2,7 @@
 
 import xarray as xr
 
-from contactstudy.plots.selection import describe_value, join_lines, select_values
+from contactstudy.plots.selection import describe_value, select_values
 
 
 def test_selected_value_keeps_its_dimension():
@@ -10,7 +10,6 @@ def test_selected_value_keeps_its_dimension():
     assert select_values(study, {"friction": 0.1}).friction.values.tolist() == [0.1]
 
 
-def test_title_breaks_between_values():
+def test_values_are_described():
     assert describe_value("max_pressure", 1e9, "Pa", 2) == "$p_0$ = 1 GPa, one of 2 values"
     assert describe_value("profile", "crowned", "") == "profile = crowned"
-    assert join_lines(["friction = 0", "body = finite-length"], 20) == "friction = 0;\nbody = finite-length"

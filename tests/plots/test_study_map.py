@@ -67,7 +67,7 @@ def test_bad_input(opened):
     for call, message in (
         (lambda: plots.plot_study_map(opened, "end_pressure_over_p0"), "with a value of body"),
         (lambda: plots.plot_study_map(one_body, "status"), "a number of each case"),
-        (lambda: plots.plot_study_map(one_body, "end_pressures"), "end_pressures is missing"),
+        (lambda: plots.plot_study_map(one_body, "end_pressures"), "did you mean"),
         (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="gamma"), "two swept parameters"),
         (lambda: plots.plot_study_map(one_body, "end_pressure_over_p0", y="e_over_a"), "two swept parameters"),
         (

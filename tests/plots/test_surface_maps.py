@@ -46,7 +46,15 @@ def test_arrows_point_along_the_tractions_where_they_stand() -> None:
         here = one.sel(x=x * a, y=y * a, method="nearest")
         assert [u, v] == pytest.approx([float(here["traction_x"]) / p0, float(here["traction_y"]) / p0])
         assert float(here["pressure"]) > 0
-    assert 40 < len(arrows.U) <= 144
+    assert 40 < len(arrows.U) <= 72
+
+
+def test_long_contact_fills_the_axes(assert_nothing_clipped) -> None:
+    one = rolled()
+    ax = plots.plot_stick_and_slip(one.assign_coords(x=40 * one["x"]))
+    box = ax.get_window_extent()
+    assert box.height > 0.4 * box.width
+    assert_nothing_clipped(ax.figure)
 
 
 def test_si_is_mm_and_mpa() -> None:
