@@ -117,14 +117,6 @@ class Lubricant:
         z, scale = self.exponent, ROELANDS_PRESSURE  # eq. (407)
         return np.asarray(self.pressure_viscosity * scale / z * ((1 + p / scale) ** z - 1))
 
-    def log_viscosity_slope(self, pressure: FloatArray | float) -> FloatArray:
-        """Return the derivative of :meth:`log_viscosity`, 1/Pa; zero below zero."""
-        p = np.maximum(pressure, 0.0)
-        slope = self.pressure_viscosity * np.ones_like(p)
-        if self.viscosity_law == "roelands":
-            slope = slope * (1 + p / ROELANDS_PRESSURE) ** (self.exponent - 1)
-        return np.asarray(slope * (np.asarray(pressure) >= 0))
-
     def viscosity_at(self, pressure: FloatArray | float) -> FloatArray:
         """Dynamic viscosity at pressures in Pa, Pa s."""
         # Largest logarithm of a viscosity ratio: the exponential of more overflows where it is cubed

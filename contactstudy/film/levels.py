@@ -24,7 +24,7 @@ from contactstudy.film.cells import JoinedCells, graded_edges, uniform_count
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import FilmSettings, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, FilmState, start_of
-from contactstudy.film.reynolds import FilmCells, Fluid, Law
+from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
@@ -211,20 +211,9 @@ class FilmCase:
     @cached_property
     def fluid(self) -> Fluid:
         """Laws of the lubricant in the scales of the film."""
-        oil, scale = self.lubricant, self.pressure
-
-        def density(pressure: FloatArray) -> Law:
-            return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
-
-        def fluidity(pressure: FloatArray) -> Law:
-            rho = density(pressure)
-            thin = np.exp(-oil.log_viscosity(scale * pressure))
-            slope = rho.slope - rho.value * scale * oil.log_viscosity_slope(scale * pressure)
-            return Law(rho.value * thin, slope * thin)
-
         radius, a = self.case.roller.radius, self.half_width
-        number = 12 * self.speed * oil.viscosity * radius**2 / (a**3 * scale)  # eq. (404)
-        return Fluid(density=density, fluidity=fluidity, speed=number)
+        number = 12 * self.speed * self.lubricant.viscosity * radius**2 / (a**3 * self.pressure)  # eq. (404)
+        return Fluid.of(self.lubricant, self.pressure, number)
 
 
 class FilmOnCells(NamedTuple):

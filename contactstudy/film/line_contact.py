@@ -12,7 +12,7 @@ from contactstudy.film.cells import graded_edges
 from contactstudy.film.formulas import moes_line
 from contactstudy.film.newton import SETTINGS, FilmSettings, solve_from_dry, solve_newton
 from contactstudy.film.problem import FilmProblem, FilmSolution, start_of
-from contactstudy.film.reynolds import FilmCells, Fluid, Law
+from contactstudy.film.reynolds import FilmCells, Fluid
 
 BARUS = Lubricant(viscosity=0.01, pressure_viscosity=1e-8, viscosity_law="barus", density_law="constant")
 """A lubricant of Barus' law and constant density."""
@@ -94,13 +94,6 @@ def solve_line(
     if max_pressure is not None:
         oil = oil.replaced(pressure_viscosity=reduced / max_pressure)
 
-    def density(pressure: FloatArray) -> Law:
-        return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
-
-    def fluidity(pressure: FloatArray) -> Law:
-        rho, thin = density(pressure), np.exp(-oil.log_viscosity(scale * pressure))
-        return Law(rho.value * thin, (rho.slope - rho.value * scale * oil.log_viscosity_slope(scale * pressure)) * thin)
-
     film = float(moes_line(load, lubricant)) * np.pi / (8 * load)
     delta = film ** (2 / 3)
     first = -inlet if inlet is not None else -1 - 40 * delta
@@ -115,7 +108,7 @@ def solve_line(
     y, stiffness = cells.y, line_stiffness(edges, cells.y)
     problem = FilmProblem(
         cells=cells,
-        fluid=Fluid(density=density, fluidity=fluidity, speed=3 * np.pi**2 / (8 * load**2)),
+        fluid=Fluid.of(oil, scale, 3 * np.pi**2 / (8 * load**2)),
         gap=0.5 * y[None] ** 2,
         displace=lambda pressure: pressure @ stiffness.T,
         column_stiffness=stiffness[None],

@@ -12,11 +12,13 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
+from scipy.interpolate import PchipInterpolator
 
+from contactstudy.bodies.lubricant import Lubricant
 from contactstudy.checks import FloatArray
 
-GAUSS_POINTS = 4
-"""Points of the mean fluidity between two cells. Accuracy."""
+FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005
+"""Nodes of the fluidity over the pressure, and ratio of their steps. Accuracy."""
 
 LEAST_FACE_FILM, LARGEST_FACE_FILM = 0.2, 2.0
 """Least film on a face over the mean of both cells, largest over the upstream cell: parabolas overshoot. Accuracy."""
@@ -37,15 +39,34 @@ class Fluid:
     ----------
     density : callable
         Density over the ambient one, of the pressure.
-    fluidity : callable
-        Density over viscosity, both over the ambient ones, of the pressure.
+    reduced_pressure : callable
+        Integral of the fluidity, density over viscosity, both over the ambient ones, up to the pressure.
     speed : float
         ``12 eta0 um R**2 / (a**3 p0)``.
     """
 
     density: Callable[[FloatArray], Law]
-    fluidity: Callable[[FloatArray], Law]
+    reduced_pressure: Callable[[FloatArray], Law]
     speed: float
+
+    @classmethod
+    def of(cls, oil: Lubricant, scale: float, speed: float) -> Fluid:
+        """Laws of a lubricant for pressures over `scale`, Pa."""
+
+        def density(pressure: FloatArray) -> Law:
+            return Law(oil.density_ratio(scale * pressure), scale * oil.density_ratio_slope(scale * pressure))
+
+        steps = np.asarray(FLUIDITY_RATIO ** np.arange(FLUIDITY_NODES) - 1, dtype=np.float64)
+        nodes = steps / (1 + scale * oil.pressure_viscosity)
+        viscosity = oil.viscosity_at(scale * nodes) / oil.viscosity
+        fluidity = PchipInterpolator(nodes, oil.density_ratio(scale * nodes) / viscosity)
+        integral = fluidity.antiderivative()
+
+        def reduced_pressure(pressure: FloatArray) -> Law:
+            viscous = np.clip(pressure, 0.0, nodes[-1])
+            return Law(np.minimum(pressure, 0.0) + integral(viscous), fluidity(viscous))
+
+        return cls(density=density, reduced_pressure=reduced_pressure, speed=speed)
 
 
 class Flow(NamedTuple):
@@ -160,17 +181,17 @@ class FilmCells:
             Mean height of the film, and its derivative by the distance of the surfaces.
         """
         height, pressure = film.value.ravel(), pressure.ravel()
-        density = fluid.density(pressure)
+        density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
         faces = self.along_y
         upwind = faces.bounded(height)
-        conducted = faces.conducted(fluid, pressure, height, upwind)
+        conducted = faces.conducted(fluid.speed, reduced, height, upwind)
         through = upwind @ (density.value * height) - conducted.flow
         by_pressure = upwind @ sparse.diags_array(density.slope * height) - conducted.by_pressure
         by_film = upwind @ sparse.diags_array(density.value) - conducted.by_film
         outflow = self.outflow_y @ through
         by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
         if self.shape[0] > 1 or self.open_ends:
-            across = self.along_x.conducted(fluid, pressure, height, self.along_x.mean)
+            across = self.along_x.conducted(fluid.speed, reduced, height, self.along_x.mean)
             outflow = outflow - self.outflow_x @ across.flow
             by_pressure = by_pressure - self.outflow_x @ across.by_pressure
             by_film = by_film - self.outflow_x @ across.by_film
@@ -196,27 +217,24 @@ class Faces:
     ----------
     upwind, mean, gradient : sparse array (face, cell)
         Value from upstream, mean of both sides, gradient; beyond the outermost faces the pressure is ambient.
-    before, after : sparse array (face, cell)
-        Which cells are on either side.
+    before : sparse array (face, cell)
+        Which cell is upstream.
     """
 
     upwind: sparse.csr_array
     mean: sparse.csr_array
     gradient: sparse.csr_array
     before: sparse.csr_array
-    after: sparse.csr_array
 
     @classmethod
     def of(cls, upwind: sparse.sparray, mean: sparse.sparray, gradient: sparse.sparray) -> Faces:
-        """Faces with these matrices: the gradient shows the cells on either side."""
+        """Faces with these matrices: the gradient shows the cells upstream."""
         slopes = sparse.csr_array(gradient)
-        before, after = ((sign * slopes).maximum(0).astype(bool).astype(np.float64) for sign in (-1, 1))
         return cls(
             upwind=sparse.csr_array(upwind),
             mean=sparse.csr_array(mean),
             gradient=slopes,
-            before=sparse.csr_array(before),
-            after=sparse.csr_array(after),
+            before=sparse.csr_array((-slopes).maximum(0).astype(bool).astype(np.float64)),
         )
 
     def bounded(self, height: FloatArray) -> sparse.csr_array:
@@ -232,31 +250,13 @@ class Faces:
             + sparse.diags_array(LARGEST_FACE_FILM * (high & ~low)) @ self.before
         )
 
-    def conducted(
-        self, fluid: Fluid, pressure: FloatArray, height: FloatArray, interpolation: sparse.csr_array
-    ) -> Conducted:
-        """Flow that the gradient drives, eq. (402).
-
-        The fluidity is the mean over the pressures between the two cells: for Barus' law the gradient of the reduced
-        pressure, whatever the step.
-        """
-        first, second = self.before @ pressure, self.after @ pressure
-        nodes, weights = np.polynomial.legendre.leggauss(GAUSS_POINTS)
-        shares, weights = 0.5 * (nodes + 1), 0.5 * weights
-        laws = fluid.fluidity(first[:, None] + np.multiply.outer(second - first, shares))
-        fluidity = laws.value @ weights
-        by_first, by_second = laws.slope @ (weights * (1 - shares)), laws.slope @ (weights * shares)
+    def conducted(self, speed: float, reduced: Law, height: FloatArray, interpolation: sparse.csr_array) -> Conducted:
+        """Flow that the gradient of the reduced pressure drives, eq. (402): it rises with any step of the pressure."""
         film = interpolation @ height
-        slopes = self.gradient @ pressure
-        cubed, squared = film**3 / fluid.speed, 3 * film**2 / fluid.speed
-        by_pressure = (
-            sparse.diags_array(cubed * fluidity) @ self.gradient
-            + sparse.diags_array(cubed * slopes * by_first) @ self.before
-            + sparse.diags_array(cubed * slopes * by_second) @ self.after
-        )
-        factor = squared * fluidity * slopes
-        by_film = sparse.diags_array(factor) @ interpolation
-        return Conducted(cubed * fluidity * slopes, by_pressure, by_film)
+        slopes = self.gradient @ reduced.value
+        cubed, squared = film**3 / speed, 3 * film**2 / speed
+        by_pressure = sparse.diags_array(cubed) @ self.gradient @ sparse.diags_array(reduced.slope)
+        return Conducted(cubed * slopes, by_pressure, sparse.diags_array(squared * slopes) @ interpolation)
 
 
 def _outflow(cells: int) -> sparse.sparray:

@@ -16,7 +16,7 @@ def problem(**named):
     ones = Law(np.ones(8), np.zeros(8))
     values = {
         "cells": CELLS,
-        "fluid": Fluid(density=lambda _: ones, fluidity=lambda p: Law(np.ones_like(p), np.zeros_like(p)), speed=1.0),
+        "fluid": Fluid(density=lambda _: ones, reduced_pressure=lambda p: Law(p, np.ones_like(p)), speed=1.0),
         "gap": np.ones(CELLS.shape),
         "displace": lambda pressure: 0.1 * pressure,
         "column_stiffness": 0.1 * np.eye(8)[None],

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from contactstudy.film.reynolds import FilmCells
+from contactstudy.bodies.lubricant import Lubricant
+from contactstudy.film.reynolds import FilmCells, Fluid
 from contactstudy.film.solve import _least
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 21), open_ends=False)
@@ -28,3 +29,24 @@ def test_least_film_between_cells_is_positive():
     least = _least(np.array([0.0, 1.0, 2.0]), np.array([0.5, 0.01, 1.0]))
     assert 0 < least.value < 0.01
     assert 0.5 < least.position < 1.0
+
+
+@pytest.mark.parametrize("law", ["barus", "roelands"])
+def test_flow_between_two_cells_rises_with_the_step_of_the_pressure(law):
+    coefficient = 2e-8
+    oil = Lubricant(viscosity=0.02, pressure_viscosity=coefficient, viscosity_law=law, density_law="constant")
+    fluid = Fluid.of(oil, 1e9, 1.0)
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 2.0]), open_ends=False).along_y
+    height = np.ones(2)
+
+    def flow(pressure):
+        reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
+        conducted = faces.conducted(fluid.speed, reduced, height, faces.mean)
+        assert conducted.by_pressure.toarray()[1, 0] <= 0
+        return -float(conducted.flow[1])
+
+    flows = [flow(pressure) for pressure in (0.1, 0.5, 1.0, 2.0, 5.0)]
+    assert np.all(np.diff(flows) >= 0)
+    nodes, weights = np.polynomial.legendre.leggauss(200)
+    viscosity = oil.viscosity_at(2.5e9 * (nodes + 1)) / oil.viscosity
+    assert flows[-1] == pytest.approx(2.5 * float(weights @ (1 / viscosity)), rel=1e-6)
