@@ -167,7 +167,7 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
             bent = operator.displaced(dict(zip(TANGENTIAL, tractions.traction, strict=True)), (Load.NORMAL,))
             last = contact.pressure
             contact = contact_of(shape._replace(gap=ArrayKey(shape.gap.values + bent[Load.NORMAL])), settings)
-            # The first coupled pressure determines the sliding columns; otherwise the iteration oscillates.
+            # The first coupled pressure determines sliding columns and leading edges; otherwise the rounds alternate.
             tractions = tractions_under(contact.pressure, tractions if number else None)
             change = float(np.abs(contact.pressure - last).sum() / contact.pressure.sum())
             if change <= tolerance:

@@ -65,6 +65,13 @@ class Surfaces(NamedTuple):
         return slip
 
 
+class Leading(NamedTuple):
+    """What determines the place of the slip in the cells of a rolling contact."""
+
+    slides: BoolArray  # (x): columns without sticking cells
+    pressure: FloatArray  # (x, y): pressure whose extrapolation is the leading edge, Pa
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Tractions:
     """Tractions on the body, and the slip of the roller against it."""
@@ -87,6 +94,7 @@ class Tractions:
     force_error: float = 0.0
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
+    leading: Leading | None = None  # what determined the places of the slip in rolling
 
 
 def motion_names(motion: Shift | Rolling) -> tuple[str, ...]:

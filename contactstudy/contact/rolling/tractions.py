@@ -40,6 +40,7 @@ from contactstudy.contact.rolling.fastsim import solve_strips
 from contactstudy.contact.rolling.preconditioners import tangential_inverse
 from contactstudy.contact.rolling.surfaces import (
     TANGENTIAL,
+    Leading,
     Surfaces,
     Tractions,
     check_forces,
@@ -78,24 +79,25 @@ class RollingCells:
         pressure: FloatArray,
         bound: FloatArray,
         shares: FloatArray | None = None,
-        slides: BoolArray | None = None,
+        leading: Leading | None = None,
     ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
-        # `shares` as from `neighbour_shares`; default: separate offsets. `slides` (x) marks columns without sticking
-        # cells.
+        # `shares` as from `neighbour_shares`; default: separate offsets. `leading` is that of the
+        # pressure without sliding columns by default.
+        slides, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
         loaded: BoolArray = (pressure > 0) & (bound > 0)
-        leading = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
+        leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
         offset = np.full(pressure.shape, EDGE_OFFSET + 1.0)
         tied, ratio = [], []
-        for row, last in leading:
+        for row, last in leading_cells:
             unloaded = np.flatnonzero(~loaded[row, : last + 1])
             first = int(unloaded[-1]) + 1 if unloaded.size else 0
-            if slides is not None and slides[row]:
+            if slides[row]:
                 offset[row, first : last + 1] = SLIDING_OFFSET
                 continue
             if last + 1 - first < FEWEST_CELLS:
                 continue
-            part = _part_inside(pressure[row, first : last + 1])
+            part = _part_inside(edge_pressure[row, first : last + 1])
             if part >= LEAST_PART:
                 offset[row, first : last + 1] = EDGE_OFFSET + part  # eq. (44a)
             else:
@@ -188,7 +190,7 @@ class TractionSettings:
     coarse: CoarseTractions | None = None
     """Solution on coarser cells as a guess. Default: on many uniform cells it is computed first."""
     last: Tractions | None = None
-    """Tractions under almost the same pressure as a guess, which also determine the sliding columns."""
+    """Tractions under almost the same pressure as a guess, whose leading edges are retained."""
 
 
 def solve_tractions(
@@ -221,7 +223,7 @@ def solve_tractions(
         return _complete_tractions(problem, solution, motion, cells, surfaces)
 
     steps, last = 0, settings.last
-    if last is None or not rolling:
+    if last is None or last.leading is None:
         coarse = settings.coarse
         if coarse is None and cells.unknown.shape[1] >= NESTED_CELLS:
             coarse = _solve_coarse(motion, surfaces, pressure, bound, settings)
@@ -232,10 +234,11 @@ def solve_tractions(
         if not last.converged:
             return _with_mean_slip(last, surfaces, displaced)
         steps = last.steps
-    slides = np.asarray(bound.any(axis=1) & ~last.sticks.any(axis=1))
-    cells = RollingCells.of(pressure, bound, shares, slides)
+    # Marked columns and edges from each pressure of a coupled contact would alternate.
+    leading = last.leading or Leading(np.asarray(~last.sticks.any(axis=1)), pressure)
+    cells = RollingCells.of(pressure, bound, shares, leading)
     tractions = solve(cells, settings.tolerance, guess_from_last(last, cells, bound, motion.modes))
-    return replace(_with_mean_slip(tractions, surfaces, displaced), steps=steps + tractions.steps)
+    return replace(_with_mean_slip(tractions, surfaces, displaced), steps=steps + tractions.steps, leading=leading)
 
 
 def _coulomb_problem(

@@ -7,6 +7,7 @@ import pytest
 import xarray as xr
 
 from contactstudy import (
+    Case,
     ConvergenceWarning,
     FiniteLengthSpace,
     Grid,
@@ -14,9 +15,12 @@ from contactstudy import (
     InvalidInputError,
     Material,
     QuarterSpace,
+    Roller,
     Rolling,
     Shift,
     WindowError,
+    profiles,
+    solve,
     solve_contact,
     surface_displacement,
 )
@@ -312,3 +316,19 @@ def test_the_part_that_sticks_is_of_the_pressed_area() -> None:
     pressed = result.pressure > 0
     assert 0.05 < float(result.sticking_part) < 0.95
     assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / pressed.sum()))
+
+
+@pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), (0.0, 5.0)])
+def test_pressure_and_tractions_of_a_large_spin_converge(poisson: float, spin: float) -> None:
+    """Sliding columns or leading edges from each pressure would alternate between two states."""
+    steel = Material(210e9, poisson)
+    crown = profiles.Lundberg.for_pressure(1.5e9, radius=5e-3, modulus=210e9 / 0.91)
+    case = Case(
+        body=QuarterSpace(material=steel),
+        roller=Roller(radius=5e-3, length=1e-3, profile=crown),
+        max_pressure=1.5e9,
+        friction=0.3,
+        coupled=True,
+        motion=Rolling(spin=spin),
+    )
+    assert solve(case, stresses=False, accuracy=0.05).converged

@@ -7,6 +7,7 @@ import pytest
 
 from contactstudy import Rolling
 from contactstudy.contact.rolling import tractions
+from contactstudy.contact.rolling.surfaces import Leading
 from contactstudy.contact.rolling.tractions import EDGE_OFFSET, TIED_OFFSET, RollingCells, neighbour_shares
 from contactstudy.verification.tribology import material, rolling_ellipse
 
@@ -130,7 +131,7 @@ def test_a_single_cell_ahead_of_a_contact_is_a_contact_of_its_own() -> None:
 
 def test_all_cells_of_a_column_that_slides_take_the_slip_at_their_centres() -> None:
     pressure = np.vstack([strip(0.9), strip(0.3), strip(0.9)])
-    found = RollingCells.of(pressure, pressure, None, np.array([True, True, False]))
+    found = RollingCells.of(pressure, pressure, None, Leading(np.array([True, True, False]), pressure))
     assert found.to.size == 0
     assert (found.offset[found.unknown[0] < 2] == tractions.SLIDING_OFFSET).all()
     assert found.offset[found.unknown[0] == 2] == pytest.approx(EDGE_OFFSET + 0.9)
