@@ -1,6 +1,6 @@
 """Atlas of logarithmic rollers between free ends: the study behind `contactstudy.atlas`.
 
-Usage: ``python studies/atlas.py [--points 256] [--out FOLDER]``; about 2 s of processor time per point. Solves the
+Usage: ``python studies/atlas.py [--points 512] [--out FOLDER]``; about 1.5 s of processor time per point. Solves the
 points of a Sobol sequence in three dimensionless groups and writes ``atlas.nc``, the package's ``data/atlas.nc``: one
 row per point. A repeated call with more points adds to the finished ones. The options ``--seed 2 --compare`` solve the
 points of another sequence, into another folder, and compare the package's atlas with them.
@@ -158,7 +158,7 @@ def compare(solved: xr.Dataset) -> None:
 def main() -> None:
     """Solve the points and write the table."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--points", type=int, default=256, help="points of the sequence")
+    parser.add_argument("--points", type=int, default=512, help="points of the sequence")
     parser.add_argument("--seed", type=int, default=1, help="seed of the sequence")
     parser.add_argument("--out", type=Path, default=Path("results/atlas"), help="folder of the study")
     parser.add_argument("--workers", type=int, default=None, help="processes; default: one per core")
