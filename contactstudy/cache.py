@@ -135,13 +135,18 @@ def recall(kind: str, key: Hashable) -> Any | None:
     return entry.value if entry else None
 
 
-def retain(kind: str, key: Hashable, value: object, nbytes: int) -> None:
-    """Cache a value in place of the one of this key; all threads share it, and its arrays become read-only."""
+def retain(kind: str, key: Hashable, value: Value, nbytes: int, *, replace: bool = False) -> Value:
+    """Cache a value, and return the one that all threads share: the first of its key, or this one to `replace` it.
+
+    Its arrays become read-only.
+    """
     _protect(value)
     with _lock:
-        _store.pop((kind, key), None)
+        if replace:
+            _store.pop((kind, key), None)
         if nbytes <= _store.maxsize:
-            _store[kind, key] = _Entry(value, nbytes)
+            value = _store.setdefault((kind, key), _Entry(value, nbytes)).value
+    return value
 
 
 def cached(
@@ -156,7 +161,7 @@ def cached(
             value: Value | None = recall(kind, key)
             if value is None:
                 value = compute(*arguments, **named)
-                retain(kind, key, value, nbytes(value))
+                value = retain(kind, key, value, nbytes(value))
             return value
 
         return look_up

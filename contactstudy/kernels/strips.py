@@ -252,7 +252,7 @@ class ColumnsRequest:
             if np.isfinite(high):
                 from_high = np.add.outer(high - edges, high - edges)
                 pairs.add(image * strip.sign_x * factor, strip, from_high, image=True)
-        retain("column pairs", key, pairs, pairs.nbytes)
+        retain("column pairs", key, pairs, pairs.nbytes, replace=True)
         kernel = pairs.transformed()
         if np.isfinite(low) and np.isfinite(high):
             images = FarImages(high - low, image, IMAGE_POINTS)
