@@ -19,7 +19,7 @@ from contactstudy.fields.largest import Largest, largest_stress, largest_with_po
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
 from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
-from contactstudy.kernels.field import half_space_field, half_space_influence, stress_influence
+from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.field import UnitFields, unit_fields
 from contactstudy.overlapping.harmonics import STRESS, end_stress
@@ -266,16 +266,20 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
 
     def __init__(self, body: Body, grid: Grid, points: Points, load: Load) -> None:
         self._grid, self._shape = grid, (6, *(axis.size for axis in points))
-        distances = points.y[:, None] - grid.y[None, :]
+        distances = points.y[:, None] - grid.y[None, :] + grid.y[0]
         unique, indices = np.unique(np.round(distances / grid.dy, 9), return_inverse=True)
         self._distance = indices.reshape(distances.shape)
         self._half_space = np.zeros((grid.cells_x, 6, points.x.size, unique.size, points.z.size))
         self._ends: list[UnitFields] = []
         poisson = body.material.poisson
         for part in body.parts:
-            from_row = points._replace(y=unique * grid.dy)
-            field = half_space_influence(stress_influence(load, poisson), grid, from_row, extent=part.extent)
-            self._half_space += part.weight * field.transpose(2, 0, 1, 3, 4)
+            for cell in range(grid.cells_x):
+                unit = np.zeros(grid.shape)
+                unit[cell, 0] = part.weight
+                lattice = points._replace(y=unique * grid.dy)
+                self._half_space[cell] += half_space_field(
+                    unit, stress_influence(load, poisson), grid, lattice, extent=part.extent
+                )
             if part.freed:
                 problem = unit_problem(part.freed, poisson, grid, load)
                 reference = reference_distance(part.extent)
