@@ -313,17 +313,14 @@ def execute(tasks: Tasks, engine: Engine, notify: Callable[[str], None] = print)
             yield list(task.jobs), outcomes
         return
     with engine.client(tasks.remaining, notify) as client:
-        workers = Workers(client, engine.wait, notify, engine.solver)
-        yield from _distribute(client, workers, tasks, engine.solver)
+        yield from _distribute(client, Workers(client, engine.wait, notify), tasks, engine.solver)
 
 
 class Workers:
-    """Workers of a scheduler with this version of the package and the solver; `wait` is the longest wait, seconds."""
+    """Workers of a scheduler that have this version of the package; `wait` is the longest wait for one, seconds."""
 
-    def __init__(
-        self, client: Client, wait: float, notify: Callable[[str], None], solver: Solver | None = None
-    ) -> None:
-        self._client, self._wait, self._notify, self._solver = client, wait, notify, solver
+    def __init__(self, client: Client, wait: float, notify: Callable[[str], None]) -> None:
+        self._client, self._wait, self._notify = client, wait, notify
         self._faults: dict[str, str] = {}  # of every checked worker; empty for a usable one
         self._last_present = time.monotonic()
         self._announced = False
@@ -341,26 +338,16 @@ class Workers:
         return usable
 
     def _check(self, present: set[str]) -> None:
-        """Compare the package's version on new workers with this one, and import the functions of a task there."""
+        """Compare the package's version on new workers with this one."""
         versions: Any = self._client.get_versions(packages=["contactstudy"])
-        same: list[str] = []
         for worker in present - set(self._faults):
             answer = dict(versions["workers"]).get(worker)
             if answer is not None:
                 version, expected = answer["packages"].get("contactstudy"), package_version()
                 if version == expected:
-                    same.append(worker)
+                    self._faults[worker] = ""
                 else:
                     self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
-        if not same:
-            return
-        # A worker that cannot import the functions of a task loses its connection without an answer.
-        imports: dict[str, Any] = self._client.run(len, (perform, self._solver), workers=same, on_error="return")
-        for worker, error in imports.items():
-            if not isinstance(error, Exception):
-                self._faults[worker] = ""
-            elif not isinstance(error, OSError):  # a lost connection
-                self.exclude(worker, f"it cannot import contactstudy ({type(error).__name__}: {error})")
 
     def exclude(self, worker: str, reason: str) -> None:
         """Give a worker no further task."""

@@ -61,10 +61,10 @@ def test_a_wrong_wait(wait):
 
 
 class FakeClient:
-    """Client of a scheduler with workers of given versions, on which imports raise given errors."""
+    """Client of a scheduler with given workers."""
 
-    def __init__(self, versions, errors=()):
-        self.versions, self.errors = versions, dict(errors)
+    def __init__(self, versions):
+        self.versions = versions
 
     def nthreads(self):
         return dict.fromkeys(self.versions, 1)
@@ -72,10 +72,6 @@ class FakeClient:
     def get_versions(self, packages):
         workers = {name: {"packages": {"contactstudy": version}} for name, version in self.versions.items()}
         return {"workers": workers}
-
-    def run(self, function, *arguments, workers, on_error):
-        assert on_error == "return"
-        return {worker: self.errors.get(worker) or function(*arguments) for worker in workers}
 
 
 def test_workers_of_another_version_are_left_out():
@@ -87,11 +83,3 @@ def test_workers_of_another_version_are_left_out():
     assert len(remarks) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
         Workers(FakeClient({"old": "0.0.1"}), 1.0, remarks.append).usable(busy=False)
-
-
-def test_a_run_ends_at_once_without_a_worker_that_can_import_its_functions():
-    from contactstudy.arrays.variables import package_version
-
-    client = FakeClient({"broken": package_version()}, {"broken": ModuleNotFoundError("No module named 'scipy'")})
-    with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: .*No module named 'scipy'"):
-        Workers(client, 300.0, [].append).usable(busy=False)

@@ -16,38 +16,6 @@ run_study(small_study(), {folder!r}, workers=1, progress=False)
 """
 
 
-FAILING_IMPORT = """
-import multiprocessing, sys
-
-if getattr(multiprocessing.current_process(), "_inheriting", False):
-    sys.modules["contactstudy.study.worker"] = None
-else:
-    from contactstudy.study import run_study
-    from tests.small_study import small_study
-
-    if __name__ == "__main__":
-        run_study(small_study(), {folder!r}, workers=1, progress=False)
-"""
-
-
-@pytest.mark.system
-def test_a_run_whose_workers_cannot_import_the_package_ends_with_the_reason(tmp_path: Path) -> None:
-    script = tmp_path / "script.py"
-    script.write_text(FAILING_IMPORT.format(folder=str(tmp_path / "results")))
-    root = Path(__file__).parents[2]
-    ended = subprocess.run(
-        [sys.executable, script],
-        cwd=root,
-        env={"PYTHONPATH": str(root), "PATH": ""},
-        capture_output=True,
-        text=True,
-        timeout=200,  # a run waits for 300 s for a worker
-    )
-    last = ended.stderr.strip().splitlines()[-1]
-    assert "none of the 1 workers can be used: it cannot import contactstudy" in last
-    assert "ModuleNotFoundError" in last
-
-
 @pytest.mark.system
 def test_a_script_without_a_guard_ends_with_what_to_do(tmp_path: Path) -> None:
     script = tmp_path / "script.py"
