@@ -150,7 +150,7 @@ def compare(solved: xr.Dataset) -> None:
         actual = (np.abs(result[name] - solved[name]) / scale).values
         stated = (result[f"{name}_error"] / scale).values
         print(
-            f"{name}: {actual.size} points, median error {np.median(actual):.2%}, stated {np.median(stated):.2%} "
+            f"{name}: {actual.size} points, median error {np.median(actual):.1e}, stated {np.median(stated):.1e} "
             f"({np.median(stated) / np.median(actual):.1f} times), covered {(actual <= stated).mean():.0%}"
         )
 

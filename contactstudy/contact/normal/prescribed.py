@@ -106,6 +106,7 @@ def reference_line(body: Body, columns: Grid, load: Load) -> ReferenceLine:
     return ReferenceLine(x, weights, normal_influence(body, columns, load, x, body.depth))
 
 
+@cached("distant columns", lambda columns: columns[1].nbytes)
 def distant_columns(grid: Grid, depth: float) -> tuple[Grid, FloatArray]:
     """Columns for the field of loads at a depth, and the matrix (column, cell) that moves loads onto them."""
     # The field is a polynomial of x: the loads on both have the same moments.

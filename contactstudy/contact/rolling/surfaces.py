@@ -66,7 +66,7 @@ class Surfaces(NamedTuple):
 
 
 class Leading(NamedTuple):
-    """What determines the place of the slip in the cells of a rolling contact."""
+    """Sliding columns and pressure that determine the places of the slip in the cells of a rolling contact."""
 
     slides: BoolArray  # (x): columns without sticking cells
     pressure: FloatArray  # (x, y): pressure whose extrapolation is the leading edge, Pa
@@ -94,7 +94,7 @@ class Tractions:
     force_error: float = 0.0
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
-    leading: Leading | None = None  # what determined the places of the slip in rolling
+    leading: Leading | None = None  # origin of the places of the slip in rolling
 
 
 def motion_names(motion: Shift | Rolling) -> tuple[str, ...]:

@@ -82,8 +82,8 @@ class RollingCells:
         leading: Leading | None = None,
     ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
-        # `shares` as from `neighbour_shares`; default: separate offsets. `leading` is that of the
-        # pressure without sliding columns by default.
+        # `shares` as from `neighbour_shares`; default: separate offsets. Default of `leading`: the pressure, without
+        # sliding columns.
         slides, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
         loaded: BoolArray = (pressure > 0) & (bound > 0)
         leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
