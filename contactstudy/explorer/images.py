@@ -195,7 +195,7 @@ def plane_image(
     axes = (points[horizontal], points[vertical])
     image = _image(values, axes, (spans[0], spans[1]), case.stress_limit(name), scale, names=horizontal + vertical)
     unit = scale.length_name.strip(" ()/")
-    return image._replace(position=f" at {normal} = {position / scale.length:.3g} {unit}")
+    return image._replace(position=f"{normal} = {position / scale.length:.3g} {unit}")
 
 
 def _image(

@@ -207,9 +207,12 @@ class Page:
             for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
                 name = ("case: " if side == 0 else "second case: ") if self.compare.value else ""
                 singular = case is not None and case.has_pressure and case.singular_ends
-                clipped = ", clipped beside the singular end" if singular else ""
-                place = f"{image.position}, largest {image.largest[0]:.4g}" if image is not None else ""
-                figure.show(image, limit, f"{name}{quantity}{unit}{place}{clipped}", vertical)
+                # Two lines: the title of a narrow window is not wider than the window.
+                title = f"{name}{quantity}{unit}"
+                if image is not None:
+                    clipped = "clipped at the end" if singular else ""
+                    title += "\n" + ", ".join(filter(None, (image.position, f"largest {image.largest[0]:.4g}", clipped)))
+                figure.show(image, limit, title, vertical)
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
         """Hide figures without data, and return the reasons."""
