@@ -211,7 +211,8 @@ class Page:
                 title = f"{name}{quantity}{unit}"
                 if image is not None:
                     clipped = "clipped at the end" if singular else ""
-                    title += "\n" + ", ".join(filter(None, (image.position, f"largest {image.largest[0]:.4g}", clipped)))
+                    largest = f"largest {image.largest[0]:.4g}"
+                    title += "\n" + ", ".join(filter(None, (image.position, largest, clipped)))
                 figure.show(image, limit, title, vertical)
 
     def _hide_empty(self, cases: list[CaseFields | None], sides: list[int]) -> str:
