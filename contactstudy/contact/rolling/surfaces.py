@@ -168,6 +168,9 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, works: FloatArr
     if resultants[~able].any() or not able.any():
         return 0.0
     works, target = works[able] / sizes[able, None, None], resultants[able] / sizes[able]
+    # The square of a very small target would vanish.
+    scale = float(np.abs(target).max())
+    target = target / scale
     direction = target / (target @ target)
     across = np.linalg.svd(direction[None, :])[2][1:]
 
@@ -179,5 +182,5 @@ def _largest_multiple(resultants: FloatArray, bound: FloatArray, works: FloatArr
 
     start = np.zeros(len(target) - 1)
     if not start.size:
-        return resultant(start)[0]
-    return float(minimize(resultant, start, jac=True, method="BFGS").fun)
+        return resultant(start)[0] / scale
+    return float(minimize(resultant, start, jac=True, method="BFGS").fun) / scale

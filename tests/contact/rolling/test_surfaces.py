@@ -42,12 +42,14 @@ def test_the_largest_multiple_is_the_least_over_all_directions(wanted: list[floa
             along = along / np.hypot.reduce(along)
         spread *= 0.85
     assert found == pytest.approx(least, rel=1e-4)
-    assert _largest_multiple(3 * target, bound(), works) == pytest.approx(found / 3, rel=1e-6)
+    for factor in (3.0, 1e-200):
+        assert _largest_multiple(factor * target, bound(), works) == pytest.approx(found / factor, rel=1e-6)
 
 
 def test_one_force_is_carried_up_to_the_sum_of_the_bound() -> None:
     most = float((bound() * SURFACES.areas).sum())
     check_forces(Rolling(force_y=0.9999 * most), bound(), SURFACES.weights)
+    check_forces(Rolling(force_y=5e-324), bound(), SURFACES.weights)
     check_forces(Rolling(force_y=most * (1 - 5e-9)), bound(), SURFACES.weights)
     for part in (1 - 1e-10, 1.0001):
         with pytest.raises(InvalidInputError, match="force_y"):
