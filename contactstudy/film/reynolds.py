@@ -20,8 +20,8 @@ from contactstudy.checks import FloatArray
 FLUIDITY_NODES, FLUIDITY_RATIO = 1600, 1.005
 """Nodes of the fluidity over the pressure, and ratio of their steps. Accuracy."""
 
-LEAST_FACE_FILM, LARGEST_FACE_FILM = 0.2, 2.0
-"""Least film on a face over the mean of both cells, largest over the upstream cell: parabolas overshoot. Accuracy."""
+FACE_FILM = (0.2, 2.0)
+"""Least and largest film on a face over that of the cell upstream: parabolas overshoot. Accuracy."""
 
 
 class Law(NamedTuple):
@@ -137,7 +137,20 @@ class FilmCells:
     @cached_property
     def along_y(self) -> Faces:
         """Faces between neighbours along y."""
-        gradient = _gradient(self.y_edges, self.y, closed=False)
+        rows = sparse.eye_array(self.shape[0])
+        matrices = (*_neighbours(self.y.size), _gradient(self.y_edges, self.y, closed=False))
+        return Faces(*(sparse.csr_array(sparse.kron(rows, each)) for each in matrices))
+
+    @cached_property
+    def along_x(self) -> Faces:
+        """Faces between neighbours along x."""
+        columns = sparse.eye_array(self.shape[1])
+        matrices = (*_neighbours(self.x.size), _gradient(self.x_edges, self.x, closed=not self.open_ends))
+        return Faces(*(sparse.csr_array(sparse.kron(each, columns)) for each in matrices))
+
+    @cached_property
+    def parabolas(self) -> sparse.csr_array:
+        """Values on the faces along y, by parabolas through two cells upstream and one downstream: (face, cell)."""
         cells = self.y.size
         matrix = np.zeros((cells + 1, cells))
         for face, position in enumerate(self.y_edges):
@@ -145,17 +158,16 @@ class FilmCells:
             for cell in stencil:
                 others = self.y[stencil[stencil != cell]]
                 matrix[face, cell] = np.prod((position - others) / (self.y[cell] - others))
-        upwind = sparse.csr_array(matrix)
-        rows = sparse.eye_array(self.shape[0])
-        return Faces.of(*(sparse.kron(rows, each) for each in (upwind, _mean(self.y_edges, self.y), gradient)))
+        return sparse.csr_array(sparse.kron(sparse.eye_array(self.shape[0]), matrix))
 
-    @cached_property
-    def along_x(self) -> Faces:
-        """Faces between neighbours along x."""
-        mean = _mean(self.x_edges, self.x)
-        gradient = _gradient(self.x_edges, self.x, closed=not self.open_ends)
-        columns = sparse.eye_array(self.shape[1])
-        return Faces.of(*(sparse.kron(each, columns) for each in (mean, mean, gradient)))
+    def upwind(self, height: FloatArray) -> sparse.csr_array:
+        """Parabolas, bounded where the film varies much from cell to cell: the film remains positive: (face, cell)."""
+        before = self.along_y.before
+        parabola, least, largest = (self.parabolas @ height, *(bound * (before @ height) for bound in FACE_FILM))
+        low, high = parabola < least, parabola > largest
+        bounds = np.where(low, FACE_FILM[0], np.where(high, FACE_FILM[1], 0.0))
+        within = sparse.diags_array(np.where(low | high, 0.0, 1.0))
+        return sparse.csr_array(within @ self.parabolas + sparse.diags_array(bounds) @ before)
 
     @cached_property
     def outflow_y(self) -> sparse.csr_array:
@@ -182,16 +194,15 @@ class FilmCells:
         """
         height, pressure = film.value.ravel(), pressure.ravel()
         density, reduced = fluid.density(pressure), fluid.reduced_pressure(pressure)
-        faces = self.along_y
-        upwind = faces.bounded(height)
-        conducted = faces.conducted(fluid.speed, reduced, height, upwind)
+        upwind = self.upwind(height)
+        conducted = self.along_y.conducted(fluid.speed, reduced, height)
         through = upwind @ (density.value * height) - conducted.flow
         by_pressure = upwind @ sparse.diags_array(density.slope * height) - conducted.by_pressure
         by_film = upwind @ sparse.diags_array(density.value) - conducted.by_film
         outflow = self.outflow_y @ through
         by_pressure, by_film = self.outflow_y @ by_pressure, self.outflow_y @ by_film
         if self.shape[0] > 1 or self.open_ends:
-            across = self.along_x.conducted(fluid.speed, reduced, height, self.along_x.mean)
+            across = self.along_x.conducted(fluid.speed, reduced, height)
             outflow = outflow - self.outflow_x @ across.flow
             by_pressure = by_pressure - self.outflow_x @ across.by_pressure
             by_film = by_film - self.outflow_x @ across.by_film
@@ -209,54 +220,36 @@ class Conducted(NamedTuple):
     by_film: sparse.csr_array
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Faces:
     """Faces along one axis: matrices (face, cell) of values on them.
 
     Attributes
     ----------
-    upwind, mean, gradient : sparse array (face, cell)
-        Value from upstream, mean of both sides, gradient; beyond the outermost faces the pressure is ambient.
-    before : sparse array (face, cell)
-        Which cell is upstream.
+    before, after : sparse array (face, cell)
+        Which cells are upstream and downstream: at the outermost faces the same one.
+    gradient : sparse array (face, cell)
+        Gradient; beyond the outermost faces the pressure is ambient.
     """
 
-    upwind: sparse.csr_array
-    mean: sparse.csr_array
-    gradient: sparse.csr_array
     before: sparse.csr_array
+    after: sparse.csr_array
+    gradient: sparse.csr_array
 
-    @classmethod
-    def of(cls, upwind: sparse.sparray, mean: sparse.sparray, gradient: sparse.sparray) -> Faces:
-        """Faces with these matrices: the gradient shows the cells upstream."""
-        slopes = sparse.csr_array(gradient)
-        return cls(
-            upwind=sparse.csr_array(upwind),
-            mean=sparse.csr_array(mean),
-            gradient=slopes,
-            before=sparse.csr_array((-slopes).maximum(0).astype(bool).astype(np.float64)),
-        )
+    def conducted(self, speed: float, reduced: Law, height: FloatArray) -> Conducted:
+        """Flow that the gradient of the reduced pressure drives, eq. (402): it rises with any step of the pressure.
 
-    def bounded(self, height: FloatArray) -> sparse.csr_array:
-        """Interpolation from upstream, bounded where the film varies much from cell to cell: it remains positive."""
-        parabola, least, largest = (
-            matrix @ height for matrix in (self.upwind, LEAST_FACE_FILM * self.mean, LARGEST_FACE_FILM * self.before)
-        )
-        # The first face has no cell upstream.
-        low, high = parabola < least, (parabola > largest) & (largest > 0)
-        return sparse.csr_array(
-            sparse.diags_array(np.where(low | high, 0.0, 1.0)) @ self.upwind
-            + sparse.diags_array(LEAST_FACE_FILM * low) @ self.mean
-            + sparse.diags_array(LARGEST_FACE_FILM * (high & ~low)) @ self.before
-        )
-
-    def conducted(self, speed: float, reduced: Law, height: FloatArray, interpolation: sparse.csr_array) -> Conducted:
-        """Flow that the gradient of the reduced pressure drives, eq. (402): it rises with any step of the pressure."""
-        film = interpolation @ height
+        The flow is constant between two centres, and the film linear: the thinner film determines the flow.
+        """
+        before, after = self.before @ height, self.after @ height
+        cube = 2 * (before * after) ** 2 / (before + after) / speed
         slopes = self.gradient @ reduced.value
-        cubed, squared = film**3 / speed, 3 * film**2 / speed
-        by_pressure = sparse.diags_array(cubed) @ self.gradient @ sparse.diags_array(reduced.slope)
-        return Conducted(cubed * slopes, by_pressure, sparse.diags_array(squared * slopes) @ interpolation)
+        by_pressure = sparse.diags_array(cube) @ self.gradient @ sparse.diags_array(reduced.slope)
+        by_before, by_after = (
+            sparse.diags_array(cube * slopes * (2 / film - 1 / (before + after))) @ cells
+            for film, cells in ((before, self.before), (after, self.after))
+        )
+        return Conducted(cube * slopes, sparse.csr_array(by_pressure), sparse.csr_array(by_before + by_after))
 
 
 def _outflow(cells: int) -> sparse.sparray:
@@ -264,15 +257,10 @@ def _outflow(cells: int) -> sparse.sparray:
     return sparse.diags_array([-np.ones(cells), np.ones(cells)], offsets=[0, 1], shape=(cells, cells + 1))
 
 
-def _mean(edges: FloatArray, centres: FloatArray) -> sparse.sparray:
-    """Values on the faces by lines between the centres, at the ends those of the outermost cells: (face, cell)."""
-    cells = centres.size
-    matrix = np.zeros((cells + 1, cells))
-    matrix[0, 0] = matrix[-1, -1] = 1.0
-    for face in range(1, cells):
-        share = (edges[face] - centres[face - 1]) / (centres[face] - centres[face - 1])
-        matrix[face, face - 1 : face + 1] = 1 - share, share
-    return sparse.csr_array(matrix)
+def _neighbours(cells: int) -> tuple[sparse.sparray, sparse.sparray]:
+    """Cells upstream and downstream of faces; at the outermost faces both are the outermost cell: (face, cell)."""
+    identity = sparse.eye_array(cells, format="csr")
+    return sparse.vstack([identity[:1], identity]), sparse.vstack([identity, identity[-1:]])
 
 
 def _gradient(edges: FloatArray, centres: FloatArray, *, closed: bool) -> sparse.sparray:

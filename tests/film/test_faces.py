@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from contactstudy.bodies.lubricant import Lubricant
-from contactstudy.film.reynolds import FilmCells, Fluid
+from contactstudy.film.reynolds import FilmCells, Fluid, Law
 from contactstudy.film.solve import _least
 
 CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 21), open_ends=False)
@@ -12,17 +12,41 @@ CELLS = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(-1.0, 1.0, 2
 
 def test_faces_of_a_smooth_film_are_parabolas():
     height = 1 + CELLS.y**2
-    film = CELLS.along_y.bounded(height) @ height
+    film = CELLS.upwind(height) @ height
     assert film[2:-1] == pytest.approx(1 + CELLS.y_edges[2:-1] ** 2)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_faces_of_a_steep_film_are_positive_and_bounded(seed):
     height = np.exp(np.random.default_rng(seed).uniform(-8, 8, CELLS.y.size))
-    film = (CELLS.along_y.bounded(height) @ height)[1:]
+    film = (CELLS.upwind(height) @ height)[1:]
     assert (film > 0).all()
-    mean = CELLS.along_y.mean @ height
-    assert (film <= np.maximum(2 * height, 0.2 * mean[1:]) * (1 + 1e-12)).all()
+    assert (film <= 2 * height * (1 + 1e-12)).all()
+
+
+def test_flow_between_two_films_is_that_of_a_linear_film():
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.array([0.0, 1.0, 3.0]), open_ends=False).along_y
+    height, reduced = np.array([0.1, 2.0]), Law(np.array([1.0, 0.0]), np.ones(2))
+    nodes, weights = np.polynomial.legendre.leggauss(100)
+    linear = height.mean() + 0.5 * nodes * np.diff(height)
+    resistance = 1.5 * 0.5 * float(weights @ linear**-3)
+    assert -faces.conducted(4.0, reduced, height).flow[1] == pytest.approx(1 / (4.0 * resistance), rel=1e-8)
+
+
+def test_derivatives_of_the_flow_are_those_of_differences():
+    faces = FilmCells(x_edges=np.array([0.0, 1.0]), y_edges=np.linspace(0.0, 1.0, 6), open_ends=False).along_y
+    height, pressure, step = np.array([0.1, 2.0, 1.0, 0.3, 0.7]), np.array([0.1, 0.4, 0.2, 0.5, 0.3]), 1e-6
+
+    def flow(height, pressure):
+        return faces.conducted(2.0, Law(pressure**2, 2 * pressure), height)
+
+    derivatives = flow(height, pressure)
+    for cell in range(5):
+        change = step * (np.arange(5) == cell)
+        by_film = (flow(height + change, pressure).flow - flow(height - change, pressure).flow) / (2 * step)
+        by_pressure = (flow(height, pressure + change).flow - flow(height, pressure - change).flow) / (2 * step)
+        assert derivatives.by_film.toarray()[:, cell] == pytest.approx(by_film, rel=1e-6, abs=1e-9)
+        assert derivatives.by_pressure.toarray()[:, cell] == pytest.approx(by_pressure, rel=1e-6, abs=1e-9)
 
 
 def test_least_film_between_cells_is_positive():
@@ -41,7 +65,7 @@ def test_flow_between_two_cells_rises_with_the_step_of_the_pressure(law):
 
     def flow(pressure):
         reduced = fluid.reduced_pressure(np.array([pressure, 0.0]))
-        conducted = faces.conducted(fluid.speed, reduced, height, faces.mean)
+        conducted = faces.conducted(fluid.speed, reduced, height)
         assert conducted.by_pressure.toarray()[1, 0] <= 0
         return -float(conducted.flow[1])
 
