@@ -1,4 +1,4 @@
-"""Checks of the film: tables and limits of line contacts, the certificate, and two bodies with the same limit.
+"""Checks of the film: line contacts, the certificate, two bodies with the same limit, finite elements.
 
 * Barus oil of constant density: centre and least film settled by extrapolation, two programs that agree to 0.2 %.
 * Moes, *Wear* 159 (1992) 57: the central film of a line contact in the numbers M and L.
@@ -22,8 +22,12 @@ from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
 from contactstudy.film.formulas import moes_line
+from contactstudy.film.levels import RESOLUTION, FilmCase, film_on_level
+from contactstudy.film.newton import SETTINGS
 from contactstudy.profiles import Lundberg
 from contactstudy.verification.check import Check, Curve, Reference
+from contactstudy.verification.free_ends import FINITE_ELEMENTS
+from contactstudy.verification.problems import FILM_CASES, FILM_FILE, load_reference
 
 # Moes' numbers M, L: central and least film H, of an inlet four half-widths long below M = 100
 TABLE = {
@@ -79,23 +83,64 @@ def dry_limit_checks() -> Iterator[Check]:
     yield Reference(case, "Moes (1992)").compare("exponent of M in the central film", float(exponent), -0.125, 0.01)
 
 
-def crowned_film(body: Body, length: float) -> xr.Dataset:
-    """Film under a crowned roller in the middle of a body; the mean load has M = 10, L = 5."""
-    profile = Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
+def crowned_case(body: Body, length: float) -> Case:
+    """Crowned roller in the middle of a body, with the numbers of the stored film."""
+    stored = FILM_CASES["crowned"]
+    profile = Lundberg(amplitude=stored.amplitude * HALF_WIDTH**2 / RADIUS)
     roller = Roller(radius=RADIUS, length=length, profile=profile)
     pressure = HALF_WIDTH * STEEL.plane_strain_modulus / (2 * RADIUS)
     offset = 0.5 * (body.length - length) if isinstance(body, FiniteLengthSpace) else None
     dry = Case(body=body, roller=roller, max_pressure=pressure, end_distance=offset)
     modulus = 2 * dry.modulus
-    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * 10.0)
+    root = dry.normal_load / (dry.contact_length * modulus * RADIUS * stored.load_number)
     oil = Lubricant(
         viscosity=0.5 * root**2 * modulus * RADIUS,
-        pressure_viscosity=5.0 / (modulus * root**0.5),
+        pressure_viscosity=stored.lubricant_number / (modulus * root**0.5),
         viscosity_law="barus",
         density_law="constant",
     )
-    motion = Sliding(body_speed=1.0, roller_speed=1.0)
-    return film.solve_film(replace(dry, lubricant=oil, motion=motion), accuracy=0.1)
+    return replace(dry, lubricant=oil, motion=Sliding(body_speed=1.0, roller_speed=1.0))
+
+
+def coarse_film(name: str) -> FilmCase:
+    """Film to compare on the cells of the coarsest level with the stored one."""
+    length = FILM_CASES[name].length * HALF_WIDTH
+    case = crowned_case(FiniteLengthSpace(length=length, material=STEEL), length)
+    assert case.lubricant is not None
+    assert case.motion.speeds is not None
+    return FilmCase(
+        case=case,
+        lubricant=case.lubricant,
+        speeds=case.motion.speeds,
+        asperities=None,
+        resolution=RESOLUTION,
+        inlet=None,
+    )
+
+
+def finite_element_checks(name: str) -> Iterator[Check]:
+    """Film between two free ends against the finite elements' on the same cells."""
+    stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
+    lubricated = coarse_film(name)
+    solved = film_on_level(lubricated, 0, lubricated.contact_ends, SETTINGS)
+    cells = solved.problem.cells
+    fields = {"film": solved.solution.film, "pressure": solved.solution.fluid_pressure}
+    computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
+    # The same cells but for rounding.
+    computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
+    case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
+    reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))
+    axis, expected = (data["film"].interp(y=0.0).values for data in (computed, stored))
+    curve = Curve(("x / a", "h R / a^2 at y = 0"), stored["x"].values, axis, expected)
+    yield reference.compare_fields("film at y = 0 over the reference", axis / expected, 1.0, 0.02, curve=curve)
+    least, expected = (data["film"].min("y").values for data in (computed, stored))
+    yield reference.compare_fields("least film of each column over the reference", least / expected, 1.0, 0.02)
+    yield reference.compare_fields("pressure / p0", computed["pressure"], stored["pressure"], 0.01)
+
+
+def crowned_film(body: Body, length: float) -> xr.Dataset:
+    """Film under the crowned roller."""
+    return film.solve_film(crowned_case(body, length), accuracy=0.1)
 
 
 def roller_checks(*, full: bool) -> Iterator[Check]:

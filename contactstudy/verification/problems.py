@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from numpy.typing import ArrayLike
+from scipy.special import xlogy
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
@@ -201,6 +202,42 @@ class PassesCase:
     poisson: float = 0.3
 
 
+@dataclass(frozen=True, kw_only=True)
+class LubricatedCase:
+    """A roller with Lundberg's profile, flush with both free ends; Barus oil of constant density, entrained along +y.
+
+    Heights are in ``a**2 / R``.
+    """
+
+    length: float
+    amplitude: float  # of the profile
+    load_number: float  # Moes' M of the mean load per length
+    lubricant_number: float  # Moes' L
+    poisson: float = 0.3
+
+    @property
+    def load(self) -> float:
+        """Load of the line contact of half-width and peak pressure 1 over the whole length."""
+        return LINE_LOAD * self.length
+
+    @property
+    def speed(self) -> float:
+        """Speed number of eq. (404), by ``(a / R)**2 = 8 W / pi``."""
+        return 3 * np.pi**2 / (8 * self.load_number**2)
+
+    @property
+    def pressure_viscosity(self) -> float:
+        """Pressure-viscosity coefficient times the peak pressure."""
+        return float(self.lubricant_number * np.sqrt(self.load_number / (2 * np.pi)))
+
+    def gap(self, x_edges: FloatArray, y: FloatArray) -> FloatArray:
+        """Gap, mean over columns, at positions along y."""
+        position = 2 * x_edges / self.length - 1
+        integral = xlogy(1 + position, 1 + position) - xlogy(1 - position, 1 - position) - 2 * position
+        drop = -self.amplitude * np.diff(integral) / np.diff(position)
+        return np.asarray(drop[:, None] + 0.5 * y**2)
+
+
 # Loads whose stresses are stored, by name
 LOAD_CASES: dict[str, LoadCase] = {
     "full": LoadCase(8.0, Uniform()),
@@ -226,13 +263,18 @@ PASSES_CASES: dict[str, PassesCase] = {
     "flowing": PassesCase(shear_yield_stress=1 / 4.3, friction=0.0, passes=3),
     "flowing_sliding": PassesCase(shear_yield_stress=1 / 3.4, friction=0.2, passes=2),
 }
+# Films that are stored, by name
+FILM_CASES: dict[str, LubricatedCase] = {
+    "crowned": LubricatedCase(length=8.0, amplitude=0.25, load_number=10.0, lubricant_number=5.0)
+}
 # Files of the stored finite elements, one group for each case
 STRESS_FILE, CONTACT_FILE = "finite_elements_stress.nc", "finite_elements_contact.nc"
-PASSES_FILE = "finite_elements_passes.nc"
+PASSES_FILE, FILM_FILE = "finite_elements_passes.nc", "finite_elements_film.nc"
 CASES: dict[str, Mapping[str, object]] = {
     STRESS_FILE: LOAD_CASES,
     CONTACT_FILE: CONTACT_CASES,
     PASSES_FILE: PASSES_CASES,
+    FILM_FILE: FILM_CASES,
 }
 
 

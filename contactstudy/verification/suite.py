@@ -21,7 +21,7 @@ from contactstudy.errors import InvalidInputError, MagnitudeWarning
 from contactstudy.study.files import write_dataset, write_text
 from contactstudy.verification import exact, film, free_ends, passes, tribology
 from contactstudy.verification.check import Check
-from contactstudy.verification.problems import PASSES_CASES
+from contactstudy.verification.problems import FILM_CASES, PASSES_CASES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -66,7 +66,12 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
         passes.passing_checks(),
         *(passes.finite_element_checks(name) for name in (PASSES_CASES if full else passes.QUICK_CASES)),
     ),
-    "film": lambda full: chain(film.line_checks(full=full), film.dry_limit_checks(), film.roller_checks(full=full)),
+    "film": lambda full: chain(
+        film.line_checks(full=full),
+        film.dry_limit_checks(),
+        film.roller_checks(full=full),
+        *(film.finite_element_checks(name) for name in FILM_CASES),
+    ),
     "consistency": lambda full: chain(
         exact.free_end_checks(),
         exact.equilibrium_checks(),

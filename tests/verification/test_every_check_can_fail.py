@@ -275,7 +275,7 @@ EVERY_WAY: dict[str, tuple[Callable[[Patch], None], ...]] = {
         passed_over_a_body_without_ends,
         strained_more,
     ),
-    "film": (faster_flow, softer_line, shifted_pressure, wrong_exponent, unfinished_iteration, heavier_film),
+    "film": (faster_flow, softer_line, shifted_pressure, wrong_exponent, unfinished_iteration, heavier_film, no_ends),
     "consistency": (ends_only_mirrored, no_friction, first_round_only, distorted),
 }
 

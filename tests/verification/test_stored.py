@@ -11,6 +11,8 @@ from contactstudy.verification import closed_forms as ref
 from contactstudy.verification.problems import (
     CONTACT_CASES,
     CONTACT_FILE,
+    FILM_CASES,
+    FILM_FILE,
     LOAD_CASES,
     PASSES_CASES,
     PASSES_FILE,
@@ -33,6 +35,17 @@ def test_stored_contacts(name: str) -> None:
     inner = contact.sel(x=slice(case.start + 0.5, case.stop - 0.5), y=0)
     assert float(inner["pressure_error"].max()) < 6e-3
     assert float(inner["pressure_error"].median()) < 3e-3
+
+
+@pytest.mark.parametrize("name", FILM_CASES)
+def test_stored_films(name: str) -> None:
+    """Sign and symmetry; errors far below the tolerances of the comparison."""
+    case, film = FILM_CASES[name], load_reference(FILM_FILE, name)
+    assert {key: film.attrs[key] for key in vars(case)} == vars(case)
+    assert float(film["pressure"].min()) >= 0
+    for key in ("film", "pressure"):
+        np.testing.assert_allclose(film[key].values[::-1], film[key], rtol=1e-4, atol=1e-5)
+        assert film.attrs[f"{key}_error"] < 1e-3
 
 
 @pytest.mark.parametrize("name", PASSES_CASES)
@@ -85,13 +98,13 @@ def test_stored_friction_is_a_superposition() -> None:
     assert np.abs(sliding.tau_xy).max() > 0.05
 
 
-@pytest.mark.parametrize("file", [STRESS_FILE, CONTACT_FILE, PASSES_FILE])
+@pytest.mark.parametrize("file", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])
 def test_unknown_names_are_errors(file: str) -> None:
     with pytest.raises(InvalidInputError, match="nothing"):
         load_reference(file, "nothing")
 
 
-@pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE])
+@pytest.mark.parametrize("name", [STRESS_FILE, CONTACT_FILE, PASSES_FILE, FILM_FILE])
 def test_files(name: str) -> None:
     assert data_file(name).stat().st_size < 300_000
     stated = xr.load_dataset(data_file(name)).attrs

@@ -1,0 +1,165 @@
+"""Film between two free ends from the finite elements' compliance, by a dense Newton method.
+
+For each wavenumber along y the finite elements give the mean displacement of columns under unit pressure on columns;
+the integral over the wavenumber makes of it the displacement of cells, a mean along x at the centre along y, under unit
+pressure on cells. Reynolds' equation is that of the package (eqs. 401 and 402: finite volumes, parabolas upstream,
+reduced pressure, linear film between centres) in code of its own: derivatives are complex steps, cavitation is the
+complementarity ``min(c P, outflow) = 0``, pseudo-time steps lead from a thick film to the steady one.
+
+Lengths are in a, heights in a**2 / R, pressures in p0.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+from numpy.polynomial import legendre
+from numpy.typing import NDArray
+from scipy.special import sici
+
+from benchmarks.finite_elements.harmonics import HarmonicBody, Line
+from benchmarks.finite_elements.superpose import Resolution
+from contactstudy.verification.problems import LubricatedCase
+
+Array = NDArray[np.float64]
+FACE_FILM = (0.2, 2.0)
+"""Least and largest film on a face over that of the cell upstream, as in the package."""
+TIMES = 0.3 * 3.0 ** np.arange(6)
+"""Pseudo-time steps before the steady state, in a / um."""
+START_FILM, CLOSING = 0.3, 0.6
+"""Least film of the start, and largest relative decrease of a film in one step."""
+
+
+def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
+    """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), but for a constant."""
+    widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
+    middles = x_edges[:-1] + 0.5 * widths
+    x = Line(np.sort(np.concatenate([x_edges, middles])), resolution.order)
+    shapes = [(lambda at, low=low, high=high: 1.0 * ((at > low) & (at < high)), "z") for low, high in pairwise(x_edges)]
+    loads = np.array([x.load(shape) for shape, _ in shapes])
+    depth, n = resolution.mesh_z(), resolution.nodes
+    node = legendre.leggauss(n)[0]
+    coarse = np.linalg.inv(legendre.legvander(node, n - 1))
+    ends = [(y[:, None] - y + 0.5 * side * lengths).ravel() for side in (1, -1)]
+    total = np.zeros((y.size**2, widths.size, widths.size))
+    for low, high in pairwise(resolution.panels):
+        deep_enough = int(np.searchsorted(depth, 40 / low)) + 1 if low else depth.size
+        body = HarmonicBody(x, Line(depth[:deep_enough], resolution.order), case.poisson)
+        k = low + 0.5 * (high - low) * (node + 1)
+        # 2 G = E* (1 - nu); means over the displaced column, per length of the loaded one.
+        tops = [np.stack([u[2] @ body.top for u in body.solve(float(wave), shapes)]) for wave in k]
+        response = np.array([2 * loads @ top.T for top in tops]) / ((1 - case.poisson) * np.outer(widths, widths))
+        fine, weight = legendre.leggauss(24 + int(0.7 * np.abs(ends).max() * (high - low)))
+        wave = low + 0.5 * (high - low) * (fine + 1)
+        interpolate = legendre.legvander(fine, n - 1) @ coarse * (0.5 * (high - low) * weight / np.pi)[:, None]
+        transform = (np.sin(np.outer(ends[0], wave)) - np.sin(np.outer(ends[1], wave))) / wave
+        # The part like 1 / k at small k, equal for all columns, is integrated with cos(k y) - 1: it moves the rest.
+        base = response[:, 0, -1]
+        steady = (transform - (ends[0] - ends[1])[:, None]) / wave @ interpolate @ (k * base)
+        total += np.tensordot(transform @ interpolate, response - base[:, None, None], axes=1) + steady[:, None, None]
+    total *= widths
+    # Beyond the last panel the response falls like 1 / k.
+    tail = [np.sin(high * end) / high - end * sici(high * np.maximum(np.abs(end), 1e-12))[1] for end in ends]
+    total += np.multiply.outer(tail[0] - tail[1], k[-1] * response[-1] * widths / np.pi)
+    return total.reshape(y.size, y.size, widths.size, widths.size).transpose(2, 0, 3, 1)
+
+
+@dataclass(frozen=True)
+class Reynolds:
+    """Net outflow of cells, of pressures and films (x, y) that may be complex."""
+
+    x_edges: Array
+    y_edges: Array
+    speed: float
+    pressure_viscosity: float
+
+    def outflow(self, pressure: Array, film: Array) -> Array:
+        """Net outflow of each cell per width along x."""
+        # Q of Barus' oil, eq. (402); a negative pressure, which ends in cavitation, has the ambient viscosity.
+        full, coefficient = np.where(pressure.real > 0, pressure, 0.0), self.pressure_viscosity
+        reduced = np.where(pressure.real > 0, -np.expm1(-coefficient * full) / coefficient, pressure)
+        through = self._couette(film) - self._driven(reduced, film, self.y_edges)
+        across = -self._driven(reduced.T, film.T, self.x_edges).T
+        return (
+            np.diff(through, axis=1) + np.diff(across, axis=0) * np.diff(self.y_edges) / np.diff(self.x_edges)[:, None]
+        )
+
+    def _couette(self, film: Array) -> Array:
+        """Film on the faces along y."""
+        edges, cells = self.y_edges, film.shape[1]
+        y = 0.5 * (edges[1:] + edges[:-1])
+        faces = []
+        for face, edge in enumerate(edges):
+            near = slice(max(face - 2, 0), min(max(face + 1, 2), cells))
+            ahead = y[near] - edge
+            weights = np.linalg.solve(np.vander(ahead, increasing=True).T, np.eye(ahead.size)[0])
+            value, upstream = film[:, near] @ weights, film[:, max(face - 1, 0)]
+            value = np.where(value.real < FACE_FILM[0] * upstream.real, FACE_FILM[0] * upstream, value)
+            faces.append(np.where(value.real > FACE_FILM[1] * upstream.real, FACE_FILM[1] * upstream, value))
+        return np.stack(faces, axis=1)
+
+    def _driven(self, reduced: Array, film: Array, edges: Array) -> Array:
+        """Flow along the last axis that the pressure drives, reversed; ambient pressure on the outermost faces."""
+        centres = np.concatenate([edges[:1], 0.5 * (edges[1:] + edges[:-1]), edges[-1:]])
+        before, after = np.pad(film, ((0, 0), (1, 0)), "edge"), np.pad(film, ((0, 0), (0, 1)), "edge")
+        slope = np.diff(np.pad(reduced, ((0, 0), (1, 1)))) / np.diff(centres)
+        return 2 * (before * after) ** 2 / (before + after) / self.speed * slope
+
+    def derivatives(self, pressure: Array, film: Array) -> tuple[Array, Array]:
+        """Matrices (cell, cell) of the derivatives of the outflow by the pressure and by the film: complex steps.
+
+        A cell depends on columns next to it and on cells from two before it to one after it: 12 steps are enough.
+        """
+        (rows, columns), step = np.indices(film.shape), 1e-30j
+        matrices = np.zeros((2, film.size, film.size))
+        for first, second in product(range(3), range(4)):
+            mask = np.zeros(film.shape)
+            mask[first::3, second::4] = 1.0
+            row, column = rows + (first - rows + 1) % 3 - 1, columns + (second - columns + 2) % 4 - 2
+            within = (row >= 0) & (row < film.shape[0]) & (column >= 0) & (column < film.shape[1])
+            cells = np.flatnonzero(within), (row * film.shape[1] + column)[within]
+            matrices[0][cells] = self.outflow(pressure + step * mask, film).imag[within] / 1e-30
+            matrices[1][cells] = self.outflow(pressure, film + step * mask).imag[within] / 1e-30
+        return matrices[0], matrices[1]
+
+
+def solve(
+    case: LubricatedCase, compliant: Array, x_edges: Array, y_edges: Array, *, tolerance: float = 1e-9
+) -> tuple[Array, Array]:
+    """Pressure and film (x, y), by pseudo-time steps and then the steady state."""
+    x, y = (0.5 * (edges[1:] + edges[:-1]) for edges in (x_edges, y_edges))
+    gap, lengths = case.gap(x_edges, y), np.diff(y_edges)
+    areas = np.multiply.outer(np.diff(x_edges), lengths).ravel()
+    # Heights are in a**2 / R and p0 = E* a / (2 R).
+    matrix = 0.5 * compliant.reshape(gap.size, gap.size)
+    pressure = np.sqrt(np.clip(1 - y**2, 0, None)) + 0 * gap
+    pressure *= case.load / (areas @ pressure.ravel())
+    film = gap + (matrix @ pressure.ravel()).reshape(gap.shape)
+    film += START_FILM - film.min()
+    reynolds = Reynolds(x_edges, y_edges, case.speed, case.pressure_viscosity)
+    for time in (*TIMES, np.inf):
+        former, inverse = film, lengths / time
+        for _ in range(60 if np.isinf(time) else 8):
+            outflow = (reynolds.outflow(pressure, film) + inverse * (film - former)).ravel()
+            by_pressure, by_film = reynolds.derivatives(pressure, film)
+            by_film += np.diag(np.tile(inverse, x.size))
+            jacobian = by_pressure + by_film @ matrix
+            scale = np.abs(jacobian.diagonal())
+            broken = scale * pressure.ravel() < outflow
+            rows = np.where(broken[:, None], np.eye(gap.size), jacobian / scale[:, None])
+            by_height = np.where(broken, 0.0, by_film.sum(axis=1) / scale)
+            right = np.append(
+                np.where(broken, -pressure.ravel(), -outflow / scale), case.load - areas @ pressure.ravel()
+            )
+            change = np.linalg.solve(np.block([[rows, by_height[:, None]], [areas, np.zeros(1)]]), right)
+            moved = change[-1] + matrix @ change[:-1]
+            part = min(1.0, CLOSING / max((-moved / film.ravel()).max(), 1e-300))
+            pressure = pressure + part * change[:-1].reshape(gap.shape)
+            film = film + part * moved.reshape(gap.shape)
+            if np.abs(change[:-1]).max() < tolerance:
+                break
+    if np.abs(change[:-1]).max() >= tolerance:
+        raise RuntimeError("no convergence of the film")
+    return pressure, film

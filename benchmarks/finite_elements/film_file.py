@@ -1,0 +1,70 @@
+"""The file of films: every case on the cells of the package's coarsest level, and the finite elements' own error."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import scipy
+import skfem  # type: ignore[import-untyped]
+import xarray as xr
+
+from benchmarks.finite_elements.film import compliance, solve
+from benchmarks.finite_elements.superpose import Resolution
+from contactstudy.film.levels import cells_of
+from contactstudy.verification.film import coarse_film
+from contactstudy.verification.problems import FILM_CASES
+
+PRODUCTION = Resolution(order=4, growth=1.8, smallest=0.02, nodes=5)
+COARSE = replace(PRODUCTION, order=3, growth=2.4, smallest=0.04, nodes=4)
+
+
+def solved(name: str) -> xr.Dataset:
+    """The film, and its largest change from coarser finite elements."""
+    case, film = FILM_CASES[name], coarse_film(name)
+    cells = cells_of(film, 0, film.contact_ends)[0]
+    edges = cells.x_edges, cells.y_edges
+    best, coarse = (solve(case, compliance(case, *edges, resolution), *edges) for resolution in (PRODUCTION, COARSE))
+    return xr.Dataset(
+        {
+            "pressure": (("x", "y"), best[0], {"units": "p0"}),
+            "film": (("x", "y"), best[1], {"units": "a^2 / R"}),
+        },
+        coords={"x": ("x", cells.x, {"units": "a"}), "y": ("y", cells.y, {"units": "a"})},
+        attrs=vars(case)
+        | {
+            "pressure_error": float(np.abs(coarse[0] - best[0]).max()),
+            "film_error": float(np.abs(coarse[1] / best[1] - 1).max()),
+        },
+    )
+
+
+def write(path: Path) -> None:
+    """Solve all films and store them."""
+    path.unlink(missing_ok=True)
+    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem}
+    xr.Dataset(
+        attrs={
+            "title": "Films under rollers between two free ends, by finite elements and a dense Newton method",
+            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+            "film": "Reynolds' equation in finite volumes, Barus oil of constant density, entrained along +y",
+            "units": "lengths in a, films in a^2 / R, pressure in p0",
+            "resolution": str(PRODUCTION),
+            "software": ", ".join(f"{name} {module.__version__}" for name, module in modules.items()),
+            "regenerate": "python -m benchmarks.finite_elements.generate film",
+        }
+    ).to_netcdf(path)
+    for name in FILM_CASES:
+        start = time.perf_counter()
+        solution = solved(name)
+        stored = solution.astype("float32").assign_coords({axis: solution[axis].values for axis in "xy"})
+        stored.to_netcdf(
+            path,
+            mode="a",
+            group=name,
+            encoding={key: {"_FillValue": None, "zlib": True, "complevel": 4} for key in stored.data_vars},
+        )
+        errors = {key: solution.attrs[f"{key}_error"] for key in ("film", "pressure")}
+        print(f"{name}: {time.perf_counter() - start:.0f} s, error estimates {errors}", flush=True)
