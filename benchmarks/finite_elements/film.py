@@ -26,7 +26,7 @@ from contactstudy.verification.problems import LubricatedCase
 Array = NDArray[np.float64]
 FACE_FILM = (0.2, 2.0)
 """Least and largest film on a face over that of the cell upstream, as in the package."""
-TIMES = 0.3 * 3.0 ** np.arange(6)
+TIMES = 0.02 * 2.0 ** np.arange(13)
 """Pseudo-time steps before the steady state, in a / um."""
 START_FILM, CLOSING = 0.3, 0.6
 """Least film of the start, and largest relative decrease of a film in one step."""
