@@ -11,13 +11,11 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import netCDF4
 import numpy as np
-import scipy
-import skfem  # type: ignore[import-untyped]
 import xarray as xr
 
 from benchmarks.finite_elements.contact import SolvedContact, flexibility, solve
+from benchmarks.finite_elements.stored import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.verification.problems import CONTACT_CASES, ContactCase
 
@@ -73,31 +71,21 @@ def solved(case: ContactCase) -> xr.Dataset:
 
 def write(path: Path) -> None:
     """Solve all contacts and store them."""
-    path.unlink(missing_ok=True)
-    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
-    xr.Dataset(
-        attrs={
-            "title": "Contact of rigid rollers with a finite-length space, by finite elements",
-            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
-            "contact": "gap y^2 + crown (x - length / 2)^2 over distance < x < length - distance; E* = 1; "
-            "load pi / 2 per length of contact",
-            "units": "lengths in a, pressure in p0: half-width and peak of the line contact under the load per length",
-            "method": "Fourier integral in y, tensor-product elements of high order in x and z; pressure on products "
-            "of hats, complementarity problem by active sets (scipy.optimize.nnls)",
-            "resolution": str(PRODUCTION),
-            "software": ", ".join(f"{name} {module.__version__}" for name, module in modules.items()),
-            "regenerate": "python -m benchmarks.finite_elements.generate contact",
-        }
-    ).to_netcdf(path)
+    create_file(
+        path,
+        "contact",
+        title="Contact of rigid rollers with a finite-length space, by finite elements",
+        body="0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+        contact="gap y^2 + crown (x - length / 2)^2 over distance < x < length - distance; E* = 1; "
+        "load pi / 2 per length of contact",
+        units="lengths in a, pressure in p0: half-width and peak of the line contact under the load per length",
+        method="Fourier integral in y, tensor-product elements of high order in x and z; pressure on products "
+        "of hats, complementarity problem by active sets (scipy.optimize.nnls)",
+        resolution=str(PRODUCTION),
+    )
     for name, case in CONTACT_CASES.items():
         start = time.perf_counter()
         solution = solved(case)
-        stored = solution.astype("float32").assign_coords({axis: solution[axis].values for axis in "xy"})
-        stored.to_netcdf(
-            path,
-            mode="a",
-            group=name,
-            encoding={n: {"_FillValue": None, "zlib": True, "complevel": 4} for n in stored.data_vars},
-        )
+        append_case(path, name, solution)
         worst = float(solution["pressure_error"].sel(y=0).max())
         print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimate at y = 0: {worst:.1e}", flush=True)

@@ -1,7 +1,7 @@
 """Film between two free ends from the finite elements' compliance, by a dense Newton method.
 
 For each wavenumber along y the finite elements give the mean displacement of columns under unit pressure on columns;
-the integral over the wavenumber makes of it the displacement of cells, a mean along x at the centre along y, under unit
+the integral over the wavenumber is the displacement of cells, a mean along x at the centre along y, under unit
 pressure on cells. Reynolds' equation is that of the package (eqs. 401 and 402: finite volumes, parabolas upstream,
 reduced pressure, linear film between centres) in code of its own: derivatives are complex steps, cavitation is the
 complementarity ``min(c P, outflow) = 0``, pseudo-time steps lead from a thick film to the steady one.
@@ -33,7 +33,7 @@ START_FILM, CLOSING = 0.3, 0.6
 
 
 def compliance(case: LubricatedCase, x_edges: Array, y_edges: Array, resolution: Resolution) -> Array:
-    """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), but for a constant."""
+    """``E* u_z / a`` of columns at the cells' centres under unit pressure on cells (x, y, x, y), up to a constant."""
     widths, y, lengths = np.diff(x_edges), 0.5 * (y_edges[1:] + y_edges[:-1]), np.diff(y_edges)
     middles = x_edges[:-1] + 0.5 * widths
     x = Line(np.sort(np.concatenate([x_edges, middles])), resolution.order)

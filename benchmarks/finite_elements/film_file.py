@@ -7,11 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import scipy
-import skfem  # type: ignore[import-untyped]
 import xarray as xr
 
 from benchmarks.finite_elements.film import compliance, solve
+from benchmarks.finite_elements.stored import append_case, create_file
 from benchmarks.finite_elements.superpose import Resolution
 from contactstudy.film.levels import cells_of
 from contactstudy.verification.film import coarse_film
@@ -43,28 +42,18 @@ def solved(name: str) -> xr.Dataset:
 
 def write(path: Path) -> None:
     """Solve all films and store them."""
-    path.unlink(missing_ok=True)
-    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem}
-    xr.Dataset(
-        attrs={
-            "title": "Films under rollers between two free ends, by finite elements and a dense Newton method",
-            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
-            "film": "Reynolds' equation in finite volumes, Barus oil of constant density, entrained along +y",
-            "units": "lengths in a, films in a^2 / R, pressure in p0",
-            "resolution": str(PRODUCTION),
-            "software": ", ".join(f"{name} {module.__version__}" for name, module in modules.items()),
-            "regenerate": "python -m benchmarks.finite_elements.generate film",
-        }
-    ).to_netcdf(path)
+    create_file(
+        path,
+        "film",
+        title="Films under rollers between two free ends, by finite elements and a dense Newton method",
+        body="0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+        film="Reynolds' equation in finite volumes, Barus oil of constant density, entrained along +y",
+        units="lengths in a, films in a^2 / R, pressure in p0",
+        resolution=str(PRODUCTION),
+    )
     for name in FILM_CASES:
         start = time.perf_counter()
         solution = solved(name)
-        stored = solution.astype("float32").assign_coords({axis: solution[axis].values for axis in "xy"})
-        stored.to_netcdf(
-            path,
-            mode="a",
-            group=name,
-            encoding={key: {"_FillValue": None, "zlib": True, "complevel": 4} for key in stored.data_vars},
-        )
+        append_case(path, name, solution)
         errors = {key: solution.attrs[f"{key}_error"] for key in ("film", "pressure")}
         print(f"{name}: {time.perf_counter() - start:.0f} s, error estimates {errors}", flush=True)

@@ -12,13 +12,11 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import netCDF4
 import numpy as np
-import scipy
-import skfem  # type: ignore[import-untyped]
 import xarray as xr
 
 from benchmarks.finite_elements.passes import PAIRS, YOUNG, PlasticStrip, Strip
+from benchmarks.finite_elements.stored import append_case, create_file
 from contactstudy.verification.problems import PASSES_CASES, PassesCase
 
 PRODUCTION = Strip(length=20.0, depth=10.0, width=0.5, height=0.1, fine=2.2, step=1 / 32)
@@ -61,20 +59,16 @@ def change(worse: xr.Dataset, better: xr.Dataset, name: str) -> float:
 
 def write(path: Path) -> None:
     """Solve all cases at all resolutions and store the result."""
-    path.unlink(missing_ok=True)
-    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
-    xr.Dataset(
-        attrs={
-            "title": "Passes of a line contact over an elastic-plastic half-plane, by finite elements",
-            "body": "z >= 0, plane strain along x; von Mises, perfectly plastic or kinematic hardening",
-            "load": "Hertz' pressure of half-width a and peak p0, shear traction friction times it, moving along +y",
-            "units": "lengths in a, stresses in p0; plastic strains, components of the tensor, times Young's modulus",
-            "method": "step by step along the way on a closed strip, radial return, quadrilaterals with eight nodes",
-            "resolution": str(PRODUCTION),
-            "software": ", ".join(f"{name} {module.__version__}" for name, module in modules.items()),
-            "regenerate": "python -m benchmarks.finite_elements.generate passes",
-        }
-    ).to_netcdf(path)
+    create_file(
+        path,
+        "passes",
+        title="Passes of a line contact over an elastic-plastic half-plane, by finite elements",
+        body="z >= 0, plane strain along x; von Mises, perfectly plastic or kinematic hardening",
+        load="Hertz' pressure of half-width a and peak p0, shear traction friction times it, moving along +y",
+        units="lengths in a, stresses in p0; plastic strains, components of the tensor, times Young's modulus",
+        method="step by step along the way on a closed strip, radial return, quadrilaterals with eight nodes",
+        resolution=str(PRODUCTION),
+    )
     for name in PASSES_CASES:
         add(path, name)
 
@@ -89,9 +83,7 @@ def add(path: Path, name: str) -> None:
     for variant, (changes, part) in WORSE.items():
         worse = solved(case, replace(lower, **changes))
         estimates[variant] = {of: part * change(worse, coarse, of) for of in NAMES}
-    stored = best.astype("float32")
-    stored = stored.assign_coords({axis: best[axis].values for axis in stored.dims})
-    stored.attrs = {
+    best.attrs = {
         "shear_yield_stress": case.shear_yield_stress,
         "friction": case.friction,
         "kinematic_hardening": case.kinematic_hardening,
@@ -99,8 +91,8 @@ def add(path: Path, name: str) -> None:
         "step": strip.step,
     }
     for of in NAMES:
-        stored[of].attrs |= {f"change_{variant}": changes[of] for variant, changes in estimates.items()}
-        stored[of].attrs["error_estimate"] = sum(changes[of] for changes in estimates.values())
-    stored.to_netcdf(path, mode="a", group=name, encoding={n: {"_FillValue": None} for n in stored.data_vars})
-    sizes = {of: f"{stored[of].attrs['error_estimate']:.1e} of {float(abs(stored[of]).max()):.1e}" for of in NAMES}
+        best[of].attrs |= {f"change_{variant}": changes[of] for variant, changes in estimates.items()}
+        best[of].attrs["error_estimate"] = sum(changes[of] for changes in estimates.values())
+    append_case(path, name, best)
+    sizes = {of: f"{best[of].attrs['error_estimate']:.1e} of {float(abs(best[of]).max()):.1e}" for of in NAMES}
     print(f"{name}: {time.perf_counter() - start:.0f} s, largest error estimates: {sizes}", flush=True)

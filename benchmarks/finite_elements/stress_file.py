@@ -13,13 +13,11 @@ from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
 
-import netCDF4
 import numpy as np
-import scipy
-import skfem  # type: ignore[import-untyped]
 import xarray as xr
 
 from benchmarks.finite_elements.harmonics import COMPONENTS
+from benchmarks.finite_elements.stored import append_case, create_file
 from benchmarks.finite_elements.superpose import PANELS, Harmonics, Resolution, displacement, harmonics, stresses
 from contactstudy.verification.problems import LOAD_CASES, LoadCase, quartic
 
@@ -82,22 +80,17 @@ def changes(worse: xr.Dataset, better: xr.Dataset) -> tuple[float, float, float]
 
 def write(path: Path) -> None:
     """Solve all cases at all resolutions and store the result."""
-    path.unlink(missing_ok=True)
-    modules = {"numpy": np, "scipy": scipy, "scikit-fem": skfem, "netCDF4": netCDF4}
-    versions = ", ".join(f"{name} {module.__version__}" for name, module in modules.items())
-    xr.Dataset(
-        attrs={
-            "title": "Stresses in a finite-length space under prescribed loads, by finite elements",
-            "body": "0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
-            "load": "on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
-            "h": str(quartic.__doc__),
-            "units": "lengths in a, the half-width of h; stresses in p0, positive in tension",
-            "method": "Fourier integral in y, tensor-product elements of high order in x and z",
-            "resolution": str(PRODUCTION),
-            "software": versions,
-            "regenerate": "python -m benchmarks.finite_elements.generate stress",
-        }
-    ).to_netcdf(path)
+    create_file(
+        path,
+        "stress",
+        title="Stresses in a finite-length space under prescribed loads, by finite elements",
+        body="0 <= x <= length, y infinite, z >= 0; free ends x = 0 and x = length; isotropic",
+        load="on z = 0: sigma_zz = -p, tau_yz = -friction p, tau_xz = 0 with p = p0 g(x) h(y)",
+        h=str(quartic.__doc__),
+        units="lengths in a, the half-width of h; stresses in p0, positive in tension",
+        method="Fourier integral in y, tensor-product elements of high order in x and z",
+        resolution=str(PRODUCTION),
+    )
     for (length, poisson), group in groupby(LOAD_CASES.items(), key=lambda item: (item[1].length, item[1].poisson)):
         cases = dict(group)
         shapes = list(
@@ -111,7 +104,7 @@ def write(path: Path) -> None:
             print(f"length {length}: {resolution} in {time.perf_counter() - start:.0f} s", flush=True)
         for name, case in cases.items():
             estimates = {v: changes(results[w][name], results[b][name]) for v, (w, b) in VARIANTS.items()}
-            stored = results[PRODUCTION][name].astype("float32")
+            stored = results[PRODUCTION][name]
             stored.attrs = {"length": length, "poisson": poisson, "friction": case.friction, "g": str(case.g)}
             for variant, (largest, median, _) in estimates.items():
                 stored.attrs |= {f"change_{variant}": largest, f"change_{variant}_median": median}
@@ -120,7 +113,7 @@ def write(path: Path) -> None:
             if "displacement_z_young" in stored:
                 stored["displacement_z_young"].attrs["error_estimate"] = sum(c[2] for c in estimates.values())
             stored = stored.assign_coords({k: list(v) for k, v in coordinates(case).items()})
-            stored.to_netcdf(path, mode="a", group=name, encoding={n: {"_FillValue": None} for n in stored.data_vars})
+            append_case(path, name, stored)
             print(
                 name,
                 stored.attrs["error_estimate"],

@@ -126,7 +126,7 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     cells = solved.problem.cells
     fields = {"film": solved.solution.film, "pressure": solved.solution.fluid_pressure}
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})
-    # The same cells but for rounding.
+    # Both sets of cells differ by rounding alone.
     computed = computed.interp(x=stored["x"], y=stored["y"], kwargs={"fill_value": "extrapolate"})
     case = f"crowned roller, {problem.length:g} a, flush, M = {problem.load_number:g}, L = {problem.lubricant_number:g}"
     reference = Reference(case, FINITE_ELEMENTS.format(stored.attrs["film_error"], "of the film, on the same cells"))

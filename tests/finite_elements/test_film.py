@@ -17,7 +17,7 @@ X_EDGES, Y_EDGES = np.array([0.0, 0.2, 0.7, 1.3, 1.8, 2.0]), np.array([-2.0, -1.
 
 @pytest.mark.slow
 def test_compliance_without_lateral_contraction() -> None:
-    """Poisson's ratio 0: under equal columns ``-(2 / pi) ln|y|`` of plane strain, but for a constant."""
+    """Poisson's ratio 0: under equal columns ``-(2 / pi) ln|y|`` of plane strain, up to a constant."""
     case = LubricatedCase(length=2.0, amplitude=0.25, load_number=10.0, lubricant_number=5.0, poisson=0.0)
     sums = compliance(case, X_EDGES, Y_EDGES, COARSE).sum(axis=2)
     y = 0.5 * (Y_EDGES[1:] + Y_EDGES[:-1])

@@ -1,0 +1,25 @@
+"""The files of stored references: attributes of the file, groups of single precision."""
+
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.finite_elements.stored import append_case, create_file
+
+
+def test_a_file_with_two_cases(tmp_path: Path) -> None:
+    path = tmp_path / "stored.nc"
+    solution = xr.Dataset({"film": ("x", [0.1, 0.2], {"units": "a"})}, {"x": [0.3, 0.6]}, {"length": 8.0})
+    for _ in range(2):  # A second file replaces the first.
+        create_file(path, "film", title="films")
+        append_case(path, "thin", solution)
+    append_case(path, "thick", 2 * solution)
+    stated, thin = xr.load_dataset(path).attrs, xr.load_dataset(path, group="thin")
+    assert stated["title"] == "films"
+    assert stated["regenerate"].endswith("generate film")
+    assert thin["film"].dtype == np.float32
+    assert thin.attrs == {"length": 8.0}
+    assert thin["film"].attrs == {"units": "a"}
+    np.testing.assert_array_equal(thin["x"], solution["x"])
+    np.testing.assert_allclose(xr.load_dataset(path, group="thick")["film"], [0.2, 0.4])
