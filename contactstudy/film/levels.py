@@ -58,7 +58,7 @@ class FilmResolution:
     ratio : float
         Ratio of the cells of one level to the next one's along y; its square for the narrowest columns.
     levels : int
-        Most levels.
+        Most levels, of each direction.
     most_cells : int
         Most uniform cells along y. Speed.
     dry_accuracy, dry_tolerance : float
@@ -216,6 +216,13 @@ class FilmCase:
         return Fluid.of(self.lubricant, self.pressure, number)
 
 
+class Level(NamedTuple):
+    """Numbers of refinements of the cells along y and of the columns."""
+
+    cells: int = 0
+    columns: int = 0
+
+
 class FilmOnCells(NamedTuple):
     """A solved film and its cells.
 
@@ -241,13 +248,14 @@ class FilmOnCells(NamedTuple):
 
 
 def cells_of(
-    film: FilmCase, level: int, closures: tuple[float, float]
+    film: FilmCase, level: Level, closures: tuple[float, float]
 ) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
     """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
-    resolution, scale = film.resolution, film.resolution.ratio**-level
+    resolution = film.resolution
+    scale, column_scale = resolution.ratio**-level.cells, resolution.ratio ** (-2 * level.columns)
     start, stop = (end / film.half_width for end in film.case.contact_range)
-    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * scale**2
-    growth = resolution.columns_growth * scale**0.7
+    first = min(resolution.columns, resolution.columns_inlet * film.inlet_length, 0.1 * (stop - start)) * column_scale
+    growth = resolution.columns_growth * column_scale**0.35
 
     def width(x: float) -> float:
         nearest = min(abs(x - closure) for closure in closures)
@@ -277,7 +285,7 @@ def cells_of(
 
 def film_on_level(
     film: FilmCase,
-    level: int,
+    level: Level,
     closures: tuple[float, float],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,

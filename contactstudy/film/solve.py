@@ -16,10 +16,19 @@ from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates
 from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.case.case import Case
-from contactstudy.checks import FloatArray
+from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.errors import ConvergenceWarning, FilmError, InvalidInputError, MagnitudeWarning
 from contactstudy.film.asperities import Asperities
-from contactstudy.film.levels import RESOLUTION, FilmCase, FilmOnCells, FilmResolution, film_on_level, solve_further
+from contactstudy.film.levels import (
+    RESOLUTION,
+    FilmCase,
+    FilmOnCells,
+    FilmResolution,
+    Level,
+    cells_of,
+    film_on_level,
+    solve_further,
+)
 from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 
 ACCURACIES = (2e-3, 0.2)
@@ -170,6 +179,11 @@ class Films(NamedTuple):
     least_x: float
     least_y: float
 
+    @property
+    def values(self) -> FloatArray:
+        """Films in the order of `NAMES`."""
+        return np.array([getattr(self, name) for name in NAMES])
+
 
 NAMES = {
     "central": "central_film",
@@ -194,46 +208,53 @@ class _Refined(NamedTuple):
 
 
 def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Refined:
-    """Film on finer and finer levels until its values change by less than the accuracy."""
+    """Film on cells that are refined, in the direction of the larger error, until the errors are below the accuracy."""
     coarse = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
-    levels: list[FilmOnCells] = []
-    films: list[Films] = []
-    closures = film.contact_ends
-    error, change = np.inf, dict.fromkeys(NAMES, 0.0)
-    for level in range(film.resolution.levels):
+    level, closures = Level(), film.contact_ends
+    try:
+        solutions = [film_on_level(film, level, closures, coarse, start)]
+    except StepFailedError as failure:
+        if start is not None:
+            return _refined(film, accuracy, settings)
+        raise _film_error(film, failure, level, closures) from None
+    films = [films_of(film, solutions[0])]
+    changes = {name: [np.full(len(NAMES), np.inf)] for name in Level._fields}
+    errors = changes["cells"][0]
+    while np.any(errors > accuracy * films[-1].central):
+        coarsest = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
+        if not coarsest:
+            break
+        direction = max(coarsest, key=lambda name: float(_latest(changes[name]).max()))
+        level = level._replace(**{direction: getattr(level, direction) + 1})
+        if direction == "columns":
+            closures = _closures(films[-1], solutions[-1], closures)
         try:
-            closures = closures if not levels else _closures(films[-1], levels[-1], closures)
-            levels.append(film_on_level(film, level, closures, coarse, levels[-1] if levels else start))
+            solutions.append(film_on_level(film, level, closures, coarse, solutions[-1]))
         except StepFailedError as failure:
-            if not levels and start is not None:
-                return _refined(film, accuracy, settings)
-            if len(levels) < 2:
+            if np.isinf(errors).any():
                 raise _film_error(film, failure, level, closures) from None
             break
-        films.append(films_of(film, levels[-1]))
-        if level == 0:
-            continue
-        # Where the least cell lies jumps from level to level: the change before counts as well.
-        before, change = change, {name: abs(getattr(films[-1], name) - getattr(films[-2], name)) for name in NAMES}
-        errors = {
-            name: SAFETY * max(change[name], 0.5 * before[name]) + ROUNDING * getattr(films[-1], name) for name in NAMES
-        }
-        error = max(errors.values()) / films[-1].central
-        if error <= accuracy:
-            break
+        films.append(films_of(film, solutions[-1]))
+        changes[direction].append(np.abs(films[-1].values - films[-2].values))
+        errors = sum(SAFETY * _latest(change) for change in changes.values()) + ROUNDING * films[-1].values
     try:
-        levels.append(solve_further(levels[-1], settings))
+        solutions.append(solve_further(solutions[-1], settings))
     except StepFailedError as failure:
-        raise _film_error(film, failure, len(films) - 1, closures) from None
+        raise _film_error(film, failure, level, closures) from None
     return _Refined(
-        solved=levels[-1],
-        films=films_of(film, levels[-1]),
-        errors=errors,
-        error=error,
+        solved=solutions[-1],
+        films=films_of(film, solutions[-1]),
+        errors=dict(zip(NAMES, errors.tolist(), strict=True)),
+        error=float(errors.max()) / films[-1].central,
         levels=len(films),
-        newton_steps=sum(solved.solution.newton_steps for solved in levels),
-        linear_steps=sum(solved.solution.linear_steps for solved in levels),
+        newton_steps=sum(solved.solution.newton_steps for solved in solutions),
+        linear_steps=sum(solved.solution.linear_steps for solved in solutions),
     )
+
+
+def _latest(changes: list[FloatArray]) -> FloatArray:
+    """Latest change of each film, at least half the one before: a change may vanish by chance."""
+    return np.asarray(np.maximum(changes[-1], 0.5 * changes[-2])) if len(changes) > 1 else changes[-1]
 
 
 def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) -> tuple[float, float]:
@@ -245,10 +266,8 @@ def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) 
     return first, last
 
 
-def _film_error(film: FilmCase, failure: StepFailedError, level: int, closures: tuple[float, float]) -> FilmError:
+def _film_error(film: FilmCase, failure: StepFailedError, level: Level, closures: tuple[float, float]) -> FilmError:
     """Return the error of a film that has not been found, with the place where it closes."""
-    from contactstudy.film.levels import cells_of
-
     if failure.closed is None:
         return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
     cells = cells_of(film, level, closures)[0]
@@ -260,18 +279,17 @@ def _film_error(film: FilmCase, failure: StepFailedError, level: int, closures: 
 
 
 def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
-    """Return central and least films of a solution, between the cells by parabolas."""
+    """Return central and least films of a solution, between the cells and up to the end faces by parabolas."""
     cells, height = solved.problem.cells, solved.solution.film
     low, high = film.contact_ends
     middle = 0.5 * (low + high)
     within = np.abs(cells.y) < 1.5 * film.reach
-    y = cells.y[within]
-    lows = [_least(y, row) for row in height[:, within]]
-    least = np.array([each.value for each in lows])
-    at_y = np.array([each.position for each in lows])
+    rows = [_least(cells.y, cells.y_edges, row, within) for row in height]
+    least = np.array([minimum.value for minimum in rows])
+    positions = np.array([minimum.position for minimum in rows])
     centre = np.array([np.interp(0.0, cells.y, row) for row in height])
-    first, last = cells.x < middle, cells.x >= middle
-    sides = [_least(cells.x[side], least[side]) for side in (first, last)]
+    first = cells.x < middle
+    sides = [_least(cells.x, cells.x_edges, least, side) for side in (first, ~first)]
     lowest = min(sides)
     return Films(
         central=float(np.interp(middle, cells.x, centre)),
@@ -282,7 +300,7 @@ def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
         first_x=sides[0].position,
         last_x=sides[1].position,
         least_x=lowest.position,
-        least_y=float(np.interp(lowest.position, cells.x, at_y)),
+        least_y=float(np.interp(lowest.position, cells.x, positions)),
     )
 
 
@@ -293,17 +311,18 @@ class _Least(NamedTuple):
     position: float
 
 
-def _least(positions: FloatArray, values: FloatArray) -> _Least:
-    """Least of positive values, by the parabola of their logarithms through the least one and its neighbours."""
-    cell = int(values.argmin())
-    if cell in (0, values.size - 1):
-        return _Least(float(values[cell]), float(positions[cell]))
-    near = slice(cell - 1, cell + 2)
-    scale = positions[cell + 1] - positions[cell - 1]
-    c2, c1, _ = np.polyfit((positions[near] - positions[cell]) / scale, np.log(values[near]), 2)
-    if c2 <= 0:
-        return _Least(float(values[cell]), float(positions[cell]))
-    return _Least(float(values[cell] * np.exp(-(c1**2) / (4 * c2))), float(positions[cell] - 0.5 * c1 / c2 * scale))
+def _least(centres: FloatArray, edges: FloatArray, values: FloatArray, among: BoolArray) -> _Least:
+    """Least of positive values in the least of some cells, by the parabola of the logarithms through three cells."""
+    cell = int(np.where(among, values, np.inf).argmin())
+    first = min(max(cell - 1, 0), values.size - 3)
+    near = slice(first, first + 3)
+    scale = centres[first + 2] - centres[first]
+    parabola = np.polyfit((centres[near] - centres[cell]) / scale, np.log(values[near]), 2)
+    low, high = (edges[[cell, cell + 1]] - centres[cell]) / scale
+    offsets = np.array([low, high, *np.clip(np.roots(np.polyder(parabola)), low, high)])
+    logarithms = np.polyval(parabola, offsets)
+    lowest = int(logarithms.argmin())
+    return _Least(float(np.exp(logarithms[lowest])), float(centres[cell] + scale * offsets[lowest]))
 
 
 def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:

@@ -22,7 +22,7 @@ from contactstudy.case import Case, Roller
 from contactstudy.case.motion import Sliding
 from contactstudy.film import line_contact
 from contactstudy.film.formulas import moes_line
-from contactstudy.film.levels import RESOLUTION, FilmCase, film_on_level
+from contactstudy.film.levels import RESOLUTION, FilmCase, Level, film_on_level
 from contactstudy.film.newton import SETTINGS
 from contactstudy.profiles import Lundberg
 from contactstudy.verification.check import Check, Curve, Reference
@@ -122,7 +122,7 @@ def finite_element_checks(name: str) -> Iterator[Check]:
     """Film between two free ends against the finite elements' on the same cells."""
     stored, problem = load_reference(FILM_FILE, name), FILM_CASES[name]
     lubricated = coarse_film(name)
-    solved = film_on_level(lubricated, 0, lubricated.contact_ends, SETTINGS)
+    solved = film_on_level(lubricated, Level(), lubricated.contact_ends, SETTINGS)
     cells = solved.problem.cells
     fields = {"film": solved.solution.film, "pressure": solved.solution.fluid_pressure}
     computed = xr.Dataset({key: (("x", "y"), field) for key, field in fields.items()}, {"x": cells.x, "y": cells.y})

@@ -50,7 +50,8 @@ def test_derivatives_of_the_flow_are_those_of_differences():
 
 
 def test_least_film_between_cells_is_positive():
-    least = _least(np.array([0.0, 1.0, 2.0]), np.array([0.5, 0.01, 1.0]))
+    centres, edges = np.array([0.0, 1.0, 2.0]), np.array([-0.5, 0.5, 1.5, 2.5])
+    least = _least(centres, edges, np.array([0.5, 0.01, 1.0]), np.ones(3, bool))
     assert 0 < least.value < 0.01
     assert 0.5 < least.position < 1.0
 
