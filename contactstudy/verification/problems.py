@@ -90,29 +90,17 @@ LINE_LOAD = 0.5 * np.pi  # Load per length of the line contact of half-width and
 
 
 @dataclass(frozen=True)
-class Uniform:
-    """The same pressure from end to end."""
-
-    def __call__(self, x: FloatArray) -> FloatArray:
-        """Shape along x."""
-        return np.ones_like(np.asarray(x, dtype=float))
-
-    def __str__(self) -> str:
-        return "g(x) = 1"
-
-
-@dataclass(frozen=True)
 class Linear:
-    """A pressure that falls from 1 at ``x = 0`` with a constant slope."""
+    """A pressure that falls from 1 at ``x = 0`` with a constant slope, or is uniform."""
 
-    slope: float
+    slope: float = 0.0
 
     def __call__(self, x: FloatArray) -> FloatArray:
         """Shape along x."""
         return np.asarray(1 - self.slope * np.asarray(x, dtype=float))
 
     def __str__(self) -> str:
-        return f"g(x) = 1 - {self.slope} x"
+        return f"g(x) = 1 - {self.slope} x" if self.slope else "g(x) = 1"
 
 
 @dataclass(frozen=True)
@@ -240,13 +228,13 @@ class LubricatedCase:
 
 # Loads whose stresses are stored, by name
 LOAD_CASES: dict[str, LoadCase] = {
-    "full": LoadCase(8.0, Uniform()),
+    "full": LoadCase(8.0, Linear()),
     "middle": LoadCase(8.0, Bump(4.0, 2.0)),
     "eccentric": LoadCase(8.0, Bump(1.5, 1.0)),
-    "full_sliding": LoadCase(8.0, Uniform(), friction=0.3),
+    "full_sliding": LoadCase(8.0, Linear(), friction=0.3),
     "eccentric_sliding": LoadCase(8.0, Bump(1.5, 1.0), friction=0.3),
-    "thin": LoadCase(2.5, Uniform()),
-    "plate_sliding": LoadCase(0.5, Uniform(), friction=0.3),
+    "thin": LoadCase(2.5, Linear()),
+    "plate_sliding": LoadCase(0.5, Linear(), friction=0.3),
     "wedge_sliding": LoadCase(4.0, Linear(0.2), friction=0.2, poisson=0.1),
 }
 # Contacts that are stored, by name
