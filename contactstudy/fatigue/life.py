@@ -60,7 +60,7 @@ class LifeExponents:
 
     def __post_init__(self) -> None:
         for name in ("stress", "depth", "weibull"):
-            object.__setattr__(self, name, checks.positive(name, getattr(self, name)))
+            checks.store(self, **{name: checks.positive(name, getattr(self, name))})
 
     def units(self, lengths: int) -> str:
         """Return the unit of the integral of ``stress**c / depth**h`` over 1 or 2 lengths."""
@@ -336,20 +336,18 @@ def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataAr
     return {"orthogonal shear largest at the first or last y": (crest & (inner_amplitude < amplitude)).any(depth)}
 
 
-def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
-    """Integral over the depth of the excess over the limit, over the stress-weighted mean depth."""
+def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, ...]:
+    """Integral over the depth of the excess over the limit, over the stress-weighted mean depth; part beyond."""
     excess = np.clip(stress - limit, 0.0, None) ** exponents.stress
     volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = moment / volume
         density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-    return density, mean
+    return density, mean, _beyond(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
 
 
-def _beyond(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
+def _beyond(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     """Part of a section's risk above the first depth, as if uniform, and below the last one, as if it fell on so."""
-    excess = np.nan_to_num(np.clip(stress - limit, 0.0, None) ** exponents.stress)
-    depth = np.broadcast_to(depth, excess.shape)
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:
@@ -361,7 +359,7 @@ def _beyond(stress: Array, depth: Array, limit: float, exponents: LifeExponents)
         below_last = np.where(tail > 0, tail * (below - above) / np.log(np.maximum(before / tail, 1.0)), 0.0)
         # The mean depth moves as well, by a part as large.
         part = (1 + exponents.depth) * (head * first + below_last) / _integral(excess, depth)
-    return np.where(np.isnan(part), 0.0, part), np.zeros(part.shape)
+    return np.where(np.isnan(part), 0.0, part)
 
 
 def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
@@ -423,15 +421,13 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     def sections(part: xr.DataArray) -> tuple[xr.DataArray, ...]:
         dimension, depth_positions = _depths(part)
         of = partial(_risk_of_sections, limit=threshold, exponents=chosen)
-        return reduce_dims(of, [(part, [dimension]), (depth_positions, [dimension])], 2)
+        return reduce_dims(of, [(part, [dimension]), (depth_positions, [dimension])], 3)
 
-    density, mean = sections(stress)
+    density, mean, beyond = sections(stress)
     result = _along_axis(density, chosen, theory, {"a measure largest at the first or last depth": outside})
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
     error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0]))
-    of = partial(_beyond, limit=threshold, exponents=chosen)
-    beyond, _ = reduce_dims(of, [(stress, [dim]), (depths, [dim])], 2)
     error = error + _over_x(density * beyond).values
     return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, comment=ALONG_X_AND_Z)

@@ -213,7 +213,9 @@ def flash_temperature(
         )
     if roller is not None:
         checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
-    share = None if partition is None else _share(partition)
+    share = None if partition is None else checks.not_negative("partition", partition)
+    if share is not None and share > 1:
+        raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
     if limit is not None:
         limit = checks.positive("limit", limit, "K")
     depths = None if z is None else checks.coordinates("z", z)
@@ -254,7 +256,15 @@ def flash_temperature(
     if temperatures.mismatch > 1e-6:  # larger differences do not count as equal
         text = f"the surfaces' temperatures still differ by {temperatures.mismatch:.2g} of the largest"
         warnings.warn(text, ConvergenceWarning, stacklevel=2)
-    _warn_above(hot, limit)
+    largest = scalars["max_temperature_rise"]
+    if limit is not None and largest > limit:
+        x, y = (1e3 * scalars[f"max_temperature_rise_{axis}"] for axis in "xy")
+        warnings.warn(
+            f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
+            f"limit = {limit:g} K",
+            TemperatureWarning,
+            stacklevel=2,
+        )
     return describe(hot, "flash temperature of a contact")
 
 
@@ -301,14 +311,6 @@ def _pressure_error(solution: xr.Dataset) -> float:
     return error / peak if np.isfinite(peak) and np.isfinite(error) and peak > 0 else float("nan")
 
 
-def _share(partition: object) -> float:
-    """Return a part between nothing and all, or raise."""
-    share = checks.not_negative("partition", partition)
-    if share > 1:
-        raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
-    return share
-
-
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
     """Columns under the roller, pressed ones included, and its insulated ends, moved to borders of cells."""
     if case.roller.ends == "none":
@@ -335,17 +337,3 @@ def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
             offset = 0.5 * (before - after) / bend
             largest, y = float(largest - 0.25 * (before - after) * offset), float(y + offset * grid.dy)
     return {"max_temperature_rise": largest, "max_temperature_rise_x": float(grid.x[i]), "max_temperature_rise_y": y}
-
-
-def _warn_above(hot: xr.Dataset, limit: float | None) -> None:
-    """Warn if the rise exceeds the limit."""
-    largest = float(hot["max_temperature_rise"])
-    if limit is None or largest <= limit:
-        return
-    x, y = (1e3 * float(hot[f"max_temperature_rise_{axis}"]) for axis in "xy")
-    warnings.warn(
-        f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
-        f"limit = {limit:g} K",
-        TemperatureWarning,
-        stacklevel=2,
-    )

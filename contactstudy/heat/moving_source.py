@@ -132,12 +132,6 @@ def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: Ends) ->
     return np.asarray(passed[..., :-1] - passed[..., 1:])
 
 
-def between_offsets(spread: FloatArray, offset: FloatArray, width: float, length: float) -> FloatArray:
-    """Part left at distances along x from the middle of a cell and of its images in both ends: (spread, offset)."""
-    high = _primitive(spread, offset + 0.5 * width, length)
-    return high - _primitive(spread, offset - 0.5 * width, length)
-
-
 def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> FloatArray:
     """Primitive along x of the heat kernel and, for a finite length, of its copies at every second length."""
     distance = np.asarray(distance)
@@ -218,9 +212,13 @@ class SourceOperator:
         offsets[offsets >= x.size] -= self._height
 
         def kernel(first: float) -> ComplexArray:
-            places = first + grid.dx * offsets
-            summed = _summed(spread, lateral, places.size, lambda part: between_offsets(part, places, grid.dx, length))
-            return np.asarray(fft(summed, axis=0))
+            """Part left at distances along x from the middle of a cell and of its images in both ends."""
+            low, high = (first + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
+
+            def factors(part: FloatArray) -> FloatArray:
+                return _primitive(part, high, length) - _primitive(part, low, length)
+
+            return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
         mirror = body.ends.low if np.isfinite(body.ends.low) else body.ends.high

@@ -20,9 +20,6 @@ STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "x
 SPLITS, DEGREE = 2, 5
 
 
-NEAR = 1.0  # Largest distance of the outer position from an end, over the spacing, for a cell that ends on the end
-
-
 def eigenstrain_stress(
     body: Body,
     eigenstrain: xr.Dataset,
@@ -77,20 +74,17 @@ def eigenstrain_stress(
     names = [name for name in STRAINS if name in eigenstrain]
     if not names:
         raise InvalidInputError("eigenstrain", sorted(map(str, eigenstrain)), f"with one of {', '.join(STRAINS)}")
-    positions = {}
-    for axis in ("x", "z"):
+    positions, edges = {}, {}
+    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
         if axis not in eigenstrain.coords:
             raise InvalidInputError("eigenstrain.coords", list(eigenstrain.coords), f"with {axis} (metres)")
         positions[axis] = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
-    edges = {}
-    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
-        if argument is None and positions[axis].size < 2:
+        if argument is not None:
+            edges[axis] = checks.coordinates(f"{axis}_edges", argument)
+        elif positions[axis].size < 2:
             raise InvalidInputError(f"{axis}_edges", None, "given where there is one cell", "its size is not known")
-        edges[axis] = (
-            edges_around(positions[axis], low, high)
-            if argument is None
-            else checks.coordinates(f"{axis}_edges", argument)
-        )
+        else:
+            edges[axis] = edges_around(positions[axis], low, high)
         _check_edges(axis, edges[axis], positions[axis], low, high)
     strain = np.zeros((6, positions["x"].size, positions["z"].size))
     for name in names:
@@ -131,9 +125,8 @@ def _check_edges(axis: str, edges: np.ndarray, centres: np.ndarray, low: float, 
 def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:
     """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
     middle = 0.5 * (positions[1:] + positions[:-1])
-    near = [NEAR * (positions[1] - positions[0]), NEAR * (positions[-1] - positions[-2])]
-    first = low if positions[0] - low <= near[0] else 2 * positions[0] - middle[0]
-    last = high if high - positions[-1] <= near[1] else 2 * positions[-1] - middle[-1]
+    first = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - middle[0]
+    last = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - middle[-1]
     return np.concatenate([[first], middle, [last]])
 
 

@@ -22,7 +22,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -60,20 +60,6 @@ MOST_REPETITIONS = 300  # Bound on the repetitions of a pass
 MIXED = 6  # Latest iterates that are mixed
 
 
-class Residual(Protocol):
-    """Residual stresses (6, cell) from plastic strains (6, cell) that are uniform along y."""
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Return the stresses."""
-
-
-class Along(Protocol):
-    """Residual stresses (6, place, column, layer) from plastic strains that change along y."""
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Return the stresses."""
-
-
 class State(NamedTuple):
     """State of some cells after passes."""
 
@@ -87,9 +73,9 @@ class Passage:
     """A pass over some cells of the cross-section."""
 
     elastic: FloatArray  # (6, place, cell), stress of the contact, Pa
-    residual: Residual  # of the body, strains uniform along y
-    layers: Residual  # of layers without an end
-    along: Along  # of layers, strains that change along y on a closed way
+    residual: Influence | LayerInfluence  # of the body, strains uniform along y
+    layers: LayerInfluence  # without an end
+    along: PeriodicLayers  # strains that change along y on a closed way
     places: int  # on the closed way
     box: tuple[IntArray, IntArray]  # column and layer (cell) in `along`
     yield_stress: FloatArray  # (cell), in tension, Pa
@@ -204,7 +190,7 @@ class _Section:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    def residual(self, cells: IntArray) -> Residual:
+    def residual(self, cells: IntArray) -> Influence | LayerInfluence:
         """Residual stress of plastic strain in some of the cells, in the same ones."""
         if self.layered:
             return self.layers
@@ -328,8 +314,7 @@ def residual_stress(
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     checks.instance("material", material, ElasticPlastic, "a contactstudy.plasticity.ElasticPlastic")
-    passes = checks.count("passes", passes)
-    substeps = checks.count("substeps", substeps)
+    passes, substeps = checks.count("passes", passes), checks.count("substeps", substeps)
     tolerance = checks.positive("tolerance", tolerance)
     section, dims = _section(stress, body, material)
     cells = section.may_flow(np.zeros((6, 1)), NEAR_YIELD)
@@ -371,8 +356,7 @@ def residual_stress(
             ConvergenceWarning,
             stacklevel=2,
         )
-    joined = xr.concat(states, "pass_number")
-    return describe(joined, "what passes of a contact leave")
+    return describe(xr.concat(states, "pass_number"), "what passes of a contact leave")
 
 
 def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_Section, tuple[str, str]]:

@@ -403,16 +403,11 @@ COEFFICIENT = 1e-17
 EXPLICIT_STEPS = 80  # Explicit steps: their error is of first order
 
 
-def sharp_roller() -> tuple[Case, Grid]:
-    """Return a rigid roller with sharp ends inside the face, and cells."""
-    body = FiniteLengthSpace(length=0.6e-3, material=STEEL)
-    case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
-    return case, choose_grid(case, cells_x=3, cells_y=6)
-
-
 def sliding_wear_checks() -> Iterator[Check]:
     """Constant slip."""
-    case, grid = sharp_roller()
+    body = FiniteLengthSpace(length=0.6e-3, material=STEEL)
+    case = Case(body=body, roller=Roller(radius=5e-3, length=0.4e-3), max_pressure=1.5e9)
+    grid = choose_grid(case, cells_x=3, cells_y=6)
     name = "sharp roller inside the face, full sliding"
     distances = [0.0, 3e3, 2e5]
     worn = wear_in(case, COEFFICIENT, distance=distances, grid=grid)
@@ -430,8 +425,8 @@ def sliding_wear_checks() -> Iterator[Check]:
     yield Reference(name, f"{EXPLICIT_STEPS} explicit steps").compare_fields(
         "worn depth early on, over the largest", depth / scale, explicit / scale, 0.01, curve=curve
     )
-    profile = worn_profile(case, worn, distances[1])
-    worn_case = Case(body=case.body, roller=Roller(radius=5e-3, length=0.4e-3, profile=profile), max_pressure=1.5e9)
+    worn_roller = replace(case.roller, profile=worn_profile(case, worn, distances[1]))
+    worn_case = replace(case, roller=worn_roller)
     pressed = grid.dy * solve(worn_case, grid, stresses=False).pressure.sum("y").values
     load = worn.line_load.values[1]
     yield Reference(name, "the contact while it wore").compare_fields(
