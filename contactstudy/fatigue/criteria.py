@@ -212,9 +212,8 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Without the rolling direction: `crossland` (Pa), the sum; `utilisation` (1), that over ``tau_w``;
-        `crossland_shear` and `crossland_hydrostatic` (Pa), the two terms without the factor. Their
-        errors are not estimated (`error_kind`).
+        As of :func:`dang_van`: `crossland` (Pa), the sum; `utilisation`; `crossland_shear` and `crossland_hydrostatic`
+        (Pa), the two terms without the factor.
 
     Raises
     ------
@@ -366,10 +365,9 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Without the rolling direction: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
+        As of :func:`dang_van`: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
         `findley_shear` and `findley_normal` (Pa), ``tau_a`` and ``sigma_n,max`` there; `findley_plane` (..., axis),
-        its unit normal with the components `axis` = x, y, z, turned towards larger depth. Their
-        errors are not estimated (`error_kind`).
+        its unit normal with the components `axis` = x, y, z, turned towards larger depth.
 
     Raises
     ------

@@ -5,10 +5,6 @@ the support, and the smallest ball around the support is one of the circumscribe
 are inside. The radius grows with each step, so the iteration ends with the exact ball.
 Source: E. Welzl, Smallest enclosing disks (balls and ellipsoids), in: New Results and New Trends in Computer Science,
 LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999.
-
-The field along y at one (x, z) is the history of the point there during one passage. A point of the body is unloaded
-before and after: the window of a result shows only part of that. So the unloaded state is added to every history, and
-:func:`window_remainder` measures the stress at the border of the window.
 """
 
 from __future__ import annotations

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import make_interp_spline
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy import checks
@@ -222,7 +223,6 @@ def flash_temperature(
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = frictional_heat(case, solution, grid)
-
     temperatures = _temperatures(case, grid, heat, pressure, body, roller=roller, share=share)
     into_body, into_roller = temperatures.into_body, heat.density - temperatures.into_body
     area = grid.weights * grid.cell_area
@@ -295,11 +295,10 @@ def _temperatures(
 def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
     """Half as many cells along y, and means over them."""
     wider = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
-    summed = np.concatenate([np.zeros((grid.cells_x, 1)), np.cumsum(values, axis=1)], axis=1)
+    summed = np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
     # The border of a wider cell may cut a cell.
-    cuts = np.arange(wider.cells_y + 1) * (grid.cells_y / wider.cells_y)
-    cell = np.minimum(cuts.astype(int), grid.cells_y - 1)
-    at_cuts = summed[:, cell] + (cuts - cell) * values[:, cell]
+    cuts = np.linspace(0, grid.cells_y, wider.cells_y + 1)
+    at_cuts = make_interp_spline(np.arange(grid.cells_y + 1), summed, k=1, axis=1)(cuts)
     return wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y
 
 

@@ -1,14 +1,11 @@
 """Passes of a contact over an elastic-plastic body, until the residual state is stationary.
 
 All points of one (x, z) have the same history: the stress field along y from the leading edge to the trailing edge.
-The state after a pass is uniform along y, with the residual stress of the cross-section (eigenstrain/): no strain along
-y, free ends in the plane. During the pass the plastic strain changes along y from the state ahead of the contact to the
-state behind it, as in a line contact: each column along x acts separately, in plane strain.
-
-In coordinates that move with the contact the pass is steady. Ahead of the contact the state of the former pass is
-uniform along y; behind it the state is uniform again, and between the two the plastic strain changes along y. The
-residual stress at each position depends on the strain at all positions. Two steps alternate until the strain is
-stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
+In coordinates that move with the contact the pass is steady. The states ahead of the contact and behind it are uniform
+along y, with the residual stress of the cross-section (eigenstrain/): no strain along y, free ends in the plane.
+Between the two the plastic strain changes along y, as in a line contact: each column along x acts separately, in plane
+strain. The residual stress at each position depends on the strain at all positions. Two steps alternate until the
+strain is stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
 
 * at fixed total strain, von Mises' radial return along y gives the plastic strain of every point
   (J. C. Simo, T. J. R. Hughes, Computational Inelasticity, 1998, chapter 3);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -65,22 +65,22 @@ class Reference(NamedTuple):
     def compare(
         self,
         quantity: str,
-        computed: float,
-        expected: float,
+        computed: SupportsFloat,
+        expected: SupportsFloat,
         tolerance: float,
         *,
         relative: bool = False,
         curve: Curve | None = None,
     ) -> Check:
         """Compare two numbers."""
-        difference = float(computed) - float(expected)
+        value, reference = float(computed), float(expected)
         return Check(
             case=self.case,
             quantity=f"{quantity}, relative" if relative else quantity,
             source=self.source,
-            computed=float(computed),
-            expected=float(expected),
-            difference=difference / expected if relative else difference,
+            computed=value,
+            expected=reference,
+            difference=(value - reference) / (reference if relative else 1.0),
             tolerance=tolerance,
             curve=curve,
         )

@@ -27,13 +27,12 @@ from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import (
     LINE_LOAD,
-    cell_means,
     components,
     on_cells,
     point_pressure,
     quartic,
     strip,
-    strip_integral,
+    strip_means,
     unit_material,
 )
 
@@ -55,25 +54,20 @@ def hertz_checks() -> Iterator[Check]:
     middle = contact["pressure"].sel(y=0, method="nearest")
     exact = peak * np.sqrt(np.maximum(1 - middle["x"].values ** 2, 0))
     curve = Curve(("x / a", "p / p0"), middle["x"].values, middle.values / peak, exact / peak)
-    largest = float(contact["pressure"].max())
+    largest = contact["pressure"].max()
     yield Reference(case, source).compare("peak pressure", largest, peak, 2e-4, relative=True, curve=curve)
-    yield Reference(case, source).compare("approach", float(contact["approach"]), approach, 1e-4, relative=True)
+    yield Reference(case, source).compare("approach", contact["approach"], approach, 1e-4, relative=True)
 
     long_radius, short_radius = 4.0, 1.0
     ellipse = closed_forms.hertz_ellipse(4 / 3, long_radius, short_radius, 1.0)
-    window = (1.25 * ellipse.long, 1.25 * ellipse.short)
-    gap = on_cells(
-        lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius),
-        (-window[0], window[0]),
-        (-window[1], window[1]),
-        (129, 129),
-    )
+    x_range, y_range = ((-1.25 * axis, 1.25 * axis) for axis in (ellipse.long, ellipse.short))
+    gap = on_cells(lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius), x_range, y_range, (129, 129))
     contact = solve_contact(body, gap, load=4 / 3)
     case = f"Hertz elliptic contact, radii 4 to 1, axes {ellipse.long / ellipse.short:.2f} to 1"
     source = "Hertz; Johnson (1985) 4.26 to 4.32"
-    largest = float(contact["pressure"].max())
+    largest = contact["pressure"].max()
     yield Reference(case, source).compare("peak pressure", largest, ellipse.max_pressure, 2e-4, relative=True)
-    yield Reference(case, source).compare("approach", float(contact["approach"]), ellipse.approach, 1e-4, relative=True)
+    yield Reference(case, source).compare("approach", contact["approach"], ellipse.approach, 1e-4, relative=True)
     touched = contact["pressure"].max("y") > 0
     half_length = 0.5 * float(touched.sum()) * float(gap["x"].diff("x")[0])
     yield Reference(case, source).compare("long semi-axis over its value", half_length / ellipse.long, 1.0, 0.015)
@@ -85,9 +79,9 @@ def hertz_checks() -> Iterator[Check]:
     half_width, peak = closed_forms.hertz_line(load, 0.5, 1.0)
     exact = peak * np.sqrt(np.maximum(1 - (middle["y"].values / half_width) ** 2, 0))
     curve = Curve(("y / a", "p / p0"), middle["y"].values, middle.values, exact)
-    yield Reference("Hertz line contact, middle of a roller of length 56a", "Hertz; Johnson (1985) 4.45").compare(
-        "peak pressure under the load per length there", float(middle.max()), peak, 2e-4, relative=True, curve=curve
-    )
+    case, source = "Hertz line contact, middle of a roller of length 56a", "Hertz; Johnson (1985) 4.45"
+    quantity = "peak pressure under the load per length there"
+    yield Reference(case, source).compare(quantity, middle.max(), peak, 2e-4, relative=True, curve=curve)
 
 
 def circle_checks() -> Iterator[Check]:
@@ -124,7 +118,7 @@ def circle_checks() -> Iterator[Check]:
 def line_checks() -> Iterator[Check]:
     """Stresses in the middle of a long strip under a line contact's pressure, on the top and below."""
     body, length, cells_y, half_window = _half_space(), 2000.0, 160, 1.25
-    pressure = cell_means(strip_integral, (0, length), (-half_window, half_window), (80, cells_y))
+    pressure = strip_means((0, length), (-half_window, half_window), (80, cells_y))
     cell = 2 * half_window / cells_y
     # Edges and middles of cells and points between them, without the last cell in contact and its border.
     edges = -1.25 + cell * np.arange(1, cells_y)
@@ -211,7 +205,7 @@ def plane_checks() -> Iterator[Check]:
         (0.05, 2, 0.0, "plane stress", "sigma_yy", 2e-3),
     ):
         body = FiniteLengthSpace(length=length, material=unit_material(POISSON))
-        pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (cells, 160))
+        pressure = strip_means((0, length), (-1.25, 1.25), (cells, 160))
         x = [0.5 * length] if cells > 2 else [0.0, 0.3 * length, 0.5 * length]
         for friction in (0.0, 0.3):
             stress = stress_field(body, pressure, friction=friction, x=x, y=y, z=z, inside_cells=pressure)
@@ -241,16 +235,9 @@ def plate_contact_checks() -> Iterator[Check]:
     pressure = contact["pressure"].mean("x")
     half_width, peak = closed_forms.hertz_line(LINE_LOAD, 0.5, material.young)
     exact = peak * np.sqrt(np.maximum(1 - (gap["y"].values / half_width) ** 2, 0))
-    yield Reference(
-        "rigid cylinder on a body of length 0.05a", "Hertz with plane stress modulus E; Johnson (1985) 4.45"
-    ).compare(
-        "peak pressure",
-        float(pressure.max()),
-        peak,
-        1e-3,
-        relative=True,
-        curve=Curve(("y / a", "p / p0"), gap["y"].values, pressure.values, exact),
-    )
+    curve = Curve(("y / a", "p / p0"), gap["y"].values, pressure.values, exact)
+    case, source = "rigid cylinder on a body of length 0.05a", "Hertz with plane stress modulus E; Johnson (1985) 4.45"
+    yield Reference(case, source).compare("peak pressure", pressure.max(), peak, 1e-3, relative=True, curve=curve)
 
 
 def body_checks() -> Iterator[Check]:
@@ -310,14 +297,8 @@ def equilibrium_checks() -> Iterator[Check]:
         points: dict[str, Any] = {name: [value] for name, value in centre.items()} | {axis: centre[axis] + offsets}
         stress = stress_field(body, pressure, friction=friction, **points, inside_cells=pressure)
         slopes[axis] = {name: float(weights @ stress[name].values.ravel()) for name in STRESSES}
-    divergence = [
-        sum(slopes[axis][name] for axis, name in zip("xyz", names, strict=True))
-        for names in (
-            ("sigma_xx", "tau_xy", "tau_xz"),
-            ("tau_xy", "sigma_yy", "tau_yz"),
-            ("tau_xz", "tau_yz", "sigma_zz"),
-        )
-    ]
+    rows = ("sigma_xx", "tau_xy", "tau_xz"), ("tau_xy", "sigma_yy", "tau_yz"), ("tau_xz", "tau_yz", "sigma_zz")
+    divergence = [sum(slopes[axis][name] for axis, name in zip("xyz", row, strict=True)) for row in rows]
     size = max(abs(value) for by_name in slopes.values() for value in by_name.values())
     case = "smooth strip load, f = 0.3, L = 4a"
     yield Reference(f"{case}, 0.3a from the end", "equilibrium").compare_fields(
@@ -366,12 +347,10 @@ def reciprocity_checks() -> Iterator[Check]:
         body, span, cells = _finite(length), (0, length), (48, 32)
         first = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
         second = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
-        work = float((first * surface_displacement(body, second)).sum())
-        other = float((second * surface_displacement(body, first)).sum())
-        case = f"two loads on a body of length {length:g}a"
-        yield Reference(case, "Betti").compare(
-            "work of one on the other's displacement", work, other, 1e-9, relative=True
-        )
+        work = (first * surface_displacement(body, second)).sum()
+        other = (second * surface_displacement(body, first)).sum()
+        case, quantity = f"two loads on a body of length {length:g}a", "work of one on the other's displacement"
+        yield Reference(case, "Betti").compare(quantity, work, other, 1e-9, relative=True)
 
 
 def alternation_checks() -> Iterator[Check]:
