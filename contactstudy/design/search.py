@@ -115,9 +115,7 @@ class Evaluations:
 
     def parameters(self, parts: FloatArray) -> dict[str, float]:
         """Return the parameters at parts of their ranges."""
-        return {
-            name: bounds.value(float(part)) for (name, bounds), part in zip(self.ranges.items(), parts, strict=True)
-        }
+        return {name: self.ranges[name].value(float(part)) for name, part in zip(self.ranges, parts, strict=True)}
 
     def _solved(self, parts: FloatArray) -> Design:
         """Solve every case of a design."""
@@ -142,9 +140,8 @@ class Evaluations:
         try:
             return self.profile(**parameters)
         except TypeError as error:
-            raise InvalidInputError(
-                "bounds", list(parameters), "of the keywords that profile takes", str(error)
-            ) from None
+            allowed = "of the keywords that profile takes"
+            raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
 
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""

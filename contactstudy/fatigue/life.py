@@ -108,9 +108,9 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
             raise InvalidInputError(
                 "reference", f"{name} = {reference_value}", f"computed as risk was, {name} = {value}"
             )
-    numbers, reference_numbers = risk["risk"], reference["risk"]
+    risks, references = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
-    ratio = (reference_numbers / numbers.where(numbers > 0)).where((numbers != 0) | (reference_numbers == 0), np.inf)
+    ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
     life = named("relative_life", ratio ** (1 / chosen.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
@@ -205,18 +205,13 @@ def _over_x(density: xr.DataArray) -> xr.DataArray:
     return risk.reset_coords(drop=True)
 
 
-def _halves(size: int, axis: str) -> list[IntArray]:
-    """Every second position; along x, over which is integrated, with the last one, and else of both kinds."""
-    if axis == "x":
-        return [np.unique(np.append(np.arange(0, size, 2), size - 1))]
-    return [np.arange(start, size, 2) for start in (0, 1)]
-
-
 def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[Data], xr.DataArray]) -> Array:
     """Sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
     for axis, dim in axis_dimensions(of).items():
-        parts = _halves(of.sizes[dim], axis)
+        parts = [np.arange(start, of.sizes[dim], 2) for start in (0, 1)]
+        if axis == "x":  # over which is integrated: with the last one
+            parts = [np.unique(np.append(parts[0], of.sizes[dim] - 1))]
         # Least number of every second position along an axis for an error estimate; along x a risk needs two
         if any(part.size < 3 for part in parts):
             return np.full(risk.shape, np.inf)

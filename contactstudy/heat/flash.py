@@ -52,9 +52,8 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
                 f"{_side(traction)} body_speed, {body_speed:g}: friction drags the body the way the roller slides",
                 "speeds are along +y",
             )
-        return FrictionalHeat(
-            density, float((area * traction).sum() * (roller_speed - body_speed)), body_speed, roller_speed
-        )
+        power = float((area * traction).sum() * (roller_speed - body_speed))
+        return FrictionalHeat(density, power, body_speed, roller_speed)
     return _rolling_heat(case, motion, solution, area)
 
 
@@ -72,12 +71,8 @@ def _rolling_heat(case: Case, motion: Rolling, solution: xr.Dataset, area: Float
     q_x, s_x, q_y, s_y = (
         labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names
     )
-    creepage = (
-        float(solution["longitudinal_creepage"])
-        if "longitudinal_creepage" in solution
-        else motion.longitudinal_creepage
-    )
-    speeds = motion.speeds_at(float(creepage or 0.0))
+    creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
+    speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
     speed = -speeds.entrainment
     density = speed * np.maximum(q_x * s_x + q_y * s_y, 0.0)
     return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)

@@ -85,7 +85,13 @@ def eigenstrain_stress(
             raise InvalidInputError(f"{axis}_edges", None, "given where there is one cell", "its size is not known")
         else:
             edges[axis] = edges_around(positions[axis], low, high)
-        _check_edges(axis, edges[axis], positions[axis], low, high)
+        centres, around = positions[axis], edges[axis]
+        if around.size != centres.size + 1 or (np.diff(around) <= 0).any():
+            raise InvalidInputError(f"{axis}_edges", around, f"{centres.size + 1} edges, increasing (metres)")
+        if around[0] < low or around[-1] > high:
+            raise InvalidInputError(f"{axis}_edges", around, f"inside the body, {low:g} to {high:g} m")
+        if (centres < around[:-1]).any() or (centres > around[1:]).any():
+            raise InvalidInputError(f"{axis}_edges", around, "such that each cell holds its position")
     strain = np.zeros((6, positions["x"].size, positions["z"].size))
     for name in names:
         values = np.asarray(eigenstrain[name].transpose("x", "z").values, dtype=np.float64)
@@ -110,16 +116,6 @@ def eigenstrain_stress(
         coords=axes,
     )
     return describe(result, "residual stress")
-
-
-def _check_edges(axis: str, edges: np.ndarray, centres: np.ndarray, low: float, high: float) -> None:
-    """Raise unless cells with these edges are inside the body, each around its position."""
-    if edges.size != centres.size + 1 or (np.diff(edges) <= 0).any():
-        raise InvalidInputError(f"{axis}_edges", edges, f"{centres.size + 1} edges, increasing (metres)")
-    if edges[0] < low or edges[-1] > high:
-        raise InvalidInputError(f"{axis}_edges", edges, f"inside the body, {low:g} to {high:g} m")
-    if (centres < edges[:-1]).any() or (centres > edges[1:]).any():
-        raise InvalidInputError(f"{axis}_edges", edges, "such that each cell holds its position")
 
 
 def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:

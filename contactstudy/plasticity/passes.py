@@ -241,10 +241,8 @@ class _Section:
 
     def may_flow(self, residual: FloatArray, part: float) -> IntArray:
         """Cells whose von Mises stress passes a part of their yield stress at some instant."""
-        size = np.max(
-            [length(deviator(self.elastic[:, position] + residual)) for position in range(self.y.size)], axis=0
-        )
-        return np.flatnonzero(size * np.sqrt(1.5) > part * self.yield_stress)
+        sizes = [length(deviator(self.elastic[:, position] + residual)) for position in range(self.y.size)]
+        return np.flatnonzero(np.max(sizes, axis=0) * np.sqrt(1.5) > part * self.yield_stress)
 
 
 def residual_stress(
@@ -341,9 +339,8 @@ def residual_stress(
                 "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
             )
         state = after
-        states.append(
-            _to_dataset(section, dims, state, residual, displaced, grown=grown).expand_dims(pass_number=[number])
-        )
+        left = _to_dataset(section, dims, state, residual, displaced, grown=grown)
+        states.append(left.expand_dims(pass_number=[number]))
         # Stress of a pass' flow, over the tolerance times the yield stress, below which the state is stationary
         if 3 * body.material.shear_modulus * grown <= 2.0 * tolerance * section.yield_stress.min():
             break

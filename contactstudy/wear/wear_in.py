@@ -165,8 +165,9 @@ class Stepper:
 
     def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
         """Go on to a distance; after each step give its state and the length of the next."""
-        # Length over the first one below which a step is taken in spite of its error, which is stated
-        least = 1e-6 * min(step, until - state.distance)
+        least = 1e-6 * min(
+            step, until - state.distance
+        )  # Shorter steps are taken in spite of their error, stated
         while state.distance < until:
             remaining = until - state.distance
             length = min(step, remaining)
