@@ -94,12 +94,10 @@ def extra_deflection_checks() -> Iterator[Check]:
             float(surface_displacement(body, load)[40, 4])
             for body in (QuarterSpace(material=material), HalfSpace(material=material))
         )
-        yield Reference(f"point load at 40 cells from the edge, nu = {poisson:g}", COMPUTED).compare(
-            "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)",
-            (quarter - half) * 2 * np.pi * grid.x[40],
-            expected,
-            5e-4,
-        )
+        case = f"point load at 40 cells from the edge, nu = {poisson:g}"
+        kappa = (quarter - half) * 2 * np.pi * grid.x[40]
+        quantity = "kappa, the edge's deflection over (1 - nu^2) P / (2 pi E d)"
+        yield Reference(case, COMPUTED).compare(quantity, kappa, expected, 5e-4)
 
 
 def resultant_checks() -> Iterator[Check]:
@@ -126,11 +124,9 @@ def corner_checks() -> Iterator[Check]:
     pressure = on_cells(lambda x, y: (x < 5) + 0 * y, (0, 6), (-width, width), (48, 12))
     stress = stress_field(body, pressure, x=[0.05], y=[0.0], z=[0.05]).isel(x=0, y=0, z=0)
     case = "uniform pressure on a long strip up to the edge, 0.05 from the corner"
-    yield Reference(case, "uniaxial compression, " + EXACT_LIMIT).compare_fields(
-        "sigma_xx, sigma_zz, tau_xz / p",
-        [stress["sigma_xx"], stress["sigma_zz"], stress["tau_xz"]],
-        [0.0, -1.0, 0.0],
-        0.02,
+    in_plane = [stress[name] for name in ("sigma_xx", "sigma_zz", "tau_xz")]
+    yield Reference(case, f"uniaxial compression, {EXACT_LIMIT}").compare_fields(
+        "sigma_xx, sigma_zz, tau_xz / p", in_plane, [0.0, -1.0, 0.0], 0.02
     )
     source, expected = f"p sqrt(1 - nu + nu^2), {EXACT_LIMIT}", np.sqrt(1 - poisson + poisson**2)
     yield Reference(case, source).compare("von Mises stress / p", von_mises(stress), expected, 0.02)
@@ -142,13 +138,11 @@ def antiplane_checks() -> Iterator[Check]:
     system = EquationSet.build(modes, 1e-9, 0.3, 1e-2, Resolution())
     spectrum = modes.load_weights * modes.cosine(np.array([1.0]))[:, 0]
     near = system.depth > 1e-3  # below the wavelength along y there is always some
-    scale = np.abs(system.source(Load.NORMAL, spectrum)[near]).max()
-    yield Reference("traction along y that does not vary along y", EXACT_LIMIT).compare_fields(
-        "load asked of the end, over that for an equal pressure",
-        system.source(Load.ALONG_Y, spectrum)[near] / scale,
-        0.0,
-        1e-4,
-    )
+    under_traction, under_pressure = (system.source(load, spectrum)[near] for load in (Load.ALONG_Y, Load.NORMAL))
+    computed = under_traction / np.abs(under_pressure).max()
+    quantity = "load asked of the end, over that for an equal pressure"
+    case = "traction along y that does not vary along y"
+    yield Reference(case, EXACT_LIMIT).compare_fields(quantity, computed, 0.0, 1e-4)
 
 
 POISSON = 0.3  # Of every body here, unless a check states another
@@ -200,14 +194,10 @@ def wedge_checks() -> Iterator[Check]:
         "tau_xz": radial * np.cos(angle) * np.sin(angle),
         "tau_yz": zero,
     }
-    yield Reference(
-        "line load P on the edge of a quarter space, a and more away", "Michell (1900); Timoshenko and Goodier, wedge"
-    ).compare_fields(
-        "six stresses a / P",
-        components(stress),
-        components(exact),
-        0.02,
-        curve=Curve(("z / a", "sigma_zz a / P, x = 0"), z, stress["sigma_zz"].values[0], exact["sigma_zz"][0]),
+    curve = Curve(("z / a", "sigma_zz a / P, x = 0"), z, stress["sigma_zz"].values[0], exact["sigma_zz"][0])
+    case = "line load P on the edge of a quarter space, a and more away"
+    yield Reference(case, "Michell (1900); Timoshenko and Goodier, wedge").compare_fields(
+        "six stresses a / P", components(stress), components(exact), 0.02, curve=curve
     )
 
 
@@ -226,10 +216,10 @@ def mirror_checks() -> Iterator[Check]:
             float(surface_displacement(QuarterSpace(material=material, model=model), load)[0].max())
             for model in ("exact", "mirror")
         )
-        yield Reference(
-            f"narrow load up to the edge, half-width 0.03 of its length, nu = {poisson:g}",
-            "Guilbault (2011), second-hand: against finite elements",
-        ).compare("error of the largest edge displacement of a mirrored load", mirror / exact - 1, expected, 0.01)
+        case = f"narrow load up to the edge, half-width 0.03 of its length, nu = {poisson:g}"
+        source = "Guilbault (2011), second-hand: against finite elements"
+        quantity = "error of the largest edge displacement of a mirrored load"
+        yield Reference(case, source).compare(quantity, mirror / exact - 1, expected, 0.01)
 
 
 FINITE_ELEMENTS = "finite elements (scikit-fem), own error {:.0e} {}"  # Source of the checks, with error and unit
@@ -255,13 +245,8 @@ def stress_checks(name: str) -> Iterator[Check]:
     stress = stress_field(body, load, friction=case.friction, **points, inside_cells=load)
     computed, expected = components(stress), components(below.transpose("x", "y", "z"))
     label = f"{name}: L = {case.length:g}a, f = {case.friction:g}, nu = {case.poisson:g}, {case.g}"
-    profile = {"x": 0.0, "y": 0.75}
-    curve = Curve(
-        ("z / a", "sigma_yy / p0, x = 0, y = 0.75a"),
-        points["z"],
-        stress["sigma_yy"].sel(profile).values,
-        below["sigma_yy"].sel(profile).values,
-    )
+    profiles = (fields["sigma_yy"].sel(x=0.0, y=0.75).values for fields in (stress, below))
+    curve = Curve(("z / a", "sigma_yy / p0, x = 0, y = 0.75a"), points["z"], *profiles)
     quantity = f"six stresses / p0, z >= {float(below['z'].min()):g}a"
     source = FINITE_ELEMENTS.format(below.attrs["error_estimate"], "p0")
     yield Reference(label, source).compare_fields(quantity, computed, expected, 1e-3, curve=curve)

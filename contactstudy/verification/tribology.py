@@ -83,13 +83,9 @@ def carter_checks() -> Iterator[Check]:
         computed, expected = rolled["traction_y"].values[inside] / peak, closed_forms.carter_traction(y, stick)
         # The traction has a vertical slope where slip begins, between two cells.
         smooth = np.abs(y - (1 - 2 * stick)) > 2 * step
-        yield Reference(case, source).compare_fields(
-            "traction / (f p0), two cells from where slip begins",
-            computed[smooth],
-            expected[smooth],
-            0.01,
-            curve=Curve(("y / a", "q / (f p0)"), y, computed, expected),
-        )
+        curve = Curve(("y / a", "q / (f p0)"), y, computed, expected)
+        quantity = "traction / (f p0), two cells from where slip begins"
+        yield Reference(case, source).compare_fields(quantity, computed[smooth], expected[smooth], 0.01, curve=curve)
 
 
 def slope_checks(*, full: bool) -> Iterator[Check]:

@@ -165,9 +165,7 @@ class Stepper:
 
     def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
         """Go on to a distance; after each step give its state and the length of the next."""
-        least = 1e-6 * min(
-            step, until - state.distance
-        )  # Shorter steps are taken in spite of their error, stated
+        least = 1e-6 * min(step, until - state.distance)  # Shorter steps are taken in spite of their error, stated
         while state.distance < until:
             remaining = until - state.distance
             length = min(step, remaining)
