@@ -136,10 +136,8 @@ def _solved(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
 
 
 def fit_errors(nodes: Nodes, length: float) -> FloatArray:
-    """Errors (2, approach, tilt) of load over load, moment over load and length: at and up to the next nodes.
-
-    They are residuals, and differences from splines of another degree and on fewer nodes.
-    """
+    """Errors (2, approach, tilt) of load over load, moment over load and length: at and up to the next nodes."""
+    # Residuals, and differences from splines of another degree and on fewer nodes.
     spline, lower = EnergySpline.fitted(nodes), EnergySpline.fitted(nodes, LOWER)
     pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
     residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)

@@ -116,9 +116,8 @@ class ContactLaw:
 
     Notes
     -----
-    The law interpolates the strain energy U. The load ``Q = dU/d delta`` and the moment ``M = dU/d theta`` are its
-    derivatives, so the stiffness matrix is symmetric and is the exact derivative of load and moment, as Newton's method
-    for the equilibrium of a bearing needs.
+    The law interpolates the strain energy U. Load ``Q = dU/d delta`` and moment ``M = dU/d theta`` derive from it, so
+    the stiffness matrix is symmetric and their exact derivative, as Newton's method for a bearing's equilibrium needs.
 
     Examples
     --------
@@ -233,10 +232,7 @@ class ContactLaw:
         return with_position_errors(dataset(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
-        """Load, moment and stiffness as plain arrays, at pairs inside the table.
-
-        Outside the table the law extrapolates without a warning; check the end of an iteration.
-        """
+        """Load, moment and stiffness as plain arrays, at pairs inside the table: outside, the law extrapolates."""
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 
     def position(self, load: float, moment: float) -> tuple[float, float]:

@@ -51,10 +51,7 @@ def rolling_dimension(stress: xr.DataArray) -> str:
 def over_history(
     function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, outputs: int
 ) -> tuple[xr.DataArray, ...]:
-    """Apply a function of histories to every material point of a result; NaN where a study is padded.
-
-    It maps (point, instant, 6), the last instant unloaded, to two or more arrays (point).
-    """
+    """Map the histories (point, instant, 6) of a result, the last instant unloaded, to two or more arrays (point)."""
     tensor, rolling = histories(stress)
 
     def apply(values: Array) -> tuple[Array, ...]:
@@ -79,9 +76,9 @@ def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> x
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     """Stress at the window's borders in y over the largest of the passage: how much of a history is left out.
 
-    Every fatigue measure here takes the unloaded state as part of the history, so the remainder matters only where
-    an extreme lies beyond the window. The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface,
-    and move out to ``y = z / sqrt(3)`` at depths of several half-widths.
+    The unloaded state is part of every history, so the remainder matters only where an extreme lies beyond the window.
+    The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at
+    depths of several half-widths.
 
     Parameters
     ----------

@@ -377,11 +377,10 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     Returns
     -------
     Dataset
-        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`) and
-        `risk_error`, and `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit. The error counts the
-        positions along x and z, and the parts above the first and below the last depth; it neglects the positions along
-        y of the measure, and the pressure. Halve the distance along y to find its effect: the risk grows with the
-        stress to the power of some 10.
+        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean_depth` (m) ``z'`` along x,
+        NaN where nothing exceeds the limit. The error counts the positions along x and z, and the parts above the first
+        and below the last depth; it neglects the positions along y of the measure, and the pressure. Halve the distance
+        along y to find its effect: the risk grows with the stress to the power of some 10.
 
     Raises
     ------

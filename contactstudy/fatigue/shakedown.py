@@ -91,8 +91,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         yields in the first passage; `shakedown_stress` (Pa), the k below which it yields in every passage whatever
         residual stress yy (and xx) it has; `residual_sigma_yy` and, if `axial`, `residual_sigma_xx` (Pa), the
         residual stress with which that k suffices. The largest `shakedown_stress` over x and z is a rigorous bound:
-        a perfectly plastic body (von Mises) with a larger k shakes down. The error of values at points is not
-        estimated; :func:`shakedown_limit` estimates it.
+        a perfectly plastic body (von Mises) with a larger k shakes down; :func:`shakedown_limit` estimates its error.
 
     Raises
     ------

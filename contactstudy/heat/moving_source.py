@@ -88,10 +88,7 @@ class Ends(NamedTuple):
 
 
 def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of the integral over the length of spreading s; ``drift = V / (2 kappa)``, 1/m.
-
-    Heat that has spread by s has moved by ``drift s**2 / 2``.
-    """
+    """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
     # Cells of the window drift out of it; after that their heat is gone when it no longer reaches back.
     # Length of spreading over the window at which a source at rest is cut off; the remainder is 1e-8

@@ -98,10 +98,7 @@ class Passage:
         return State(before.strain + plastic[:, -1], accumulated, before.converged and converged)
 
     def _evaluate(self, flowed: FloatArray) -> FloatArray:
-        """Residual stress (6, place, cell) of this pass's plastic strain (6, place, cell), columns in plane strain.
-
-        The correction to the whole body grows with the part of the final strain that the pass has made.
-        """
+        """Residual stress (6, place, cell) of this pass's plastic strain (6, place, cell), columns in plane strain."""
         last = flowed[:, -1]
         column, layer = self.box
         inside = np.zeros((6, self.places, column.max() + 1, layer.max() + 1))
@@ -111,6 +108,7 @@ class Passage:
         ramp = np.clip(2 - 2 * (np.arange(places) + 0.5) / places, 0.0, 1.0)
         inside[:, behind:, column, layer] = (ramp**2 * (3 - 2 * ramp))[:, None] * last[:, None]
         stress = self.along.stresses(inside)[:, :behind, column, layer]
+        # The correction to the whole body grows with the part of the final strain that the pass has made.
         size = float(DOUBLED @ (last**2).sum(axis=1))
         if size:
             share = np.einsum("i,ipc,ic->p", DOUBLED, flowed, last) / size
