@@ -37,7 +37,7 @@ from contactstudy.analysis.peaks import interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named, required_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
-from contactstudy.eigenstrain.stress_function import Splines
+from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.fatigue.history import FEWEST_POSITIONS, enclosing_balls, histories, of_points, over_history
 
@@ -167,7 +167,6 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         return _of_study(stress, swept, axial=axial)
     case = single_case(stress)
     rolling = dimension_along(case["tau_yz"], "y")
-    names = list(STRESSES)
     # One of the two halves of the instants lacks the one that matters most.
     enough = case.sizes[rolling] >= FEWEST_FOR_ERROR
     samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if enough)]
@@ -179,7 +178,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             return shakedown(points, axial=axial)[variable]
 
         largest, *halves = (
-            interpolated_peak(sample, names, field[variable], between)
+            interpolated_peak(sample, list(STRESSES), field[variable], between)
             for sample, field in zip(samples, fields, strict=True)
         )
         if not enough:
@@ -354,10 +353,7 @@ def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list
     size = 0.5 * (along_x.edges[-1] - along_x.edges[0]), 0.5 * along_z.edges[-1]
     # Both sides scaled to a length of about an element make the coefficients stresses.
     step = [half / max(splines.edges.size - 1, 1) for half, splines in zip(size, (along_x, along_z), strict=True)]
-    values_x, values_z = (
-        [sparse.csr_matrix(splines.values(points, derivative)) for derivative in range(3)]
-        for splines, points in ((along_x, x), (along_z, z))
-    )
+    values_x, values_z = StressFunction(along_x, along_z).values(x, z)
     unit = step[0] * step[1]
     return [
         sparse.csr_matrix(sign * unit * sparse.kron(values_x[i], values_z[j]))
