@@ -58,8 +58,8 @@ class Axis:
         """Axis with one spline more than nodes, its knots by de Boor's means."""
         degree = min(degree, nodes.size - 1)
         inner = [nodes[first : first + degree - 1].mean() for first in range(1, nodes.size - degree + 1)]
-        ends = (np.repeat(end, degree + 1) for end in (nodes[0], nodes[-1]))
-        return cls(np.concatenate([next(ends), inner, next(ends)]), degree)
+        first, last = (np.repeat(end, degree + 1) for end in nodes[[0, -1]])
+        return cls(np.concatenate([first, inner, last]), degree)
 
     def __call__(self, points: FloatArray, derivative: int = 0) -> FloatArray:
         """Every spline at every point: array (point, spline)."""
@@ -136,13 +136,12 @@ def _solved(rows: list[tuple[FloatArray, FloatArray]]) -> FloatArray:
 
 
 def fit_errors(nodes: Nodes, length: float) -> FloatArray:
-    """Errors (2, approach, tilt) of load over load, moment over load and length: at and up to the next nodes.
-
-    They are residuals, and differences from splines of another degree and on fewer nodes.
-    """
+    """Errors (2, approach, tilt) of load over load, moment over load and length: at and up to the next nodes."""
+    # Residuals, and differences from splines of another degree and on fewer nodes.
     spline, lower = EnergySpline.fitted(nodes), EnergySpline.fitted(nodes, LOWER)
-    residual = _differences(spline(*_pairs(nodes.approaches, nodes.tilts)), nodes.load, nodes.moment, length)
-    pairs = _pairs(np.exp(_finer(np.log(nodes.approaches))), _finer(nodes.tilts))
+    pairs = np.meshgrid(nodes.approaches, nodes.tilts, indexing="ij")
+    residual = _differences(spline(*pairs), nodes.load, nodes.moment, length)
+    pairs = np.meshgrid(np.exp(_finer(np.log(nodes.approaches))), _finer(nodes.tilts), indexing="ij")
     lowered = lower(*pairs)
     degree = _differences(spline(*pairs), lowered.load, lowered.moment, length)
     # Largest value from each node to its neighbours, of values on finer steps.
@@ -150,17 +149,11 @@ def fit_errors(nodes: Nodes, length: float) -> FloatArray:
     lines, residuals = np.arange(nodes.approaches.size), []
     for line in lines[1:-1]:
         fewer, removed = nodes.approached(lines != line), nodes.approached(lines == line)
-        motion = EnergySpline.fitted(fewer)(*_pairs(removed.approaches, removed.tilts))
+        motion = EnergySpline.fitted(fewer)(*np.meshgrid(removed.approaches, removed.tilts, indexing="ij"))
         residuals.append(_differences(motion, removed.load, removed.moment, length))
     return np.asarray(
         np.maximum(residual, SAFETY * (about + np.concatenate([residuals[0], *residuals, residuals[-1]], axis=1)))
     )
-
-
-def _pairs(approaches: FloatArray, tilts: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Every approach with every tilt."""
-    delta, theta = np.meshgrid(approaches, tilts, indexing="ij")
-    return delta, theta
 
 
 def _finer(nodes: FloatArray) -> FloatArray:

@@ -56,9 +56,8 @@ def map_pairs(
     first: xr.DataArray, second: xr.DataArray, function: Callable[[float, float], tuple[float, float]]
 ) -> tuple[xr.DataArray, xr.DataArray]:
     """Two values of a function at every pair of arguments."""
-    results = [function(float(a), float(b)) for a, b in zip(first.values.ravel(), second.values.ravel(), strict=True)]
-    first_values, second_values = np.array(results, dtype=np.float64).reshape(-1, 2).T
-    return first.copy(data=first_values.reshape(first.shape)), second.copy(data=second_values.reshape(second.shape))
+    values = np.vectorize(function, otypes="dd")(first.values, second.values)
+    return first.copy(data=values[0]), second.copy(data=values[1])
 
 
 def with_position_errors(motion: xr.Dataset) -> xr.Dataset:
@@ -74,9 +73,7 @@ def with_position_errors(motion: xr.Dataset) -> xr.Dataset:
     return motion.assign({name: named(name, error.drop_attrs()) for name, error in errors.items()})
 
 
-def dataset(
-    approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: tuple[FloatArray, FloatArray]
-) -> xr.Dataset:
+def dataset(approach: xr.DataArray, tilt: xr.DataArray, motion: Motion, errors: FloatArray) -> xr.Dataset:
     """Label loads and stiffness at pairs of approach and tilt; `errors` of load and moment are over the load."""
     values = {
         "approach": approach.values,
@@ -119,9 +116,8 @@ class ContactLaw:
 
     Notes
     -----
-    The law interpolates the strain energy U. The load ``Q = dU/d delta`` and the moment ``M = dU/d theta`` are its
-    derivatives, so the stiffness matrix is symmetric and is the exact derivative of load and moment, as Newton's method
-    for the equilibrium of a bearing needs.
+    The law interpolates the strain energy U. Load ``Q = dU/d delta`` and moment ``M = dU/d theta`` derive from it, so
+    the stiffness matrix is symmetric and their exact derivative, as Newton's method for a bearing's equilibrium needs.
 
     Examples
     --------
@@ -236,10 +232,7 @@ class ContactLaw:
         return with_position_errors(dataset(delta, theta, self.motion(*pairs), self.errors(*pairs)))
 
     def motion(self, approach: FloatArray, tilt: FloatArray) -> Motion:
-        """Load, moment and stiffness as plain arrays, at pairs inside the table.
-
-        Outside the table the law extrapolates without a warning; check the end of an iteration.
-        """
+        """Load, moment and stiffness as plain arrays, at pairs inside the table: outside, the law extrapolates."""
         return self._spline(np.asarray(approach, dtype=np.float64), np.asarray(tilt, dtype=np.float64))
 
     def position(self, load: float, moment: float) -> tuple[float, float]:
@@ -248,9 +241,8 @@ class ContactLaw:
 
         load = checks.positive("normal_load", load, "N")
         (low, high), (least, most) = self._range("approach"), self._range("tilt")
-        length = float(self.table["contact_length"])
-        loads, moments = (self.table[name].transpose("approach", "tilt").values for name in ("normal_load", "moment"))
-        distance = np.hypot(loads / load - 1, (moments - moment) / (load * length))
+        length, nodes = float(self.table["contact_length"]), self._nodes
+        distance = np.hypot(nodes.load / load - 1, (nodes.moment - moment) / (load * length))
         line, column = np.unravel_index(int(distance.argmin()), distance.shape)
         size = np.array([high, most - least])
 
@@ -264,14 +256,14 @@ class ContactLaw:
             return np.asarray(np.array([[motion.normal, motion.coupling], turned]) / load * size)
 
         bounds = (np.array([low, least]) / size, np.array([high, most]) / size)
-        start = np.array([float(self.table["approach"][line]), float(self.table["tilt"][column])]) / size
+        start = np.array([nodes.approaches[line], nodes.tilts[column]]) / size
         start = np.clip(start, bounds[0] + EDGE, bounds[1] - EDGE)
         solution = least_squares(residual, start, slopes, bounds=bounds, xtol=1e-14, ftol=1e-14, gtol=1e-14)
         if np.abs(solution.fun).max() > MET:
             raise InvalidInputError(
                 "normal_load, moment",
                 (load, moment),
-                f"of a contact in the table, whose loads go from {loads.min():.4g} to {loads.max():.4g} N "
+                f"of a contact in the table, whose loads go from {nodes.load.min():.4g} to {nodes.load.max():.4g} N "
                 f"and tilts from {least:g} to {most:g} rad",
                 "make the table for larger approaches or tilts",
             )
@@ -282,27 +274,29 @@ class ContactLaw:
         """First and last approach or tilt."""
         return float(self.table[name][0]), float(self.table[name][-1])
 
+    def _at_nodes(self, name: str) -> FloatArray:
+        """Values (approach, tilt) of a variable of the table."""
+        return self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
+
+    @cached_property
+    def _nodes(self) -> Nodes:
+        fields = (self._at_nodes(name) for name in ("strain_energy", "normal_load", "moment"))
+        return Nodes(self.table["approach"].values, self.table["tilt"].values, *fields)
+
     @cached_property
     def _spline(self) -> EnergySpline:
-        """The interpolation."""
-        values = [self.table[name].transpose("approach", "tilt").values for name in ("strain_energy", "normal_load")]
-        moment = self.table["moment"].transpose("approach", "tilt").values
-        return EnergySpline.fitted(
-            Nodes(self.table["approach"].values, self.table["tilt"].values, values[0], values[1], moment)
-        )
+        return EnergySpline.fitted(self._nodes)
 
-    def errors(self, approach: FloatArray, tilt: FloatArray) -> tuple[FloatArray, FloatArray]:
+    def errors(self, approach: FloatArray, tilt: FloatArray) -> FloatArray:
         """Errors of load and moment over the load, at pairs inside the table: the largest of the nodes around each."""
         sides = []
         for name, values in (("approach", approach), ("tilt", tilt)):
             lines = self.table[name].values
             right = np.clip(np.searchsorted(lines, values), 1, lines.size - 1)
             sides.append((right - 1, right))
-        largest = []
-        for name in ("relative_load_error", "relative_moment_error"):
-            errors = self.table[name].broadcast_like(self.table["normal_load"]).transpose("approach", "tilt").values
-            largest.append(np.max([errors[i, j] for i in sides[0] for j in sides[1]], axis=0))
-        return largest[0], float(self.table["contact_length"]) * largest[1]
+        errors = [self._at_nodes(name) for name in ("relative_load_error", "relative_moment_error")]
+        load, moment = (np.max([error[i, j] for i in sides[0] for j in sides[1]], axis=0) for error in errors)
+        return np.array([load, float(self.table["contact_length"]) * moment])
 
 
 @dataclass(frozen=True, eq=False)
@@ -393,19 +387,15 @@ class Raceways:
         self, inner: tuple[xr.DataArray, xr.DataArray], outer: tuple[xr.DataArray, xr.DataArray]
     ) -> xr.Dataset:
         """Label the series of two contacts at their own approaches and tilts."""
-        contacts = [
-            law.motion(shares[0].values, shares[1].values) for law, shares in ((self.inner, inner), (self.outer, outer))
-        ]
+        pairs = [(self.inner, *inner), (self.outer, *outer)]
+        contacts = [law.motion(delta.values, theta.values) for law, delta, theta in pairs]
         # Compliances add up.
         stiffness = np.linalg.inv(sum(np.linalg.inv(_matrix(motion)) for motion in contacts))
         first = contacts[0]
         motion = Motion(first.load, first.moment, stiffness[..., 0, 0], stiffness[..., 0, 1], stiffness[..., 1, 1])
         # A softer contact decides; the larger error is a bound for either.
-        relative = [
-            law.errors(shares[0].values, shares[1].values) for law, shares in ((self.inner, inner), (self.outer, outer))
-        ]
-        errors = [np.maximum(*pair) for pair in zip(*relative, strict=True)]
-        labelled = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, (errors[0], errors[1]))
+        errors = np.maximum(*(law.errors(delta.values, theta.values) for law, delta, theta in pairs))
+        labelled = dataset(inner[0] + outer[0], inner[1] + outer[1], motion, errors)
         for name, shares in (("inner", inner), ("outer", outer)):
             for kind, share in zip(("approach", "tilt"), shares, strict=True):
                 labelled[f"{name}_{kind}"] = (share.dims, share.values)
@@ -425,10 +415,7 @@ class Raceways:
             if not low[-1] < high[-1]:
                 ends = f"from {first + other_first:g} to {last + other_last:g}"
                 raise InvalidInputError(name, total, f"in the tables of both contacts together, {ends}")
-        bounds, size = (
-            (np.array(low), np.array(high)),
-            np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)]),
-        )
+        bounds, size = np.array([low, high]), np.array([approach, max(np.ptp(tables[0]["tilt"].values), 1e-12)])
         length = float(tables[0]["contact_length"])
 
         def motions(scaled: FloatArray) -> tuple[Motion, Motion]:
@@ -441,9 +428,7 @@ class Raceways:
             return np.array([inner.load - outer.load, (inner.moment - outer.moment) / length]) / scale
 
         start = np.clip(0.5 * np.array([approach, tilt]), bounds[0] + EDGE * size, bounds[1] - EDGE * size)
-        solution = least_squares(
-            residual, start / size, bounds=(bounds[0] / size, bounds[1] / size), xtol=1e-14, ftol=1e-14, gtol=1e-14
-        )
+        solution = least_squares(residual, start / size, bounds=bounds / size, xtol=1e-14, ftol=1e-14, gtol=1e-14)
         if np.abs(solution.fun).max() > MET:
             raise InvalidInputError(
                 "approach, tilt",

@@ -213,10 +213,7 @@ def _cases(name: str, argument: object) -> list[Case]:
 
 
 def _loads_of_roller(case: Case, laminae: int, accuracy: float) -> FloatArray:
-    """Solve for loads of every lamina by the four models, N, errors, their common part, and factors with errors.
-
-    Array (quantity, model, lamina).
-    """
+    """Solve for loads of every lamina, N, errors, common part, factors, errors: array (quantity, model, lamina)."""
     # Friction changes no pressure unless it is coupled; stick and slip would only cost time.
     case = case if case.coupled else replace(case, friction=0.0, motion=Sliding())
     exact = solve(case, stresses=False, accuracy=accuracy)

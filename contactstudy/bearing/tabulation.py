@@ -44,11 +44,6 @@ class Presser:
     accuracy: float  # of the peak pressure
     tolerance: float  # of each contact's iteration
 
-    @property
-    def reference(self) -> str:
-        """Reference lines of approach and tilt."""
-        return reference_lines(self.case.body, self.case.counterbody)
-
     def loaded(self, load: float, tilt: float) -> Contact:
         """Return the contact under a load."""
         with _refused(load, tilt):
@@ -101,8 +96,10 @@ def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) ->
         neighbour = index + int(np.sign(level - index))
         for line in range(approaches.size - 1, -1, -1):
             guess = values[0, line, neighbour]
-            if index == level:
-                guess = _first_guess(presser, approaches, values[0, :, level], line)
+            if index == level:  # from the next larger approach, or the load of the case
+                guess = presser.case.normal_load
+                if line + 1 < approaches.size:
+                    guess = values[0, line + 1, level] * (approaches[line] / approaches[line + 1]) ** POWER
             values[:, line, index] = presser.pressed(float(approaches[line]), float(tilts[index]), float(guess))
             LOGGER.info(
                 "approach %.3g m, tilt %.3g rad: %.4g N", approaches[line], tilts[index], values[0, line, index]
@@ -113,20 +110,12 @@ def solved_nodes(presser: Presser, approaches: FloatArray, tilts: FloatArray) ->
     return Nodes(approaches, tilts, values[2], values[0], values[1])
 
 
-def _first_guess(presser: Presser, approaches: FloatArray, loads: FloatArray, line: int) -> float:
-    """Load of an approach without tilt, from the next larger approach or the load of the case."""
-    if line + 1 < approaches.size:
-        return float(loads[line + 1] * (approaches[line] / approaches[line + 1]) ** POWER)
-    return presser.case.normal_load
-
-
 def _mirror_images(presser: Presser) -> bool:
     """Whether the halves of roller and body are mirror images."""
     case, (low, high) = presser.case, presser.case.body.extent
     length = case.roller.length
-    centred = (np.isinf(low) and np.isinf(high)) or abs(
-        low + high - 2 * presser.case.roller_middle
-    ) <= MIRRORED * length
+    endless = np.isinf(low) and np.isinf(high)
+    centred = endless or abs(low + high - 2 * case.roller_middle) <= MIRRORED * length
     places = 0.5 * length * np.linspace(0.01, 0.99, 50)
     second_half, first_half = (case.roller.clearance(side * places, np.array([0.0, 1e-2 * length])) for side in (1, -1))
     return bool(centred) and bool(np.allclose(second_half, first_half, rtol=MIRRORED, atol=0.0))
@@ -252,7 +241,7 @@ def law_table(presser: Presser, nodes: Nodes, errors: FloatArray) -> xr.Dataset:
         {name: (dims, values) for name, values in arrays.items()} | scalars,
         coords={"approach": nodes.approaches, "tilt": nodes.tilts},
     )
-    reference = presser.reference
+    reference = reference_lines(presser.case.body, presser.case.counterbody)
     table["approach"].attrs |= {"reference": reference, "comment": "at the roller's mid-length"}
     table["tilt"].attrs |= {"reference": reference, "centre": "the roller's mid-length"}
     table["moment"].attrs["comment"] = "about the roller's mid-length"

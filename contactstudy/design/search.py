@@ -47,9 +47,9 @@ class Range:
 
     def value(self, part: float) -> float:
         """Return the parameter at a part of the range."""
-        if self.low > 0:
-            return float(np.clip(self.low * (self.high / self.low) ** part, self.low, self.high))
-        return float(np.clip(self.low + (self.high - self.low) * part, self.low, self.high))
+        ratio = self.low > 0
+        value = self.low * (self.high / self.low) ** part if ratio else self.low + (self.high - self.low) * part
+        return float(np.clip(value, self.low, self.high))
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,9 +115,7 @@ class Evaluations:
 
     def parameters(self, parts: FloatArray) -> dict[str, float]:
         """Return the parameters at parts of their ranges."""
-        return {
-            name: bounds.value(float(part)) for (name, bounds), part in zip(self.ranges.items(), parts, strict=True)
-        }
+        return {name: self.ranges[name].value(float(part)) for name, part in zip(self.ranges, parts, strict=True)}
 
     def _solved(self, parts: FloatArray) -> Design:
         """Solve every case of a design."""
@@ -142,9 +140,8 @@ class Evaluations:
         try:
             return self.profile(**parameters)
         except TypeError as error:
-            raise InvalidInputError(
-                "bounds", list(parameters), "of the keywords that profile takes", str(error)
-            ) from None
+            allowed = "of the keywords that profile takes"
+            raise InvalidInputError("bounds", list(parameters), allowed, str(error)) from None
 
     def _measured(self, case: Case) -> tuple[float, float]:
         """Measure of one case and its error."""
@@ -379,7 +376,7 @@ def best_profile(
         raise InvalidInputError("measure", measure, "the name of a variable, or a function of the result")
     ranges = _ranges(bounds)
     designs = Evaluations(
-        cases=_cases(case, loads, max_pressures, _numbers("tilts", tilts, "radians")),
+        cases=_cases(case, loads, max_pressures, tilts),
         profile=profile,
         ranges=ranges,
         measure=measure,
@@ -415,35 +412,28 @@ def _ranges(bounds: object) -> dict[str, Range]:
     return ranges
 
 
-def _numbers(name: str, values: object, unit: str) -> list[float] | None:
-    """Numbers in SI, or None."""
+def _numbers(name: str, values: object, unit: str) -> list[float]:
+    """Numbers in SI; none of None."""
     if values is None:
-        return None
+        return []
     numbers = numbers_in_si(name, values, "rad" if unit == "radians" else unit)
     return [float(value) for value in checks.coordinates(name, numbers, unit)]
 
 
-def _cases(case: Case, loads: object, pressures: object, tilts: list[float] | None) -> list[Case]:
+def _cases(case: Case, loads: object, pressures: object, tilts: object) -> list[Case]:
     """Every load with every tilt."""
     if loads is not None and pressures is not None:
         raise InvalidInputError("loads, max_pressures", (loads, pressures), "one of the two, the other None")
-    if loads is not None:
-        variants = [replace(case, load=load, max_pressure=None) for load in _numbers("loads", loads, "N") or []]
-    elif pressures is not None:
-        variants = [
-            replace(case, load=None, max_pressure=pressure)
-            for pressure in _numbers("max_pressures", pressures, "Pa") or []
-        ]
-    else:
-        variants = [case]
-    return [replace(loaded, tilt=small_tilt(tilt)) for loaded in variants for tilt in tilts or [case.tilt]]
+    variants = [replace(case, load=load, max_pressure=None) for load in _numbers("loads", loads, "N")]
+    variants += [replace(case, load=None, max_pressure=peak) for peak in _numbers("max_pressures", pressures, "Pa")]
+    turned = [small_tilt(tilt) for tilt in _numbers("tilts", tilts, "radians")] or [case.tilt]
+    return [replace(loaded, tilt=tilt) for loaded in variants or [case] for tilt in turned]
 
 
 def _dataset(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Dataset:
     """Label the optimum and every design."""
     best, evaluated = designs.best, designs.designs
     names, ranges = list(designs.ranges), list(designs.ranges.values())
-    optimum_values = designs.parameters(best.parts)
     flat = [
         (limits.value(min(low, float(part))), limits.value(max(high, float(part))))
         for limits, (low, high), part in zip(ranges, ends, best.parts, strict=True)
@@ -455,7 +445,7 @@ def _dataset(designs: Evaluations, ends: list[tuple[float, float]]) -> xr.Datase
     ]
     parameters = [list(designs.parameters(design.parts).values()) for design in evaluated]
     arrays: dict[str, tuple[object, object]] = {
-        "optimum": ("parameter", [optimum_values[name] for name in names]),
+        "optimum": ("parameter", list(designs.parameters(best.parts).values())),
         "flat_from": ("parameter", [low for low, _ in flat]),
         "flat_to": ("parameter", [high for _, high in flat]),
         "lower_bound": ("parameter", [limits.low for limits in ranges]),

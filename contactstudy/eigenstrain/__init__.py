@@ -3,10 +3,4 @@
 In a body infinite along y with fields of (x, z), the strain along y vanishes, and the stresses in the plane (x, z) and
 across it are two problems. Stress functions solve both: every stress function is in equilibrium and leaves faces free,
 to rounding; the compatibility of the strains is approximate, by the least complementary energy.
-
-=================  ===================================================================================================
-stress_function.py piecewise polynomials along one axis, their products, and the equations of least energy
-body.py            elements for a body with two ends, one or none, stresses of eigenstrains on cells, influence matrices
-layers.py          layers with eigenstrains uniform along y, or in waves along y
-=================  ===================================================================================================
 """

@@ -2,21 +2,19 @@
 
 Elements are the cells or equal parts of them, and beyond the cells elements that grow: to the ends, to a depth of
 negligible stress, and without an end to a distance of little stress.
-
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
 
 from contactstudy.bodies.material import Material
 from contactstudy.checks import FloatArray, IntArray
-from contactstudy.eigenstrain.stress_function import Splines, StressFunction
+from contactstudy.eigenstrain.stress_function import Factors, Splines, StressFunction
 
 DEGREE = 4  # of the polynomials of Airy's function. Accuracy.
 WIDEST = 0.2  # largest element near the cells, over the distance of two ends. Accuracy.
@@ -31,13 +29,6 @@ DEEP_LENGTHS = 8.0
 resultant decays like exp(-4.2 z / L) there."""
 
 XX, YY, ZZ, XY, XZ, YZ = range(6)  # components in the order of every array of stresses
-
-
-class CellAverages(NamedTuple):
-    """Integrals over the cells of the functions' second (or first) derivatives, along x and along z."""
-
-    x: list[FloatArray]
-    z: list[FloatArray]
 
 
 def grown(start: float, stop: float, first: float) -> FloatArray:
@@ -100,14 +91,14 @@ class EigenstrainBody:
         return StressFunction(x, z)
 
     @cached_property
-    def airy_integrals(self) -> CellAverages:
+    def airy_integrals(self) -> Factors:
         """Integrals of Airy's functions and their derivatives over the cells."""
-        return _integrals(self.in_plane, self.x_edges, self.z_edges, 2)
+        return self.in_plane.integrals(self.x_edges, self.z_edges)
 
     @cached_property
-    def across_integrals(self) -> CellAverages:
+    def across_integrals(self) -> Factors:
         """Integrals of the functions across the plane and their slopes over the cells."""
-        return _integrals(self.across, self.x_edges, self.z_edges, 1)
+        return self.across.integrals(self.x_edges, self.z_edges)
 
     def solve(self, eigenstrain: FloatArray) -> EigenstrainSolution:
         """Solve for the stress functions of eigenstrains (6, cell x, cell z): xx, yy, zz, xy, xz, yz (tensor's)."""
@@ -136,32 +127,20 @@ class EigenstrainSolution:
 
     def stresses(self, x: FloatArray, z: FloatArray) -> FloatArray:
         """Residual stresses at the tensor product of positions: array (6, x, z), xx, yy, zz, xy, xz, yz in Pa."""
-        along_x, along_z = (
-            [splines.values(points, derivative) for derivative in range(3)]
-            for splines, points in ((self.body.in_plane.x, x), (self.body.in_plane.z, z))
-        )
-        across_x, across_z = (
-            [splines.values(points, derivative) for derivative in range(2)]
-            for splines, points in ((self.body.across.x, x), (self.body.across.z, z))
-        )
-        return self._assembled((along_x, along_z), (across_x, across_z), self.eigenstrain_at(x, z))
+        functions = self.body.in_plane.values(x, z), self.body.across.values(x, z)
+        return self._assembled(*functions, self.eigenstrain_at(x, z))
 
     def cell_averages(self) -> FloatArray:
         """Residual stresses averaged over the cells: array (6, cell x, cell z), Pa."""
         body = self.body
         widths, heights = np.diff(body.x_edges)[:, None], np.diff(body.z_edges)[:, None]
         airy, across = (
-            ([matrix.T / widths for matrix in integrals.x], [matrix.T / heights for matrix in integrals.z])
-            for integrals in (body.airy_integrals, body.across_integrals)
+            ([matrix.T / widths for matrix in along_x], [matrix.T / heights for matrix in along_z])
+            for along_x, along_z in (body.airy_integrals, body.across_integrals)
         )
         return self._assembled(airy, across, self.eigenstrain)
 
-    def _assembled(
-        self,
-        airy: tuple[list[FloatArray], list[FloatArray]],
-        across: tuple[list[FloatArray], list[FloatArray]],
-        eigenstrain: FloatArray,
-    ) -> FloatArray:
+    def _assembled(self, airy: Factors, across: Factors, eigenstrain: FloatArray) -> FloatArray:
         """Stresses from the functions' derivatives along x and z."""
         (x, z), material = airy, self.body.material
         stress = np.zeros((6, x[0].shape[0], z[0].shape[0]))
@@ -215,14 +194,6 @@ def _split(edges: FloatArray, splits: int, widest: float) -> FloatArray:
     return np.append(np.concatenate(inner), edges[-1])
 
 
-def _integrals(function: StressFunction, x_edges: FloatArray, z_edges: FloatArray, last: int) -> CellAverages:
-    """Integrals of a stress function's derivatives up to the `last` over the cells."""
-    return CellAverages(
-        [function.x.integrals(x_edges, derivative) for derivative in range(last + 1)],
-        [function.z.integrals(z_edges, derivative) for derivative in range(last + 1)],
-    )
-
-
 COLUMNS = 256  # Right-hand sides that are solved for at once. Speed.
 
 
@@ -240,9 +211,9 @@ class Influence:
         """Influence of the cells with these numbers along x and along z on each other."""
         areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-        def columns(of: CellAverages, i: int, j: int) -> sparse.csc_matrix:
+        def columns(of: Factors, i: int, j: int) -> sparse.csc_matrix:
             """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-            x, z = (sparse.csc_matrix(m) for m in (of.x[i][:, along_x], of.z[j][:, along_z]))
+            x, z = (sparse.csc_matrix(m) for m in (of[0][i][:, along_x], of[1][j][:, along_z]))
             return sparse.csc_matrix(
                 sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
             )

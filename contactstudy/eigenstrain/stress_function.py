@@ -25,6 +25,8 @@ from scipy.sparse.linalg import splu
 
 from contactstudy.checks import FloatArray
 
+Factors = tuple[list[FloatArray], list[FloatArray]]  # Values, slopes, ... of functions along x, and along z
+
 
 @dataclass(frozen=True, eq=False)
 class Splines:
@@ -98,6 +100,18 @@ class StressFunction:
         if self.x.vanishing == 2:
             return {(2, 0): 1.0, (0, 2): 1.0, (1, 1): 2.0}
         return {(1, 0): 1.0, (0, 1): 1.0}
+
+    def values(self, x: FloatArray, z: FloatArray) -> Factors:
+        """Functions and their derivatives at positions: arrays (point, function)."""
+        orders = range(self.x.vanishing + 1)
+        return [self.x.values(x, order) for order in orders], [self.z.values(z, order) for order in orders]
+
+    def integrals(self, x_edges: FloatArray, z_edges: FloatArray) -> Factors:
+        """Integrals of the functions and their derivatives over cells: arrays (function, cell)."""
+        orders = range(self.x.vanishing + 1)
+        return [self.x.integrals(x_edges, order) for order in orders], [
+            self.z.integrals(z_edges, order) for order in orders
+        ]
 
     def solve(self, right: FloatArray) -> FloatArray:
         """Coefficients of least energy: array (function x, function z), for a right-hand side of this shape."""

@@ -62,7 +62,7 @@ class FatigueLimits:
 
     def __post_init__(self) -> None:
         for name in ("bending", "torsion"):
-            object.__setattr__(self, name, checks.positive(name, getattr(self, name), "Pa"))
+            checks.store(self, **{name: checks.positive(name, getattr(self, name), "Pa")})
         if not 0.5 <= self.ratio < 1:
             raise InvalidInputError(
                 "torsion", self.torsion, f"between half of the limit in bending and that limit, {self.bending:g} Pa"
@@ -127,7 +127,7 @@ def _largest_shear(deviator: Array) -> Array:
 
 
 def _to_dataset(criterion: str, values: dict[str, xr.DataArray]) -> xr.Dataset:
-    """Results of a criterion with their names and units; with the utilisation of the sum."""
+    """Results of a criterion with their names and units."""
     return xr.Dataset({name: of_points(name, array, VARIABLES[criterion]) for name, array in values.items()})
 
 
@@ -181,7 +181,7 @@ def dang_van(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         chosen = [np.take_along_axis(values, instant_index, axis=1)[:, 0] for values in (total, shear, mean)]
         return (*chosen, instant_index[:, 0].astype(np.float64))
 
-    total, shear, mean, instant = over_history(criterion, stress, (None,) * 4)
+    total, shear, mean, instant = over_history(criterion, stress, 4)
     instant = instant.compute()
     loaded = instant < tensor.sizes[rolling]
     number = instant.where(loaded, 0).astype(np.int64).reset_coords(drop=True)
@@ -212,9 +212,8 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Without the rolling direction: `crossland` (Pa), the sum; `utilisation` (1), that over ``tau_w``;
-        `crossland_shear` and `crossland_hydrostatic` (Pa), the two terms without the factor. Their
-        errors are not estimated (`error_kind`).
+        As of :func:`dang_van`: `crossland` (Pa), the sum; `utilisation`; `crossland_shear` and `crossland_hydrostatic`
+        (Pa), the two terms without the factor.
 
     Raises
     ------
@@ -239,7 +238,7 @@ def crossland(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
         _, radius = enclosing_balls(deviator)
         return radius / np.sqrt(2.0), mean.max(axis=1)
 
-    shear, mean = over_history(criterion, stress, (None, None))
+    shear, mean = over_history(criterion, stress, 2)
     total = shear + slope * mean
     values = {
         "crossland": total,
@@ -326,7 +325,7 @@ def _turned(frames: Array, turn: Array) -> Array:
 
 
 def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
-    """Sum, shear amplitude, largest normal stress and normal of the worst plane of each history."""
+    """Sum, shear amplitude, largest normal stress and components of the normal of the worst plane of each history."""
     frames = _search(history, slope).reshape(-1, 2, 3)
     owner = np.repeat(np.arange(len(history)), STARTS)
     turn = np.full(len(frames), FIRST_TURN)
@@ -345,7 +344,7 @@ def _worst_planes(history: Array, slope: float) -> tuple[Array, ...]:
     worst = damage_terms[0].argmax(axis=1)[:, None]
     normal = np.take_along_axis(refined[:, :, 0], worst[..., None], axis=1)[:, 0]
     normal = normal * np.where(normal[:, 2] < 0, -1.0, 1.0)[:, None]
-    return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms), normal)
+    return (*(np.take_along_axis(values, worst, axis=1)[:, 0] for values in damage_terms), *normal.T)
 
 
 def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
@@ -366,10 +365,9 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     Returns
     -------
     Dataset
-        Without the rolling direction: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
+        As of :func:`dang_van`: `findley` (Pa), the sum on the worst plane; `utilisation` (1), that over ``f``;
         `findley_shear` and `findley_normal` (Pa), ``tau_a`` and ``sigma_n,max`` there; `findley_plane` (..., axis),
-        its unit normal with the components `axis` = x, y, z, turned towards larger depth. Their
-        errors are not estimated (`error_kind`).
+        its unit normal with the components `axis` = x, y, z, turned towards larger depth.
 
     Raises
     ------
@@ -387,15 +385,12 @@ def findley(stress: xr.Dataset, limits: FatigueLimits) -> xr.Dataset:
     1.0
     """
     checks.instance("limits", limits, FatigueLimits, "a FatigueLimits")
-    total, shear, normal, plane = over_history(
-        lambda history: _worst_planes(history, limits.findley_slope), stress, (None, None, None, ("axis", 3))
-    )
+    total, shear, normal, *plane = over_history(lambda history: _worst_planes(history, limits.findley_slope), stress, 6)
     values = {
         "findley": total,
         "utilisation": total / limits.findley_limit,
         "findley_shear": shear,
         "findley_normal": normal,
-        "findley_plane": plane,
+        "findley_plane": xr.concat(plane, "axis", coords="minimal", compat="override").transpose(..., "axis"),
     }
-    result = xr.Dataset({name: of_points(name, value, VARIABLES["findley"]) for name, value in values.items()})
-    return describe(result.assign_coords(axis=list(AXES)))
+    return describe(_to_dataset("findley", values).assign_coords(axis=list(AXES)))

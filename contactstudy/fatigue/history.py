@@ -5,10 +5,6 @@ the support, and the smallest ball around the support is one of the circumscribe
 are inside. The radius grows with each step, so the iteration ends with the exact ball.
 Source: E. Welzl, Smallest enclosing disks (balls and ellipsoids), in: New Results and New Trends in Computer Science,
 LNCS 555 (1991) 359-370, and of B. Gaertner, Fast and robust smallest enclosing balls, ESA 1999.
-
-The field along y at one (x, z) is the history of the point there during one passage. A point of the body is unloaded
-before and after: the window of a result shows only part of that. So the unloaded state is added to every history, and
-:func:`window_remainder` measures the stress at the border of the window.
 """
 
 from __future__ import annotations
@@ -20,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import dimension_along
+from contactstudy.analysis.axes import reduce_dims
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, Variable, named, required_in_si
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
@@ -52,45 +49,23 @@ def rolling_dimension(stress: xr.DataArray) -> str:
 
 
 def over_history(
-    function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, sizes: tuple[tuple[str, int] | None, ...]
+    function: Callable[[Array], tuple[Array, ...]], stress: xr.Dataset, outputs: int
 ) -> tuple[xr.DataArray, ...]:
-    """Apply a function of histories to every material point of a result; NaN where a study is padded.
-
-    It maps (point, instant, 6), the last instant unloaded, to arrays (point,) or (point, n); for each of them `sizes`
-    contains None, or name and size of the dimension n.
-    """
+    """Map the histories (point, instant, 6) of a result, the last instant unloaded, to two or more arrays (point)."""
     tensor, rolling = histories(stress)
 
-    def apply(values: Array) -> Array | tuple[Array, ...]:
-        lead = values.shape[:-2]
+    def apply(values: Array) -> tuple[Array, ...]:
         flat = values.reshape(-1, *values.shape[-2:]).astype(np.float64)
         absent = np.isnan(flat).any(axis=-1)
         loaded = ~absent.all(axis=-1)
         # Positions that pad a shorter window are as unloaded as those beyond it.
         flat[absent] = 0.0
-        history = np.concatenate([flat, np.zeros_like(flat[:, :1])], axis=1)[loaded]
-        results = []
-        computed = function(history) if loaded.any() else None
-        for number, extra in enumerate(sizes):
-            full = np.full((loaded.size, *(() if extra is None else (extra[1],))), np.nan)
-            if computed is not None:
-                full[loaded] = computed[number]
-            results.append(full.reshape((*lead, *full.shape[1:])))
-        return tuple(results) if len(results) > 1 else results[0]
+        results = np.full((outputs, loaded.size), np.nan)
+        if loaded.any():
+            results[:, loaded] = function(np.concatenate([flat, np.zeros_like(flat[:, :1])], axis=1)[loaded])
+        return tuple(results.reshape(outputs, *values.shape[:-2]))
 
-    results = xr.apply_ufunc(
-        apply,
-        tensor,
-        input_core_dims=[[rolling, COMPONENT]],
-        output_core_dims=[[] if extra is None else [extra[0]] for extra in sizes],
-        dask="parallelized",
-        dask_gufunc_kwargs={
-            "allow_rechunk": True,
-            "output_sizes": {extra[0]: extra[1] for extra in sizes if extra is not None},
-        },
-        output_dtypes=[np.float64] * len(sizes),
-    )
-    return tuple(results) if len(sizes) > 1 else (results,)
+    return reduce_dims(apply, [(tensor, [rolling, COMPONENT])], outputs)
 
 
 def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> xr.DataArray:
@@ -101,9 +76,9 @@ def of_points(name: str, array: xr.DataArray, base: Variable | None = None) -> x
 def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     """Stress at the window's borders in y over the largest of the passage: how much of a history is left out.
 
-    Every fatigue measure here takes the unloaded state as part of the history, so the remainder matters only where
-    an extreme lies beyond the window. The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface,
-    and move out to ``y = z / sqrt(3)`` at depths of several half-widths.
+    The unloaded state is part of every history, so the remainder matters only where an extreme lies beyond the window.
+    The extremes of the orthogonal shear lie at ``y = 0.87 a`` near the surface, and move out to ``y = z / sqrt(3)`` at
+    depths of several half-widths.
 
     Parameters
     ----------
@@ -128,19 +103,17 @@ def window_remainder(stress: xr.Dataset) -> xr.DataArray:
     0.25
     """
 
-    def remainder(history: Array) -> tuple[Array, ...]:
+    def magnitudes(history: Array) -> tuple[Array, ...]:
         weights = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
         magnitude = np.sqrt((history[:, :-1] ** 2) @ weights)
-        largest = magnitude.max(axis=1)
-        border = np.maximum(magnitude[:, 0], magnitude[:, -1])
-        return (np.divide(border, largest, out=np.zeros_like(border), where=largest > 0),)
+        return np.maximum(magnitude[:, 0], magnitude[:, -1]), magnitude.max(axis=1)
 
     stress = required_in_si(stress, *STRESSES, argument="stress")
     rolling = dimension_along(stress["tau_yz"], "y")
     # Positions may be in any order.
     ordered = stress.sortby(rolling) if rolling in stress.indexes else stress
-    (result,) = over_history(remainder, ordered, (None,))
-    return named("window_remainder", result)
+    border, largest = over_history(magnitudes, ordered, 2)
+    return named("window_remainder", (border / largest).where(largest != 0, 0.0))
 
 
 ROUNDING = 1e-10  # A point may lie outside a ball by this fraction of its radius

@@ -60,7 +60,7 @@ class LifeExponents:
 
     def __post_init__(self) -> None:
         for name in ("stress", "depth", "weibull"):
-            object.__setattr__(self, name, checks.positive(name, getattr(self, name)))
+            checks.store(self, **{name: checks.positive(name, getattr(self, name))})
 
     def units(self, lengths: int) -> str:
         """Return the unit of the integral of ``stress**c / depth**h`` over 1 or 2 lengths."""
@@ -108,9 +108,9 @@ def relative_life(risk: xr.Dataset, reference: xr.Dataset, exponents: LifeExpone
             raise InvalidInputError(
                 "reference", f"{name} = {reference_value}", f"computed as risk was, {name} = {value}"
             )
-    numbers, reference_numbers = risk["risk"], reference["risk"]
+    risks, references = risk["risk"], reference["risk"]
     # Without any risk the life is infinite, unless the reference has none either.
-    ratio = (reference_numbers / numbers.where(numbers > 0)).where((numbers != 0) | (reference_numbers == 0), np.inf)
+    ratio = (references / risks.where(risks > 0)).where((risks != 0) | (references == 0), np.inf)
     life = named("relative_life", ratio ** (1 / chosen.weibull))
     if not all("risk_error" in dataset for dataset in (risk, reference)):
         return life.assign_attrs({ERROR_KIND: NOT_ESTIMATED})
@@ -205,18 +205,13 @@ def _over_x(density: xr.DataArray) -> xr.DataArray:
     return risk.reset_coords(drop=True)
 
 
-def _halves(size: int, axis: str) -> list[IntArray]:
-    """Every second position; along x, over which is integrated, with the last one, and else of both kinds."""
-    if axis == "x":
-        return [np.unique(np.append(np.arange(0, size, 2), size - 1))]
-    return [np.arange(start, size, 2) for start in (0, 1)]
-
-
 def _error(data: Data, of: xr.DataArray, risk: xr.DataArray, risk_of: Callable[[Data], xr.DataArray]) -> Array:
     """Sum over the axes of the change with every second position; infinite with too few positions."""
     error = np.zeros(risk.shape)
     for axis, dim in axis_dimensions(of).items():
-        parts = _halves(of.sizes[dim], axis)
+        parts = [np.arange(start, of.sizes[dim], 2) for start in (0, 1)]
+        if axis == "x":  # over which is integrated: with the last one
+            parts = [np.unique(np.append(parts[0], of.sizes[dim] - 1))]
         # Least number of every second position along an axis for an error estimate; along x a risk needs two
         if any(part.size < 3 for part in parts):
             return np.full(risk.shape, np.inf)
@@ -336,20 +331,18 @@ def _outside(stress: xr.Dataset, amplitude: xr.DataArray) -> dict[str, xr.DataAr
     return {"orthogonal shear largest at the first or last y": (crest & (inner_amplitude < amplitude)).any(depth)}
 
 
-def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
-    """Integral over the depth of the excess over the limit, over the stress-weighted mean depth."""
+def _risk_of_sections(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, ...]:
+    """Integral over the depth of the excess over the limit, over the stress-weighted mean depth; part beyond."""
     excess = np.clip(stress - limit, 0.0, None) ** exponents.stress
     volume, moment = _integral(excess, depth), _integral(excess * depth, depth)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = moment / volume
         density = np.where(volume > 0, volume / mean**exponents.depth, volume)
-    return density, mean
+    return density, mean, _beyond(np.nan_to_num(excess), np.broadcast_to(depth, excess.shape), exponents)
 
 
-def _beyond(stress: Array, depth: Array, limit: float, exponents: LifeExponents) -> tuple[Array, Array]:
+def _beyond(excess: Array, depth: Array, exponents: LifeExponents) -> Array:
     """Part of a section's risk above the first depth, as if uniform, and below the last one, as if it fell on so."""
-    excess = np.nan_to_num(np.clip(stress - limit, 0.0, None) ** exponents.stress)
-    depth = np.broadcast_to(depth, excess.shape)
     last = np.maximum(np.isfinite(depth).sum(axis=-1, keepdims=True) - 1, 1)
 
     def take(values: Array, index: IntArray) -> Array:
@@ -361,7 +354,7 @@ def _beyond(stress: Array, depth: Array, limit: float, exponents: LifeExponents)
         below_last = np.where(tail > 0, tail * (below - above) / np.log(np.maximum(before / tail, 1.0)), 0.0)
         # The mean depth moves as well, by a part as large.
         part = (1 + exponents.depth) * (head * first + below_last) / _integral(excess, depth)
-    return np.where(np.isnan(part), 0.0, part), np.zeros(part.shape)
+    return np.where(np.isnan(part), 0.0, part)
 
 
 def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeExponents | None = None) -> xr.Dataset:
@@ -384,11 +377,10 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     Returns
     -------
     Dataset
-        `risk_density` (along x), `risk` (its integral over x, to be compared by :func:`relative_life`) and
-        `risk_error`, and `mean_depth` (m) ``z'`` along x, NaN where nothing exceeds the limit. The error counts the
-        positions along x and z, and the parts above the first and below the last depth; it neglects the positions along
-        y of the measure, and the pressure. Halve the distance along y to find its effect: the risk grows with the
-        stress to the power of some 10.
+        `risk_density`, `risk` and `risk_error` as of :func:`lundberg_palmgren`, and `mean_depth` (m) ``z'`` along x,
+        NaN where nothing exceeds the limit. The error counts the positions along x and z, and the parts above the first
+        and below the last depth; it neglects the positions along y of the measure, and the pressure. Halve the distance
+        along y to find its effect: the risk grows with the stress to the power of some 10.
 
     Raises
     ------
@@ -423,15 +415,13 @@ def ioannides_harris(stress: xr.DataArray, limit: float = 0.0, exponents: LifeEx
     def sections(part: xr.DataArray) -> tuple[xr.DataArray, ...]:
         dimension, depth_positions = _depths(part)
         of = partial(_risk_of_sections, limit=threshold, exponents=chosen)
-        return reduce_dims(of, [(part, [dimension]), (depth_positions, [dimension])], 2)
+        return reduce_dims(of, [(part, [dimension]), (depth_positions, [dimension])], 3)
 
-    density, mean = sections(stress)
+    density, mean, beyond = sections(stress)
     result = _along_axis(density, chosen, theory, {"a measure largest at the first or last depth": outside})
     if stress.attrs.get("units") == "1":
         for name in ("risk", "risk_density"):
             result[name].attrs["units"] = result[name].attrs["units"].split(maxsplit=1)[1]
     error = _error(stress, stress, result["risk"], lambda part: _over_x(sections(part)[0]))
-    of = partial(_beyond, limit=threshold, exponents=chosen)
-    beyond, _ = reduce_dims(of, [(stress, [dim]), (depths, [dim])], 2)
     error = error + _over_x(density * beyond).values
     return _with_error(result.assign(mean_depth=of_points("mean_depth", mean)), error, comment=ALONG_X_AND_Z)

@@ -37,7 +37,7 @@ from contactstudy.analysis.peaks import interpolated_peak, label_peak
 from contactstudy.arrays.variables import STRESSES, VARIABLES, describe, named, required_in_si
 from contactstudy.bodies.models import Body
 from contactstudy.checks import Array, FloatArray, IntArray
-from contactstudy.eigenstrain.stress_function import Splines
+from contactstudy.eigenstrain.stress_function import Splines, StressFunction
 from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.fatigue.history import FEWEST_POSITIONS, enclosing_balls, histories, of_points, over_history
 
@@ -52,10 +52,15 @@ def in_ball_axes(history: Array) -> tuple[Array, Array, Array]:
     return yy - 0.5 * (xx + zz), 0.5 * np.sqrt(3.0) * (xx - zz), 3 * (xy**2 + xz**2 + yz**2)
 
 
+def _least_yield_stress(history: Array) -> Array:
+    """Least yield stresses in shear of stresses (..., 6)."""
+    u, v, remainder = in_ball_axes(history)
+    return np.asarray(np.sqrt((u**2 + v**2 + remainder) / 3))
+
+
 def _of_history(history: Array, *, axial: bool) -> tuple[Array, ...]:
     """Yield stresses in shear for no yield and for shakedown, and the residual stresses yy and xx."""
     u, v, remainder = in_ball_axes(history)
-    first = np.sqrt((u**2 + v**2 + remainder).max(axis=1) / 3)
     if axial:
         centre, radius = enclosing_balls(np.stack([u, v], axis=-1), np.sqrt(remainder))
         # A stress xx moves u by -1/2 and v by sqrt(3)/2 of itself.
@@ -63,6 +68,7 @@ def _of_history(history: Array, *, axial: bool) -> tuple[Array, ...]:
     else:
         centre, radius = enclosing_balls(u[..., None], np.sqrt(v**2 + remainder))  # eq. (502)
         residual_xx = np.zeros(len(radius))
+    first = _least_yield_stress(history).max(axis=1)
     return first, radius / np.sqrt(3.0), 0.5 * residual_xx - centre[:, 0], residual_xx
 
 
@@ -85,8 +91,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         yields in the first passage; `shakedown_stress` (Pa), the k below which it yields in every passage whatever
         residual stress yy (and xx) it has; `residual_sigma_yy` and, if `axial`, `residual_sigma_xx` (Pa), the
         residual stress with which that k suffices. The largest `shakedown_stress` over x and z is a rigorous bound:
-        a perfectly plastic body (von Mises) with a larger k shakes down. The error of values at points is not
-        estimated; :func:`shakedown_limit` estimates it.
+        a perfectly plastic body (von Mises) with a larger k shakes down; :func:`shakedown_limit` estimates its error.
 
     Raises
     ------
@@ -113,7 +118,7 @@ def shakedown(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
                 f"False with {tensor.sizes[axial_dims[0]]} positions along x",
                 "residual stress along the axis is free in a line contact, which one position tells",
             )
-    results = over_history(partial(_of_history, axial=bool(axial)), stress, (None,) * 4)
+    results = over_history(partial(_of_history, axial=bool(axial)), stress, 4)
     names = ("first_yield_stress", "shakedown_stress", "residual_sigma_yy", "residual_sigma_xx")
     result = {name: of_points(name, array) for name, array in zip(names, results, strict=True)}
     if not axial:
@@ -162,7 +167,6 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         return _of_study(stress, swept, axial=axial)
     case = single_case(stress)
     rolling = dimension_along(case["tau_yz"], "y")
-    names = list(STRESSES)
     # One of the two halves of the instants lacks the one that matters most.
     enough = case.sizes[rolling] >= FEWEST_FOR_ERROR
     samples = [case, *(case.isel({rolling: slice(start, None, 2)}) for start in (0, 1) if enough)]
@@ -174,7 +178,7 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
             return shakedown(points, axial=axial)[variable]
 
         largest, *halves = (
-            interpolated_peak(sample, names, field[variable], between)
+            interpolated_peak(sample, list(STRESSES), field[variable], between)
             for sample, field in zip(samples, fields, strict=True)
         )
         if not enough:
@@ -187,9 +191,8 @@ def shakedown_limit(stress: xr.Dataset, *, axial: bool = False) -> xr.Dataset:
         words = ["on the top" if largest.position.get("z", 1.0) == 0 else "below the top"]
         if "x" in largest.position and "x_bounds" in case.coords:
             bounds = case["x_bounds"].values
-            if np.isclose(
-                largest.position["x"], [bounds.min(), bounds.max()], rtol=0, atol=1e-9 * np.ptp(bounds)
-            ).any():
+            ends = [bounds.min(), bounds.max()]
+            if np.isclose(largest.position["x"], ends, rtol=0, atol=1e-9 * np.ptp(bounds)).any():
                 words.append("at an end")
         peak[f"peak_{variable}"].attrs["comment"] = ", ".join(words)
         result = result.merge(peak)
@@ -217,13 +220,13 @@ def _of_study(study: xr.Dataset, swept: dict[Hashable, int], *, axial: bool) -> 
 
 def shakedown_summary(dataset: xr.Dataset) -> xr.Dataset:
     """Limits of first yield and shakedown of a solved case; empty without stresses, load, or six positions along y."""
-    if not all(name in dataset for name in STRESSES):
-        return xr.Dataset()
-    if dataset.sizes[dimension_along(dataset["tau_yz"], "y")] < FEWEST_FOR_ERROR:
-        return xr.Dataset()
-    if not any(dataset[name].values.any() for name in STRESSES):
-        return xr.Dataset()
-    return shakedown_limit(dataset).reset_coords(drop=True)
+    if (
+        all(name in dataset for name in STRESSES)
+        and dataset.sizes[dimension_along(dataset["tau_yz"], "y")] >= FEWEST_FOR_ERROR
+        and any(dataset[name].values.any() for name in STRESSES)
+    ):
+        return shakedown_limit(dataset).reset_coords(drop=True)
+    return xr.Dataset()
 
 
 def _border_decides(case: xr.Dataset, fields: xr.Dataset, variable: str) -> bool:
@@ -235,8 +238,7 @@ def _border_decides(case: xr.Dataset, fields: xr.Dataset, variable: str) -> bool
     if variable == "shakedown_stress":
         eased[1] = float(fields["residual_sigma_yy"].isel(worst))
         eased[0] = float(fields["residual_sigma_xx"].isel(worst)) if "residual_sigma_xx" in fields else 0.0
-    u, v, remainder = in_ball_axes(point + eased)
-    size = np.sqrt((u**2 + v**2 + remainder) / 3)
+    size = _least_yield_stress(point + eased)
     largest = float(fields[variable].isel(worst))
     # An unloaded border is as bad as the unloaded state may be, which is known.
     unloaded = np.abs(point[[0, -1]]).max(axis=-1) <= EQUAL * largest
@@ -323,12 +325,10 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
             stacklevel=2,
         )
     in_plane = [scale * (matrix @ airy) for matrix in function]
-    u, v, remainder = in_ball_axes(history)
-    first = np.sqrt((u**2 + v**2 + remainder).max(axis=1) / 3)
     centre, radius = program.pointwise(airy)
     xx, zz, xz = in_plane
     results = {
-        "first_yield_stress": first,
+        "first_yield_stress": _least_yield_stress(history).max(axis=1),
         "shakedown_stress": scale * radius / ROOT,
         "residual_sigma_xx": xx,
         # The free stress along u is rho_yy - (rho_xx + rho_zz) / 2.
@@ -353,10 +353,7 @@ def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list
     size = 0.5 * (along_x.edges[-1] - along_x.edges[0]), 0.5 * along_z.edges[-1]
     # Both sides scaled to a length of about an element make the coefficients stresses.
     step = [half / max(splines.edges.size - 1, 1) for half, splines in zip(size, (along_x, along_z), strict=True)]
-    values_x, values_z = (
-        [sparse.csr_matrix(splines.values(points, derivative)) for derivative in range(3)]
-        for splines, points in ((along_x, x), (along_z, z))
-    )
+    values_x, values_z = StressFunction(along_x, along_z).values(x, z)
     unit = step[0] * step[1]
     return [
         sparse.csr_matrix(sign * unit * sparse.kron(values_x[i], values_z[j]))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from scipy.interpolate import make_interp_spline
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy import checks
@@ -51,9 +52,8 @@ def frictional_heat(case: Case, solution: xr.Dataset, grid: Grid) -> FrictionalH
                 f"{_side(traction)} body_speed, {body_speed:g}: friction drags the body the way the roller slides",
                 "speeds are along +y",
             )
-        return FrictionalHeat(
-            density, float((area * traction).sum() * (roller_speed - body_speed)), body_speed, roller_speed
-        )
+        power = float((area * traction).sum() * (roller_speed - body_speed))
+        return FrictionalHeat(density, power, body_speed, roller_speed)
     return _rolling_heat(case, motion, solution, area)
 
 
@@ -71,12 +71,8 @@ def _rolling_heat(case: Case, motion: Rolling, solution: xr.Dataset, area: Float
     q_x, s_x, q_y, s_y = (
         labelled_cells(f"result.{name}", solution[name], extent=case.body.extent)[0] for name in names
     )
-    creepage = (
-        float(solution["longitudinal_creepage"])
-        if "longitudinal_creepage" in solution
-        else motion.longitudinal_creepage
-    )
-    speeds = motion.speeds_at(float(creepage or 0.0))
+    creepage = solution.get("longitudinal_creepage", motion.longitudinal_creepage)
+    speeds = motion.speeds_at(0.0 if creepage is None else float(creepage))
     speed = -speeds.entrainment
     density = speed * np.maximum(q_x * s_x + q_y * s_y, 0.0)
     return FrictionalHeat(density, float((area * density).sum()), speeds.body, speeds.roller)
@@ -213,14 +209,15 @@ def flash_temperature(
         )
     if roller is not None:
         checks.instance("roller", roller, ThermalProperties, "a ThermalProperties(...)")
-    share = None if partition is None else _share(partition)
+    share = None if partition is None else checks.not_negative("partition", partition)
+    if share is not None and share > 1:
+        raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
     if limit is not None:
         limit = checks.positive("limit", limit, "K")
     depths = None if z is None else checks.coordinates("z", z)
     if depths is not None and (depths < 0).any():
         raise InvalidInputError("z", float(depths.min()), "not below zero (metres)")
     heat = frictional_heat(case, solution, grid)
-
     temperatures = _temperatures(case, grid, heat, pressure, body, roller=roller, share=share)
     into_body, into_roller = temperatures.into_body, heat.density - temperatures.into_body
     area = grid.weights * grid.cell_area
@@ -254,7 +251,15 @@ def flash_temperature(
     if temperatures.mismatch > 1e-6:  # larger differences do not count as equal
         text = f"the surfaces' temperatures still differ by {temperatures.mismatch:.2g} of the largest"
         warnings.warn(text, ConvergenceWarning, stacklevel=2)
-    _warn_above(hot, limit)
+    largest = scalars["max_temperature_rise"]
+    if limit is not None and largest > limit:
+        x, y = (1e3 * scalars[f"max_temperature_rise_{axis}"] for axis in "xy")
+        warnings.warn(
+            f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
+            f"limit = {limit:g} K",
+            TemperatureWarning,
+            stacklevel=2,
+        )
     return describe(hot, "flash temperature of a contact")
 
 
@@ -285,11 +290,10 @@ def _temperatures(
 def _on_wider_cells(grid: Grid, values: FloatArray) -> tuple[Grid, FloatArray]:
     """Half as many cells along y, and means over them."""
     wider = Grid.between(grid.x_edges, grid.y_range, max(grid.cells_y // 2, 1))
-    summed = np.concatenate([np.zeros((grid.cells_x, 1)), np.cumsum(values, axis=1)], axis=1)
+    summed = np.pad(np.cumsum(values, axis=1), ((0, 0), (1, 0)))
     # The border of a wider cell may cut a cell.
-    cuts = np.arange(wider.cells_y + 1) * (grid.cells_y / wider.cells_y)
-    cell = np.minimum(cuts.astype(int), grid.cells_y - 1)
-    at_cuts = summed[:, cell] + (cuts - cell) * values[:, cell]
+    cuts = np.linspace(0, grid.cells_y, wider.cells_y + 1)
+    at_cuts = make_interp_spline(np.arange(grid.cells_y + 1), summed, k=1, axis=1)(cuts)
     return wider, np.diff(at_cuts, axis=1) * wider.cells_y / grid.cells_y
 
 
@@ -299,14 +303,6 @@ def _pressure_error(solution: xr.Dataset) -> float:
         return float("nan")
     peak, error = float(solution["peak_pressure"]), float(solution["peak_pressure_error"])
     return error / peak if np.isfinite(peak) and np.isfinite(error) and peak > 0 else float("nan")
-
-
-def _share(partition: object) -> float:
-    """Return a part between nothing and all, or raise."""
-    share = checks.not_negative("partition", partition)
-    if share > 1:
-        raise InvalidInputError("partition", share, "from 0 to 1: the part of the heat that goes into the body")
-    return share
 
 
 def _under_roller(case: Case, grid: Grid, pressure: FloatArray) -> tuple[slice, Ends]:
@@ -335,17 +331,3 @@ def _largest(grid: Grid, rises: dict[str, FloatArray]) -> dict[str, float]:
             offset = 0.5 * (before - after) / bend
             largest, y = float(largest - 0.25 * (before - after) * offset), float(y + offset * grid.dy)
     return {"max_temperature_rise": largest, "max_temperature_rise_x": float(grid.x[i]), "max_temperature_rise_y": y}
-
-
-def _warn_above(hot: xr.Dataset, limit: float | None) -> None:
-    """Warn if the rise exceeds the limit."""
-    largest = float(hot["max_temperature_rise"])
-    if limit is None or largest <= limit:
-        return
-    x, y = (1e3 * float(hot[f"max_temperature_rise_{axis}"]) for axis in "xy")
-    warnings.warn(
-        f"the surfaces are {largest:.4g} K hotter than the bodies at x = {x:.4g} mm, y = {y:.4g} mm: above "
-        f"limit = {limit:g} K",
-        TemperatureWarning,
-        stacklevel=2,
-    )

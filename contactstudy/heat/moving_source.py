@@ -88,10 +88,7 @@ class Ends(NamedTuple):
 
 
 def spread_lengths(smallest: float, step: float, window: float, drift: float) -> tuple[FloatArray, FloatArray]:
-    """Nodes and weights of the integral over the length of spreading s; ``drift = V / (2 kappa)``, 1/m.
-
-    Heat that has spread by s has moved by ``drift s**2 / 2``.
-    """
+    """Nodes and weights over the length of spreading s, in which heat moves by ``drift s**2 / 2``, drift in 1/m."""
     speed = abs(drift)
     # Cells of the window drift out of it; after that their heat is gone when it no longer reaches back.
     # Length of spreading over the window at which a source at rest is cut off; the remainder is 1e-8
@@ -130,12 +127,6 @@ def along_x(spread: FloatArray, x: FloatArray, edges: FloatArray, ends: Ends) ->
     if np.isfinite(mirror):
         passed = passed - _primitive(spread, x[:, None] + edges[None, :] - 2 * mirror, length)
     return np.asarray(passed[..., :-1] - passed[..., 1:])
-
-
-def between_offsets(spread: FloatArray, offset: FloatArray, width: float, length: float) -> FloatArray:
-    """Part left at distances along x from the middle of a cell and of its images in both ends: (spread, offset)."""
-    high = _primitive(spread, offset + 0.5 * width, length)
-    return high - _primitive(spread, offset - 0.5 * width, length)
 
 
 def _primitive(spread: FloatArray, distance: FloatArray, length: float) -> FloatArray:
@@ -218,9 +209,13 @@ class SourceOperator:
         offsets[offsets >= x.size] -= self._height
 
         def kernel(first: float) -> ComplexArray:
-            places = first + grid.dx * offsets
-            summed = _summed(spread, lateral, places.size, lambda part: between_offsets(part, places, grid.dx, length))
-            return np.asarray(fft(summed, axis=0))
+            """Part left at distances along x from the middle of a cell and of its images in both ends."""
+            low, high = (first + grid.dx * offsets + side * grid.dx for side in (-0.5, 0.5))
+
+            def factors(part: FloatArray) -> FloatArray:
+                return _primitive(part, high, length) - _primitive(part, low, length)
+
+            return np.asarray(fft(_summed(spread, lateral, low.size, factors), axis=0))
 
         self._spectrum = kernel(0.0)
         mirror = body.ends.low if np.isfinite(body.ends.low) else body.ends.high

@@ -20,9 +20,6 @@ STRAINS = tuple(f"plastic_strain_{pair}" for pair in ("xx", "yy", "zz", "xy", "x
 SPLITS, DEGREE = 2, 5
 
 
-NEAR = 1.0  # Largest distance of the outer position from an end, over the spacing, for a cell that ends on the end
-
-
 def eigenstrain_stress(
     body: Body,
     eigenstrain: xr.Dataset,
@@ -77,21 +74,24 @@ def eigenstrain_stress(
     names = [name for name in STRAINS if name in eigenstrain]
     if not names:
         raise InvalidInputError("eigenstrain", sorted(map(str, eigenstrain)), f"with one of {', '.join(STRAINS)}")
-    positions = {}
-    for axis in ("x", "z"):
+    positions, edges = {}, {}
+    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
         if axis not in eigenstrain.coords:
             raise InvalidInputError("eigenstrain.coords", list(eigenstrain.coords), f"with {axis} (metres)")
         positions[axis] = checks.coordinates(f"eigenstrain.{axis}", eigenstrain[axis].values)
-    edges = {}
-    for axis, argument, (low, high) in (("x", x_edges, body.extent), ("z", z_edges, (0.0, np.inf))):
-        if argument is None and positions[axis].size < 2:
+        if argument is not None:
+            edges[axis] = checks.coordinates(f"{axis}_edges", argument)
+        elif positions[axis].size < 2:
             raise InvalidInputError(f"{axis}_edges", None, "given where there is one cell", "its size is not known")
-        edges[axis] = (
-            edges_around(positions[axis], low, high)
-            if argument is None
-            else checks.coordinates(f"{axis}_edges", argument)
-        )
-        _check_edges(axis, edges[axis], positions[axis], low, high)
+        else:
+            edges[axis] = edges_around(positions[axis], low, high)
+        centres, around = positions[axis], edges[axis]
+        if around.size != centres.size + 1 or (np.diff(around) <= 0).any():
+            raise InvalidInputError(f"{axis}_edges", around, f"{centres.size + 1} edges, increasing (metres)")
+        if around[0] < low or around[-1] > high:
+            raise InvalidInputError(f"{axis}_edges", around, f"inside the body, {low:g} to {high:g} m")
+        if (centres < around[:-1]).any() or (centres > around[1:]).any():
+            raise InvalidInputError(f"{axis}_edges", around, "such that each cell holds its position")
     strain = np.zeros((6, positions["x"].size, positions["z"].size))
     for name in names:
         values = np.asarray(eigenstrain[name].transpose("x", "z").values, dtype=np.float64)
@@ -118,22 +118,11 @@ def eigenstrain_stress(
     return describe(result, "residual stress")
 
 
-def _check_edges(axis: str, edges: np.ndarray, centres: np.ndarray, low: float, high: float) -> None:
-    """Raise unless cells with these edges are inside the body, each around its position."""
-    if edges.size != centres.size + 1 or (np.diff(edges) <= 0).any():
-        raise InvalidInputError(f"{axis}_edges", edges, f"{centres.size + 1} edges, increasing (metres)")
-    if edges[0] < low or edges[-1] > high:
-        raise InvalidInputError(f"{axis}_edges", edges, f"inside the body, {low:g} to {high:g} m")
-    if (centres < edges[:-1]).any() or (centres > edges[1:]).any():
-        raise InvalidInputError(f"{axis}_edges", edges, "such that each cell holds its position")
-
-
 def edges_around(positions: FloatArray, low: float, high: float) -> FloatArray:
     """Edges half-way between positions; outer cells end at `low` and `high` if these are as near as the next one."""
     middle = 0.5 * (positions[1:] + positions[:-1])
-    near = [NEAR * (positions[1] - positions[0]), NEAR * (positions[-1] - positions[-2])]
-    first = low if positions[0] - low <= near[0] else 2 * positions[0] - middle[0]
-    last = high if high - positions[-1] <= near[1] else 2 * positions[-1] - middle[-1]
+    first = low if positions[0] - low <= positions[1] - positions[0] else 2 * positions[0] - middle[0]
+    last = high if high - positions[-1] <= positions[-1] - positions[-2] else 2 * positions[-1] - middle[-1]
     return np.concatenate([[first], middle, [last]])
 
 

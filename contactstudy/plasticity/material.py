@@ -51,7 +51,6 @@ class ElasticPlastic:
     def __post_init__(self) -> None:
         if isinstance(self.yield_stress, xr.DataArray):
             profile = in_si("yield_stress", self.yield_stress, "Pa")
-            checks.store(self, yield_stress=profile)
             if profile.dims != ("z",) or "z" not in profile.coords:
                 raise InvalidInputError("yield_stress.dims", profile.dims, "('z',) with depths z in metres")
             depths = checks.coordinates("yield_stress.z", profile["z"].values)
@@ -59,6 +58,7 @@ class ElasticPlastic:
                 raise InvalidInputError("yield_stress.z", depths, "increasing (metres)")
             for value in checks.coordinates("yield_stress", profile.values, "Pa"):
                 checks.positive("yield_stress", float(value), "Pa")
+            checks.store(self, yield_stress=profile)
         else:
             checks.store(self, yield_stress=checks.positive("yield_stress", self.yield_stress, "Pa"))
         for name in ("isotropic_hardening", "kinematic_hardening"):

@@ -1,14 +1,11 @@
 """Passes of a contact over an elastic-plastic body, until the residual state is stationary.
 
 All points of one (x, z) have the same history: the stress field along y from the leading edge to the trailing edge.
-The state after a pass is uniform along y, with the residual stress of the cross-section (eigenstrain/): no strain along
-y, free ends in the plane. During the pass the plastic strain changes along y from the state ahead of the contact to the
-state behind it, as in a line contact: each column along x acts separately, in plane strain.
-
-In coordinates that move with the contact the pass is steady. Ahead of the contact the state of the former pass is
-uniform along y; behind it the state is uniform again, and between the two the plastic strain changes along y. The
-residual stress at each position depends on the strain at all positions. Two steps alternate until the strain is
-stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
+In coordinates that move with the contact the pass is steady. The states ahead of the contact and behind it are uniform
+along y, with the residual stress of the cross-section (eigenstrain/): no strain along y, free ends in the plane.
+Between the two the plastic strain changes along y, as in a line contact: each column along x acts separately, in plane
+strain. The residual stress at each position depends on the strain at all positions. Two steps alternate until the
+strain is stationary (K. Dang Van, M. H. Maitournam, J. Mech. Phys. Solids 41 (1993) 1691):
 
 * at fixed total strain, von Mises' radial return along y gives the plastic strain of every point
   (J. C. Simo, T. J. R. Hughes, Computational Inelasticity, 1998, chapter 3);
@@ -22,7 +19,7 @@ from __future__ import annotations
 import warnings
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -60,20 +57,6 @@ MOST_REPETITIONS = 300  # Bound on the repetitions of a pass
 MIXED = 6  # Latest iterates that are mixed
 
 
-class Residual(Protocol):
-    """Residual stresses (6, cell) from plastic strains (6, cell) that are uniform along y."""
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Return the stresses."""
-
-
-class Along(Protocol):
-    """Residual stresses (6, place, column, layer) from plastic strains that change along y."""
-
-    def stresses(self, eigenstrain: FloatArray) -> FloatArray:
-        """Return the stresses."""
-
-
 class State(NamedTuple):
     """State of some cells after passes."""
 
@@ -87,9 +70,9 @@ class Passage:
     """A pass over some cells of the cross-section."""
 
     elastic: FloatArray  # (6, place, cell), stress of the contact, Pa
-    residual: Residual  # of the body, strains uniform along y
-    layers: Residual  # of layers without an end
-    along: Along  # of layers, strains that change along y on a closed way
+    residual: Influence | LayerInfluence  # of the body, strains uniform along y
+    layers: LayerInfluence  # without an end
+    along: PeriodicLayers  # strains that change along y on a closed way
     places: int  # on the closed way
     box: tuple[IntArray, IntArray]  # column and layer (cell) in `along`
     yield_stress: FloatArray  # (cell), in tension, Pa
@@ -115,10 +98,7 @@ class Passage:
         return State(before.strain + plastic[:, -1], accumulated, before.converged and converged)
 
     def _evaluate(self, flowed: FloatArray) -> FloatArray:
-        """Residual stress (6, place, cell) of this pass's plastic strain (6, place, cell), columns in plane strain.
-
-        The correction to the whole body grows with the part of the final strain that the pass has made.
-        """
+        """Residual stress (6, place, cell) of this pass's plastic strain (6, place, cell), columns in plane strain."""
         last = flowed[:, -1]
         column, layer = self.box
         inside = np.zeros((6, self.places, column.max() + 1, layer.max() + 1))
@@ -128,6 +108,7 @@ class Passage:
         ramp = np.clip(2 - 2 * (np.arange(places) + 0.5) / places, 0.0, 1.0)
         inside[:, behind:, column, layer] = (ramp**2 * (3 - 2 * ramp))[:, None] * last[:, None]
         stress = self.along.stresses(inside)[:, :behind, column, layer]
+        # The correction to the whole body grows with the part of the final strain that the pass has made.
         size = float(DOUBLED @ (last**2).sum(axis=1))
         if size:
             share = np.einsum("i,ipc,ic->p", DOUBLED, flowed, last) / size
@@ -204,7 +185,7 @@ class _Section:
         """Yield stress in every cell, Pa."""
         return np.tile(self.material.yield_stress_at(self.z), self.x.size)
 
-    def residual(self, cells: IntArray) -> Residual:
+    def residual(self, cells: IntArray) -> Influence | LayerInfluence:
         """Residual stress of plastic strain in some of the cells, in the same ones."""
         if self.layered:
             return self.layers
@@ -258,10 +239,8 @@ class _Section:
 
     def may_flow(self, residual: FloatArray, part: float) -> IntArray:
         """Cells whose von Mises stress passes a part of their yield stress at some instant."""
-        size = np.max(
-            [length(deviator(self.elastic[:, position] + residual)) for position in range(self.y.size)], axis=0
-        )
-        return np.flatnonzero(size * np.sqrt(1.5) > part * self.yield_stress)
+        sizes = [length(deviator(self.elastic[:, position] + residual)) for position in range(self.y.size)]
+        return np.flatnonzero(np.max(sizes, axis=0) * np.sqrt(1.5) > part * self.yield_stress)
 
 
 def residual_stress(
@@ -328,8 +307,7 @@ def residual_stress(
     """
     checks.instance("body", body, Body, "a HalfSpace, a QuarterSpace or a FiniteLengthSpace")
     checks.instance("material", material, ElasticPlastic, "a contactstudy.plasticity.ElasticPlastic")
-    passes = checks.count("passes", passes)
-    substeps = checks.count("substeps", substeps)
+    passes, substeps = checks.count("passes", passes), checks.count("substeps", substeps)
     tolerance = checks.positive("tolerance", tolerance)
     section, dims = _section(stress, body, material)
     cells = section.may_flow(np.zeros((6, 1)), NEAR_YIELD)
@@ -359,9 +337,8 @@ def residual_stress(
                 "lower the load, or give the material hardening: flow above the shakedown limit has no end without",
             )
         state = after
-        states.append(
-            _to_dataset(section, dims, state, residual, displaced, grown=grown).expand_dims(pass_number=[number])
-        )
+        left = _to_dataset(section, dims, state, residual, displaced, grown=grown)
+        states.append(left.expand_dims(pass_number=[number]))
         # Stress of a pass' flow, over the tolerance times the yield stress, below which the state is stationary
         if 3 * body.material.shear_modulus * grown <= 2.0 * tolerance * section.yield_stress.min():
             break
@@ -371,8 +348,7 @@ def residual_stress(
             ConvergenceWarning,
             stacklevel=2,
         )
-    joined = xr.concat(states, "pass_number")
-    return describe(joined, "what passes of a contact leave")
+    return describe(xr.concat(states, "pass_number"), "what passes of a contact leave")
 
 
 def _section(stress: xr.Dataset, body: Body, material: ElasticPlastic) -> tuple[_Section, tuple[str, str]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import NamedTuple, SupportsFloat
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -65,22 +65,22 @@ class Reference(NamedTuple):
     def compare(
         self,
         quantity: str,
-        computed: float,
-        expected: float,
+        computed: SupportsFloat,
+        expected: SupportsFloat,
         tolerance: float,
         *,
         relative: bool = False,
         curve: Curve | None = None,
     ) -> Check:
         """Compare two numbers."""
-        difference = float(computed) - float(expected)
+        value, reference = float(computed), float(expected)
         return Check(
             case=self.case,
             quantity=f"{quantity}, relative" if relative else quantity,
             source=self.source,
-            computed=float(computed),
-            expected=float(expected),
-            difference=difference / expected if relative else difference,
+            computed=value,
+            expected=reference,
+            difference=(value - reference) / (reference if relative else 1.0),
             tolerance=tolerance,
             curve=curve,
         )
@@ -95,22 +95,11 @@ class Reference(NamedTuple):
         median: bool = False,
         curve: Curve | None = None,
     ) -> Check:
-        """Compare two arrays: their largest difference, or its median."""
+        """Compare two arrays where they differ most, or by the median."""
         values, references = (np.ravel(a).astype(float) for a in np.broadcast_arrays(computed, expected))
         distance = np.abs(values - references)
-        if np.isnan(distance).any():
-            worst = int(np.flatnonzero(np.isnan(distance))[0])
-        elif median:
-            worst = int(np.argsort(distance)[distance.size // 2])
-        else:
-            worst = int(distance.argmax())
-        return Check(
-            case=self.case,
-            quantity=f"{quantity}, {'median' if median else 'largest'} difference",
-            source=self.source,
-            computed=float(values[worst]),
-            expected=float(references[worst]),
-            difference=float(distance[worst]),
-            tolerance=tolerance,
-            curve=curve,
-        )
+        # argmax returns a NaN as well, which no tolerance admits.
+        is_median = median and not np.isnan(distance).any()
+        worst = np.argsort(distance)[distance.size // 2] if is_median else distance.argmax()
+        described = f"{quantity}, {'median' if median else 'largest'} difference"
+        return self.compare(described, values[worst], references[worst], tolerance, curve=curve)

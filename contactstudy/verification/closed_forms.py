@@ -158,9 +158,7 @@ def point_load(
 
 
 def rectangle_displacement(x: ArrayLike, y: ArrayLike, half_x: float, half_y: float, modulus: float) -> FloatArray:
-    """Return the normal displacement of the surface under a unit pressure (Johnson 3.25).
-
-    The pressure covers ``|x| < half_x``, ``|y| < half_y``.
+    """Return the surface's displacement under a unit pressure on ``|x| < half_x``, ``|y| < half_y`` (Johnson 3.25).
 
     Each of the four corners gives ``u ln(v + r) + v ln(u + r)`` with its distances `u`, `v` and ``r = hypot(u, v)``,
     over ``pi E*``; `modulus` is ``E*``. Not on the lines through an edge.

@@ -27,13 +27,12 @@ from contactstudy.verification import closed_forms
 from contactstudy.verification.check import Check, Curve, Reference
 from contactstudy.verification.problems import (
     LINE_LOAD,
-    cell_means,
     components,
     on_cells,
     point_pressure,
     quartic,
     strip,
-    strip_integral,
+    strip_means,
     unit_material,
 )
 
@@ -43,6 +42,11 @@ POISSON = 0.3  # Of every body here, unless a check states another
 def _half_space() -> HalfSpace:
     """Half-space of the unit material."""
     return HalfSpace(material=unit_material(POISSON))
+
+
+def _finite(length: float) -> FiniteLengthSpace:
+    """Body of the unit material with two free ends."""
+    return FiniteLengthSpace(length=length, material=unit_material(POISSON))
 
 
 def hertz_checks() -> Iterator[Check]:
@@ -55,25 +59,20 @@ def hertz_checks() -> Iterator[Check]:
     middle = contact["pressure"].sel(y=0, method="nearest")
     exact = peak * np.sqrt(np.maximum(1 - middle["x"].values ** 2, 0))
     curve = Curve(("x / a", "p / p0"), middle["x"].values, middle.values / peak, exact / peak)
-    largest = float(contact["pressure"].max())
+    largest = contact["pressure"].max()
     yield Reference(case, source).compare("peak pressure", largest, peak, 2e-4, relative=True, curve=curve)
-    yield Reference(case, source).compare("approach", float(contact["approach"]), approach, 1e-4, relative=True)
+    yield Reference(case, source).compare("approach", contact["approach"], approach, 1e-4, relative=True)
 
     long_radius, short_radius = 4.0, 1.0
     ellipse = closed_forms.hertz_ellipse(4 / 3, long_radius, short_radius, 1.0)
-    window = (1.25 * ellipse.long, 1.25 * ellipse.short)
-    gap = on_cells(
-        lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius),
-        (-window[0], window[0]),
-        (-window[1], window[1]),
-        (129, 129),
-    )
+    x_range, y_range = ((-1.25 * axis, 1.25 * axis) for axis in (ellipse.long, ellipse.short))
+    gap = on_cells(lambda x, y: x**2 / (2 * long_radius) + y**2 / (2 * short_radius), x_range, y_range, (129, 129))
     contact = solve_contact(body, gap, load=4 / 3)
     case = f"Hertz elliptic contact, radii 4 to 1, axes {ellipse.long / ellipse.short:.2f} to 1"
     source = "Hertz; Johnson (1985) 4.26 to 4.32"
-    largest = float(contact["pressure"].max())
+    largest = contact["pressure"].max()
     yield Reference(case, source).compare("peak pressure", largest, ellipse.max_pressure, 2e-4, relative=True)
-    yield Reference(case, source).compare("approach", float(contact["approach"]), ellipse.approach, 1e-4, relative=True)
+    yield Reference(case, source).compare("approach", contact["approach"], ellipse.approach, 1e-4, relative=True)
     touched = contact["pressure"].max("y") > 0
     half_length = 0.5 * float(touched.sum()) * float(gap["x"].diff("x")[0])
     yield Reference(case, source).compare("long semi-axis over its value", half_length / ellipse.long, 1.0, 0.015)
@@ -85,9 +84,9 @@ def hertz_checks() -> Iterator[Check]:
     half_width, peak = closed_forms.hertz_line(load, 0.5, 1.0)
     exact = peak * np.sqrt(np.maximum(1 - (middle["y"].values / half_width) ** 2, 0))
     curve = Curve(("y / a", "p / p0"), middle["y"].values, middle.values, exact)
-    yield Reference("Hertz line contact, middle of a roller of length 56a", "Hertz; Johnson (1985) 4.45").compare(
-        "peak pressure under the load per length there", float(middle.max()), peak, 2e-4, relative=True, curve=curve
-    )
+    case, source = "Hertz line contact, middle of a roller of length 56a", "Hertz; Johnson (1985) 4.45"
+    quantity = "peak pressure under the load per length there"
+    yield Reference(case, source).compare(quantity, middle.max(), peak, 2e-4, relative=True, curve=curve)
 
 
 def circle_checks() -> Iterator[Check]:
@@ -97,34 +96,27 @@ def circle_checks() -> Iterator[Check]:
     z = np.linspace(0, 3, 31)
     stress = stress_field(body, circle, x=[0.0], y=[0.0], z=z, inside_cells=circle).isel(x=0, y=0)
     axial, radial = closed_forms.hertz_circle_axis(z, 1.0, 1.0, POISSON)
+    curve = Curve(("z / a", "sigma_xx / p0"), z, stress["sigma_xx"].values, radial)
+    computed = [stress["sigma_zz"], stress["sigma_xx"]]
     yield Reference("circular Hertz pressure, on the axis", "Johnson (1985) 3.45").compare_fields(
-        "sigma_zz, sigma_xx / p0",
-        [stress["sigma_zz"], stress["sigma_xx"]],
-        [axial, radial],
-        2e-4,
-        curve=Curve(("z / a", "sigma_xx / p0"), z, stress["sigma_xx"].values, radial),
+        "sigma_zz, sigma_xx / p0", computed, [axial, radial], 2e-4, curve=curve
     )
     x, y, z = np.array([0.0, 0.5, 1.2]), np.linspace(-1.5, 1.5, 13), np.array([0.1, 0.25, 0.5, 1.0, 2.0])
     stress = stress_field(body, circle, friction=0.25, x=x, y=y, z=z, inside_cells=circle)
     at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
     exact = closed_forms.hertz_circle(at_x, at_y, at_z, 1.0, 1.0, poisson=POISSON, friction=0.25)
-    yield Reference(
-        "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a", "Hamilton (1983); Hamilton and Goodman (1966)"
-    ).compare_fields(
-        "six stresses / p0",
-        components(stress),
-        components(exact),
-        3e-3,
-        curve=Curve(
-            ("y / a", "tau_yz / p0, x = 0, z = 0.25a"), y, stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1]
-        ),
+    labels = "y / a", "tau_yz / p0, x = 0, z = 0.25a"
+    curve = Curve(labels, y, stress["tau_yz"].values[0, :, 1], exact["tau_yz"][0, :, 1])
+    case = "circular Hertz pressure, sliding, f = 0.25, z >= 0.1a"
+    yield Reference(case, "Hamilton (1983); Hamilton and Goodman (1966)").compare_fields(
+        "six stresses / p0", components(stress), components(exact), 3e-3, curve=curve
     )
 
 
 def line_checks() -> Iterator[Check]:
     """Stresses in the middle of a long strip under a line contact's pressure, on the top and below."""
     body, length, cells_y, half_window = _half_space(), 2000.0, 160, 1.25
-    pressure = cell_means(strip_integral, (0, length), (-half_window, half_window), (80, cells_y))
+    pressure = strip_means((0, length), (-half_window, half_window), (80, cells_y))
     cell = 2 * half_window / cells_y
     # Edges and middles of cells and points between them, without the last cell in contact and its border.
     edges = -1.25 + cell * np.arange(1, cells_y)
@@ -145,15 +137,12 @@ def line_checks() -> Iterator[Check]:
             ).isel(x=0)
             exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, POISSON, friction=friction)
             depth = min(2, z.size - 1)
-            curve = Curve(
-                ("y / a", f"sigma_yy / p0, z = {z[depth]:g}a"),
-                y,
-                stress["sigma_yy"].values[:, depth],
-                exact["sigma_yy"][:, depth],
+            labels = "y / a", f"sigma_yy / p0, z = {z[depth]:g}a"
+            curve = Curve(labels, y, stress["sigma_yy"].values[:, depth], exact["sigma_yy"][:, depth])
+            case = f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {label}"
+            yield Reference(case, source).compare_fields(
+                "six stresses / p0", components(stress), components(exact), tolerance, curve=curve
             )
-            yield Reference(
-                f"line contact's pressure on a strip of length 2000a, f = {friction:g}, {label}", source
-            ).compare_fields("six stresses / p0", components(stress), components(exact), tolerance, curve=curve)
 
 
 def rectangle_checks() -> Iterator[Check]:
@@ -162,11 +151,9 @@ def rectangle_checks() -> Iterator[Check]:
     pressure = on_cells(lambda x, y: np.ones_like(x + y), (-half_x, half_x), (-half_y, half_y), (12, 8))
     z = np.array([0.2, 0.5, 1.0, 2.0, 5.0])
     stress = stress_field(body, pressure, x=[half_x], y=[half_y], z=z).isel(x=0, y=0)
-    yield Reference(
-        "uniform pressure on a rectangle 2 x 1, below its corner", "Love (1929); Newmark (1935)"
-    ).compare_fields(
-        "sigma_zz / p", stress["sigma_zz"], closed_forms.below_rectangle_corner(z, 2 * half_x, 2 * half_y), 1e-9
-    )
+    case, source = "uniform pressure on a rectangle 2 x 1, below its corner", "Love (1929); Newmark (1935)"
+    below = closed_forms.below_rectangle_corner(z, 2 * half_x, 2 * half_y)
+    yield Reference(case, source).compare_fields("sigma_zz / p", stress["sigma_zz"], below, 1e-9)
     x, y = np.array([-0.4, 0.3, 1.5]), np.array([-0.9, 0.1, 0.4])
     stress = stress_field(body, pressure, friction=0.3, x=x, y=y, z=z)
     at_x, at_y, at_z = np.meshgrid(x, y, z, indexing="ij")
@@ -176,12 +163,10 @@ def rectangle_checks() -> Iterator[Check]:
         "Boussinesq and Cerruti, integrated by Gauss quadrature",
     ).compare_fields("six stresses / p", components(stress), components(exact), 1e-8)
     sunk = surface_displacement(body, pressure)
-    exact_sunk = closed_forms.rectangle_displacement(
-        sunk["x"].values[:, None], sunk["y"].values[None, :], half_x, half_y, 1.0
-    )
-    yield Reference("uniform pressure on a rectangle 2 x 1", "Love (1929); Johnson 3.25").compare_fields(
-        "E* u_z / (p a)", sunk, exact_sunk, 1e-9
-    )
+    centres = sunk["x"].values[:, None], sunk["y"].values
+    exact_sunk = closed_forms.rectangle_displacement(*centres, half_x, half_y, 1.0)
+    case, source = "uniform pressure on a rectangle 2 x 1", "Love (1929); Johnson 3.25"
+    yield Reference(case, source).compare_fields("E* u_z / (p a)", sunk, exact_sunk, 1e-9)
 
 
 def point_checks() -> Iterator[Check]:
@@ -194,12 +179,12 @@ def point_checks() -> Iterator[Check]:
         (0.0, "Boussinesq (1885); Johnson 3.2"),
         (1.0, "Boussinesq and Cerruti; Johnson 3.2, 3.6"),
     ):
-        stress = stress_field(_half_space(), pressure, friction=friction, **positions)
-        exact = closed_forms.point_load(x, y, z, POISSON, 1.0, tangential=friction)
-        scale = max(float(np.abs(value).max()) for value in exact.values())
-        yield Reference(
-            "load on one cell of 0.04a, 0.9a and more away" + (", f = 1" if friction else ""), source
-        ).compare_fields("six stresses over the largest", components(stress) / scale, components(exact) / scale, 1e-3)
+        computed = components(stress_field(_half_space(), pressure, friction=friction, **positions))
+        exact = components(closed_forms.point_load(x, y, z, POISSON, 1.0, tangential=friction))
+        case, scale = "load on one cell of 0.04a, 0.9a and more away", np.abs(exact).max()
+        case += ", f = 1" if friction else ""
+        quantity = "six stresses over the largest"
+        yield Reference(case, source).compare_fields(quantity, computed / scale, exact / scale, 1e-3)
 
 
 def plane_checks() -> Iterator[Check]:
@@ -210,26 +195,17 @@ def plane_checks() -> Iterator[Check]:
         (1000.0, 100, POISSON, "plane strain, in the middle", "sigma_xx", 3e-3),
         (0.05, 2, 0.0, "plane stress", "sigma_yy", 2e-3),
     ):
-        body = FiniteLengthSpace(length=length, material=unit_material(POISSON))
-        pressure = cell_means(strip_integral, (0, length), (-1.25, 1.25), (cells, 160))
+        body = _finite(length)
+        pressure = strip_means((0, length), (-1.25, 1.25), (cells, 160))
         x = [0.5 * length] if cells > 2 else [0.0, 0.3 * length, 0.5 * length]
         for friction in (0.0, 0.3):
             stress = stress_field(body, pressure, friction=friction, x=x, y=y, z=z, inside_cells=pressure)
             exact = closed_forms.hertz_strip(y[:, None], z, 1.0, 1.0, poisson, friction=friction)
-            line = {"x": len(x) - 1, "z": 3}
-            yield Reference(
-                f"strip load on a body of length {length:g}a, f = {friction:g}, z >= 0.1a", source + state
-            ).compare_fields(
-                "six stresses / p0",
-                components(stress),
-                components(exact)[:, None],
-                tolerance,
-                curve=Curve(
-                    ("y / a", f"{component} / p0, z = 0.5a"),
-                    y,
-                    stress[component].isel(line).values,
-                    exact[component][:, 3],
-                ),
+            computed = stress[component].isel(x=-1, z=3).values
+            curve = Curve(("y / a", f"{component} / p0, z = 0.5a"), y, computed, exact[component][:, 3])
+            case = f"strip load on a body of length {length:g}a, f = {friction:g}, z >= 0.1a"
+            yield Reference(case, source + state).compare_fields(
+                "six stresses / p0", components(stress), components(exact)[:, None], tolerance, curve=curve
             )
 
 
@@ -241,16 +217,9 @@ def plate_contact_checks() -> Iterator[Check]:
     pressure = contact["pressure"].mean("x")
     half_width, peak = closed_forms.hertz_line(LINE_LOAD, 0.5, material.young)
     exact = peak * np.sqrt(np.maximum(1 - (gap["y"].values / half_width) ** 2, 0))
-    yield Reference(
-        "rigid cylinder on a body of length 0.05a", "Hertz with plane stress modulus E; Johnson (1985) 4.45"
-    ).compare(
-        "peak pressure",
-        float(pressure.max()),
-        peak,
-        1e-3,
-        relative=True,
-        curve=Curve(("y / a", "p / p0"), gap["y"].values, pressure.values, exact),
-    )
+    curve = Curve(("y / a", "p / p0"), gap["y"].values, pressure.values, exact)
+    case, source = "rigid cylinder on a body of length 0.05a", "Hertz with plane stress modulus E; Johnson (1985) 4.45"
+    yield Reference(case, source).compare("peak pressure", pressure.max(), peak, 1e-3, relative=True, curve=curve)
 
 
 def body_checks() -> Iterator[Check]:
@@ -259,30 +228,20 @@ def body_checks() -> Iterator[Check]:
     bump = on_cells(lambda x, y: np.maximum(1 - (x - 20) ** 2 - y**2, 0), (0, 40), (-1.5, 1.5), (320, 24))
     finite, half = (
         stress_field(body, bump, friction=0.2, x=[19.0, 20.0, 20.5], **points, inside_cells=bump)
-        for body in (FiniteLengthSpace(length=40.0, material=unit_material()), HalfSpace(material=unit_material()))
+        for body in (_finite(40.0), _half_space())
     )
-    yield Reference(
-        "body of length 40a loaded over 2a in its middle, f = 0.2", "half-space under the same load"
-    ).compare_fields("six stresses / p0", components(finite), components(half), 1e-3)
+    case, source = "body of length 40a loaded over 2a in its middle, f = 0.2", "half-space under the same load"
+    yield Reference(case, source).compare_fields("six stresses / p0", components(finite), components(half), 1e-3)
     at_x = [0.0, 0.1, 1.0, 2.5]
     for length, tolerance in ((20.0, 5e-3), (40.0, 1.25e-3)):
         fields = []
-        for span, body in (
-            (length, FiniteLengthSpace(length=length, material=unit_material())),
-            (10.0, QuarterSpace(material=unit_material())),
-        ):
+        for span, body in ((length, _finite(length)), (10.0, QuarterSpace(material=unit_material()))):
             load = on_cells(lambda x, y: strip(x, y) * (x < 2), (0, span), (-2, 2), (round(8 * span), 48))
             stress = stress_field(body, load, friction=0.2, x=at_x, **points, inside_cells=load)
             fields.append(components(stress))
-        finite_fields, quarter_fields = fields
-        yield Reference(
-            f"body of length {length:g}a loaded over 2a at one end, f = 0.2", "quarter space under the same load"
-        ).compare_fields("six stresses / p0", finite_fields, quarter_fields, tolerance)
-
-
-def _finite(length: float) -> FiniteLengthSpace:
-    """Body of the unit material."""
-    return FiniteLengthSpace(length=length, material=unit_material())
+        case = f"body of length {length:g}a loaded over 2a at one end, f = 0.2"
+        source = "quarter space under the same load"
+        yield Reference(case, source).compare_fields("six stresses / p0", fields[0], fields[1], tolerance)
 
 
 def free_end_checks() -> Iterator[Check]:
@@ -310,14 +269,8 @@ def equilibrium_checks() -> Iterator[Check]:
         points: dict[str, Any] = {name: [value] for name, value in centre.items()} | {axis: centre[axis] + offsets}
         stress = stress_field(body, pressure, friction=friction, **points, inside_cells=pressure)
         slopes[axis] = {name: float(weights @ stress[name].values.ravel()) for name in STRESSES}
-    divergence = [
-        sum(slopes[axis][name] for axis, name in zip("xyz", names, strict=True))
-        for names in (
-            ("sigma_xx", "tau_xy", "tau_xz"),
-            ("tau_xy", "sigma_yy", "tau_yz"),
-            ("tau_xz", "tau_yz", "sigma_zz"),
-        )
-    ]
+    rows = ("sigma_xx", "tau_xy", "tau_xz"), ("tau_xy", "sigma_yy", "tau_yz"), ("tau_xz", "tau_yz", "sigma_zz")
+    divergence = [sum(slopes[axis][name] for axis, name in zip("xyz", row, strict=True)) for row in rows]
     size = max(abs(value) for by_name in slopes.values() for value in by_name.values())
     case = "smooth strip load, f = 0.3, L = 4a"
     yield Reference(f"{case}, 0.3a from the end", "equilibrium").compare_fields(
@@ -366,12 +319,10 @@ def reciprocity_checks() -> Iterator[Check]:
         body, span, cells = _finite(length), (0, length), (48, 32)
         first = on_cells(lambda x, y: np.exp(-((x - 1) ** 2) - y**2), span, (-2, 2), cells)
         second = on_cells(lambda x, y: np.exp(-((x - 2) ** 2) - 2 * y**2), span, (-2, 2), cells)
-        work = float((first * surface_displacement(body, second)).sum())
-        other = float((second * surface_displacement(body, first)).sum())
-        case = f"two loads on a body of length {length:g}a"
-        yield Reference(case, "Betti").compare(
-            "work of one on the other's displacement", work, other, 1e-9, relative=True
-        )
+        work = (first * surface_displacement(body, second)).sum()
+        other = (second * surface_displacement(body, first)).sum()
+        case, quantity = f"two loads on a body of length {length:g}a", "work of one on the other's displacement"
+        yield Reference(case, "Betti").compare(quantity, work, other, 1e-9, relative=True)
 
 
 def alternation_checks() -> Iterator[Check]:
@@ -385,7 +336,7 @@ def alternation_checks() -> Iterator[Check]:
     explicit, face_load = system.solve(source), source.copy()
     for _ in range(200):
         face_load = source + system.source(Load.NORMAL, modes.on_end * system.on_top(system.scale * face_load))
-    scale = np.abs(explicit).max()
-    yield Reference(
-        "equivalent loads at one wavenumber, 200 alternations", "iteration of Hetenyi (1970) and Keer"
-    ).compare_fields("face loads over the largest", explicit / scale, system.scale * face_load / scale, 1e-9)
+    scale, alternated = np.abs(explicit).max(), system.scale * face_load
+    case, iteration = "equivalent loads at one wavenumber, 200 alternations", "iteration of Hetenyi (1970) and Keer"
+    quantity = "face loads over the largest"
+    yield Reference(case, iteration).compare_fields(quantity, explicit / scale, alternated / scale, 1e-9)

@@ -54,19 +54,17 @@ def shakedown_checks() -> Iterator[Check]:
     """Limits of line contacts."""
     case, quantity = "line contact without friction", "p0 / k"
     plane, axial = (shakedown_limit(line_contact(0.0), axial=axial) for axial in (False, True))
-    first, limit = float(plane["first_yield_limit"]), float(axial["shakedown_limit"])
+    first, limit = plane["first_yield_limit"], axial["shakedown_limit"]
     on_axis = von_mises(hertz_strip(0.0, np.linspace(0.5, 1.0, 5001), 1.0, 1.0, 0.3)).max() / np.sqrt(3.0)
-    yield Reference(case, "McEwen (1949)").compare(
-        f"{quantity} at first yield", first, 1 / on_axis, 2e-3, relative=True
-    )
+    at_yield = f"{quantity} at first yield"
+    yield Reference(case, "McEwen (1949)").compare(at_yield, first, 1 / on_axis, 2e-3, relative=True)
     yield Reference(case, "Johnson (1962)").compare(f"{quantity} at shakedown", limit, 4.0, 2e-3, relative=True)
     for friction in (0.4, 0.6):
         top = shakedown(line_contact(friction)).isel(x=0, z=0)
         case = f"top of a line contact, friction {friction:g}"
+        source = "closed form, one-dimensional search"
         for name, expected in zip(("first_yield_stress", "shakedown_stress"), on_top(friction), strict=True):
-            yield Reference(case, "closed form, one-dimensional search").compare(
-                f"{name} / p0", float(top[name]), expected, 1e-3
-            )
+            yield Reference(case, source).compare(f"{name} / p0", top[name], expected, 1e-3)
 
 
 def residual_checks() -> Iterator[Check]:

@@ -38,25 +38,12 @@ def on_cells(
 ) -> xr.DataArray:
     """Values of a function of (x, y) at cell centres; it is called with a column of x and a row of y."""
     grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
-    return on_grid(lambda grid: function(grid.x[:, None], grid.y[None, :]), grid)
+    return on_grid(function(grid.x[:, None], grid.y[None, :]), grid)
 
 
-def on_grid(function: Callable[[Grid], FloatArray], grid: Grid) -> xr.DataArray:
-    """Values of a function of a grid, labelled."""
-    values = np.broadcast_to(function(grid), grid.shape)
-    return xr.DataArray(values, coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
-
-
-def cell_means(
-    integral_y: Callable[[FloatArray], FloatArray], x_range: Range, y_range: Range, cells: tuple[int, int]
-) -> xr.DataArray:
-    """Means over the cells of a load uniform along x, from its integral over y: exact resultants."""
-
-    def means(grid: Grid) -> FloatArray:
-        edges = np.linspace(*y_range, grid.cells_y + 1)
-        return np.asarray(np.diff(integral_y(edges)) / grid.dy)[None, :]
-
-    return on_grid(means, Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1]))
+def on_grid(values: FloatArray, grid: Grid) -> xr.DataArray:
+    """Values on the cells of a grid, labelled."""
+    return xr.DataArray(np.broadcast_to(values, grid.shape), coords={"x": grid.x, "y": grid.y}, dims=("x", "y"))
 
 
 def components(fields: Mapping[Any, ArrayLike]) -> FloatArray:
@@ -69,50 +56,35 @@ def strip(x: FloatArray, y: FloatArray) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(1 - y**2, 0.0)) + 0 * x)
 
 
-def strip_integral(y: FloatArray) -> FloatArray:
-    """Integral of `strip` over y from the middle."""
-    inside = np.clip(y, -1.0, 1.0)
-    return np.asarray(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside)))
+def strip_means(x_range: Range, y_range: Range, cells: tuple[int, int]) -> xr.DataArray:
+    """Means of `strip` over the cells, from its integral over y: exact resultants."""
+    grid = Grid(x_range=x_range, y_range=y_range, cells_x=cells[0], cells_y=cells[1])
+    inside = np.clip(np.linspace(*y_range, grid.cells_y + 1), -1.0, 1.0)
+    return on_grid(np.diff(0.5 * (inside * np.sqrt(1 - inside**2) + np.arcsin(inside))) / grid.dy, grid)
 
 
 def point_pressure(grid: Grid, row: int, column: int) -> xr.DataArray:
     """Pressure of a unit load on one cell."""
-
-    def pressure(grid: Grid) -> FloatArray:
-        values = np.zeros(grid.shape)
-        values[row, column] = 1 / grid.cell_area
-        return values
-
-    return on_grid(pressure, grid)
+    values = np.zeros(grid.shape)
+    values[row, column] = 1 / grid.cell_area
+    return on_grid(values, grid)
 
 
 LINE_LOAD = 0.5 * np.pi  # Load per length of the line contact of half-width and peak pressure 1
 
 
 @dataclass(frozen=True)
-class Uniform:
-    """The same pressure from end to end."""
-
-    def __call__(self, x: FloatArray) -> FloatArray:
-        """Shape along x."""
-        return np.ones_like(np.asarray(x, dtype=float))
-
-    def __str__(self) -> str:
-        return "g(x) = 1"
-
-
-@dataclass(frozen=True)
 class Linear:
-    """A pressure that falls from 1 at ``x = 0`` with a constant slope."""
+    """A pressure that falls from 1 at ``x = 0`` with a constant slope, or is uniform."""
 
-    slope: float
+    slope: float = 0.0
 
     def __call__(self, x: FloatArray) -> FloatArray:
         """Shape along x."""
         return np.asarray(1 - self.slope * np.asarray(x, dtype=float))
 
     def __str__(self) -> str:
-        return f"g(x) = 1 - {self.slope} x"
+        return f"g(x) = 1 - {self.slope} x" if self.slope else "g(x) = 1"
 
 
 @dataclass(frozen=True)
@@ -240,13 +212,13 @@ class LubricatedCase:
 
 # Loads whose stresses are stored, by name
 LOAD_CASES: dict[str, LoadCase] = {
-    "full": LoadCase(8.0, Uniform()),
+    "full": LoadCase(8.0, Linear()),
     "middle": LoadCase(8.0, Bump(4.0, 2.0)),
     "eccentric": LoadCase(8.0, Bump(1.5, 1.0)),
-    "full_sliding": LoadCase(8.0, Uniform(), friction=0.3),
+    "full_sliding": LoadCase(8.0, Linear(), friction=0.3),
     "eccentric_sliding": LoadCase(8.0, Bump(1.5, 1.0), friction=0.3),
-    "thin": LoadCase(2.5, Uniform()),
-    "plate_sliding": LoadCase(0.5, Uniform(), friction=0.3),
+    "thin": LoadCase(2.5, Linear()),
+    "plate_sliding": LoadCase(0.5, Linear(), friction=0.3),
     "wedge_sliding": LoadCase(4.0, Linear(0.2), friction=0.2, poisson=0.1),
 }
 # Contacts that are stored, by name

@@ -84,20 +84,10 @@ GROUPS: dict[str, Callable[[bool], Iterator[Check]]] = {
 
 @dataclass(frozen=True, eq=False)
 class Verification:
-    """Results of the suite.
+    """Results of the suite."""
 
-    Attributes
-    ----------
-    level : str
-        "quick" or "full".
-    groups : dict of str to list of Check
-        Checks by the kind of their reference.
-    seconds : float
-        Duration.
-    """
-
-    level: str
-    groups: dict[str, list[Check]] = field(default_factory=dict)
+    level: str  # "quick" or "full"
+    groups: dict[str, list[Check]] = field(default_factory=dict)  # by the kind of the reference
     seconds: float = 0.0
 
     @property
@@ -124,28 +114,14 @@ class Verification:
 
 
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:
-    """Run the suite.
-
-    Parameters
-    ----------
-    level : str
-        "quick" for a minute of one core, "full" for a few, with all load cases.
-    report : callable, optional
-        Called with the group and each check after its comparison.
-
-    Raises
-    ------
-    InvalidInputError
-        If the level is unknown.
-    """
+    """Run the suite as `verify`; `report` is called with the group and each check after its comparison."""
     arguments.instance("level", level, str, "a name")
     arguments.known_name("level", level, LEVELS)
     began = time.perf_counter()
-    groups: dict[str, list[Check]] = {}
+    groups: dict[str, list[Check]] = {name: [] for name in GROUPS}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", MagnitudeWarning)  # the problems have unit moduli and half-widths
         for name, make_checks in GROUPS.items():
-            groups[name] = []
             for check in make_checks(level == "full"):
                 groups[name].append(check)
                 if report is not None:
@@ -213,14 +189,10 @@ def page(verification: Verification, figures: dict[str, str]) -> str:
         parts.append(f"## {name[0].upper()}{name[1:]}")
         rows = ["| case | quantity | reference | computed | expected | difference | allowed | |", "|---" * 8 + "|"]
         for check in group:
-            numbers = [
-                f"{check.computed:.6g}",
-                f"{check.expected:.6g}",
-                f"{check.difference:.1e}",
-                f"{check.tolerance:.1e}",
-            ]
+            values = [f"{check.computed:.6g}", f"{check.expected:.6g}"]
+            errors = [f"{check.difference:.1e}", f"{check.tolerance:.1e}"]
             verdict = "ok" if check.passed else "**FAIL**"
-            rows.append(row([check.case, check.quantity, check.source, *numbers, verdict]))
+            rows.append(row([check.case, check.quantity, check.source, *values, *errors, verdict]))
         parts.append("\n".join(rows))
         if name in figures:
             parts.append(f"![{name}: computed and reference]({figures[name]})")
@@ -243,40 +215,20 @@ def panels(count: int) -> tuple[Figure, list[Axes]]:
 
 def plot_profiles(checks: list[Check]) -> Figure:
     """Draw the profiles of checks: computed as a line, the reference as circles."""
-    drawn = [check for check in checks if check.curve is not None]
+    drawn = [(check.case, check.curve) for check in checks if check.curve is not None]
     figure, axes = panels(len(drawn))
-    for ax, check in zip(axes, drawn, strict=True):
-        curve = check.curve
-        assert curve is not None
+    for ax, (case, curve) in zip(axes, drawn, strict=True):
         thinned = slice(None, None, max(1, curve.positions.size // 40))
         ax.plot(curve.positions, curve.computed, color="C0", label="computed")
-        ax.plot(
-            curve.positions[thinned],
-            curve.expected[thinned],
-            linestyle="none",
-            marker="o",
-            markersize=4,
-            markerfacecolor="none",
-            color="C1",
-            label="reference",
-        )
-        ax.set_title("\n".join(textwrap.wrap(check.case, 48)), fontsize="small")
+        expected = curve.positions[thinned], curve.expected[thinned]
+        ax.plot(*expected, "o", color="C1", markersize=4, markerfacecolor="none", label="reference")
+        ax.set_title("\n".join(textwrap.wrap(case, 48)), fontsize="small")
         ax.set_xlabel(curve.labels[0])
         ax.set_ylabel(re.sub(r"(sigma|tau)_(\w\w)", r"$\\\1_{\2}$", curve.labels[1]), fontsize="small")
         ax.grid(alpha=0.3)
     if axes:
         axes[0].legend(fontsize="small")
     return figure
-
-
-def draw(verification: Verification, folder: Path) -> dict[str, Path]:
-    """Write one figure for each group with profiles, and return the paths by group."""
-    paths: dict[str, Path] = {}
-    for name, checks in verification.groups.items():
-        if any(check.curve is not None for check in checks):
-            paths[name] = folder / f"{name.replace(' ', '_').replace('-', '_')}.png"
-            plot_profiles(checks).savefig(paths[name], dpi=110)
-    return paths
 
 
 def make_folder(folder: Path) -> None:
@@ -288,11 +240,15 @@ def make_folder(folder: Path) -> None:
 
 
 def write(verification: Verification, folder: Path) -> list[Path]:
-    """Write ``verification.nc``, ``verification.md`` and its figures, and return their paths."""
+    """Write ``verification.nc``, ``verification.md`` and a figure of each group with profiles; return the paths."""
     make_folder(folder)
     data = verification.to_dataset()
     data["passed"] = data["passed"].astype(np.int8)
     write_dataset(folder / "verification.nc", data)
-    figures = draw(verification, folder)
-    write_text(folder / "verification.md", page(verification, {name: path.name for name, path in figures.items()}))
-    return [folder / "verification.nc", folder / "verification.md", *figures.values()]
+    figures: dict[str, str] = {}
+    for name, checks in verification.groups.items():
+        if any(check.curve is not None for check in checks):
+            figures[name] = f"{name.replace(' ', '_').replace('-', '_')}.png"
+            plot_profiles(checks).savefig(folder / figures[name], dpi=110)
+    write_text(folder / "verification.md", page(verification, figures))
+    return [folder / name for name in ("verification.nc", "verification.md", *figures.values())]

@@ -21,12 +21,8 @@ from contactstudy.profiles.base import Sum
 from contactstudy.profiles.measured import Measured
 
 ROUNDING = 1e-9  # Distance over another that is rounding
+SAME_ROLLER = ("body", "roller", "end_distance")  # Parts of the case that wear; load, friction and motion may differ
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(GAP_NODES)  # Gauss points of the mean depth of a column
-
-
-def check_same_roller(name: str, worn: xr.Dataset, case: Case) -> None:
-    """Raise if wear belongs to another roller or body; load, friction and motion may differ."""
-    check_solved_for(worn, case, name, only=("body", "roller", "end_distance"))
 
 
 def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) -> Sum:
@@ -68,7 +64,7 @@ def worn_profile(case: Case, worn: xr.Dataset, distance: float | None = None) ->
     """
     checks.instance("case", case, Case, "a Case")
     require(worn, "wear_depth", "pressure", argument="worn")
-    check_same_roller("worn", worn, case)
+    check_solved_for(worn, case, "worn", only=SAME_ROLLER)
     if "distance" not in worn.dims:
         worn = worn.expand_dims("distance")
     distances = worn["distance"].values

@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis.provenance import with_provenance
+from contactstudy.analysis.provenance import check_solved_for, with_provenance
 from contactstudy.arrays.cells import cell_coordinates, labelled_cells
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe, numbers_in_si, require
@@ -33,7 +33,7 @@ from contactstudy.errors import ConvergenceWarning, InvalidInputError
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import checked_drop
 from contactstudy.threads import one_blas_thread
-from contactstudy.wear.profile import check_same_roller
+from contactstudy.wear.profile import SAME_ROLLER
 
 
 @dataclass(frozen=True, eq=False)
@@ -165,8 +165,7 @@ class Stepper:
 
     def states(self, state: State, until: float, step: float) -> Iterator[tuple[State, float]]:
         """Go on to a distance; after each step give its state and the length of the next."""
-        # Length over the first one below which a step is taken in spite of its error, which is stated
-        least = 1e-6 * min(step, until - state.distance)
+        least = 1e-6 * min(step, until - state.distance)  # Shorter steps are taken in spite of their error, stated
         while state.distance < until:
             remaining = until - state.distance
             length = min(step, remaining)
@@ -376,7 +375,7 @@ def _stops(distance: object, first: float) -> tuple[FloatArray, bool]:
 def _state_of(after: xr.Dataset, case: Case, grid: Grid | None) -> tuple[float, FloatArray, Grid, float, float]:
     """Distance, depth, cells, next step and error of the depth of the last state of a result."""
     require(after, "wear_depth", "wear_error", "pressure", "next_step", argument="after")
-    check_same_roller("after", after, case)
+    check_solved_for(after, case, "after", only=SAME_ROLLER)
     if grid is not None:
         raise InvalidInputError("grid", grid, "None with after, which has cells")
     last = after.isel(distance=-1) if "distance" in after.dims else after
@@ -426,6 +425,8 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
     drop[under] = checked_drop(case.roller.profile, from_middle[under], case.roller.length)
     volumes = around * depths @ grid.widths
     due = around * np.array([state.worn for state in states])
+    gained, due = volumes - volumes[0], due - due[0]
+    positive = due > 0
     scale = np.maximum(depths.max(axis=1), np.finfo(np.float64).tiny)
     coords = {"distance": distances, "x": grid.x, "y": grid.y} | cell_coordinates(grid)
     result = xr.Dataset(
@@ -437,7 +438,7 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
             "worn_volume": ("distance", volumes),
             "wear_error": ("distance", np.array([state.error for state in states]) / scale),
             "next_step": ("distance", np.array(steps)),
-            "volume_error": _volume_error(volumes, due),
+            "volume_error": float(np.abs(gained[positive] / due[positive] - 1).max(initial=0.0)),
             "converged": states[-1].converged,
             "hertz_half_width": case.hertz_half_width,
             "hertz_max_pressure": case.hertz_max_pressure,
@@ -447,10 +448,3 @@ def _labelled(case: Case, stepper: Stepper, states: list[State], steps: list[flo
     motion = "slid" if isinstance(case.motion, Sliding) else "rolled"
     result["distance"].attrs = {"units": "m", "long_name": f"distance {motion}"}
     return describe(result, "wear of a roller's profile")
-
-
-def _volume_error(volumes: FloatArray, expected: FloatArray) -> float:
-    """Largest difference between the worn volume and the volume of the law, over the latter."""
-    gained, due = volumes - volumes[0], expected - expected[0]
-    positive = due > 0
-    return float(np.abs(gained[positive] / due[positive] - 1).max(initial=0.0))

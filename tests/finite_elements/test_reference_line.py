@@ -9,7 +9,7 @@ from numpy.polynomial import legendre
 from benchmarks.finite_elements import superpose
 from benchmarks.finite_elements.harmonics import HarmonicBody, Line
 from contactstudy import FiniteLengthSpace, displacement_field
-from contactstudy.verification.problems import Uniform, on_cells, quartic, unit_material
+from contactstudy.verification.problems import Linear, on_cells, quartic, unit_material
 
 LENGTH, POISSON = 2.5, 0.3
 RESOLUTION = superpose.Resolution(order=4, nodes=5, growth=2.0, panels=superpose.PANELS[:-2])
@@ -27,7 +27,7 @@ def finite_elements(depths: tuple[float, ...]) -> np.ndarray:
     wavenumbers = (edges[:-1, None] + 0.5 * np.diff(edges)[:, None] * (roots + 1)).ravel()
     response = []
     for k in wavenumbers:
-        sunk = body.solve(float(k), [(Uniform(), "z")])[0, 2]
+        sunk = body.solve(float(k), [(Linear(), "z")])[0, 2]
         line = 0.5 * weight @ (along @ (below @ sunk.T).T)
         response.append(2 * ((middle @ (sunk @ body.top))[0] - line))
     values = np.array(response)

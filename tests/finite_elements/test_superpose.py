@@ -14,7 +14,7 @@ from contactstudy.verification import problems as fe
 COARSE = partial(superpose.Resolution, order=4, nodes=5, growth=2.0)
 BELOW_50, BELOW_25 = superpose.PANELS[:-1], superpose.PANELS[:-2]
 Y = (-1.25, -0.5, 0.0, 0.25, 1.0)
-UNIFORM = [(fe.Uniform(), "z"), (fe.Uniform(), "y")]
+UNIFORM = [(fe.Linear(), "z"), (fe.Linear(), "y")]
 
 
 def test_meshes_contain_the_points_where_loads_begin() -> None:
@@ -45,7 +45,7 @@ def test_plane_problems(length: float, poisson: float, tolerance: float) -> None
 @pytest.mark.slow
 def test_displacement_of_a_line_contact() -> None:
     """`nu = 0`, inside the contact: `E u_z` is `-p0 y^2 / a`, and friction gives it the slope `q`."""
-    case = fe.LoadCase(2.5, fe.Uniform(), 0.3, 0.0)
+    case = fe.LoadCase(2.5, fe.Linear(), 0.3, 0.0)
     harmonic = superpose.harmonics(2.5, 0.0, UNIFORM, (0.0, 0.5, 1.25), (1.0,), COARSE())
     y = np.array([-0.6, -0.3, 0.0, 0.3, 0.6])
     found = superpose.displacement(harmonic, case, 0, 1, y, 2, superpose.transform_ellipse)
