@@ -107,7 +107,11 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
     (1.0, 1.0)
     """
-    contact, pressure, gap, grid = _cells(dataset)
+    require(dataset)
+    contact = single_case(dataset)
+    require(contact, "pressure", "gap")
+    pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
+    gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
     touches = bool(pressure.any())
     first, last = _axial_ends(pressure, gap, grid) if touches else (np.nan, np.nan)
@@ -124,23 +128,6 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
-
-
-def contact_length(dataset: xr.Dataset) -> xr.DataArray:
-    """Return the length of a contact alone, as from `contact_edges`, metres."""
-    _, pressure, gap, grid = _cells(dataset)
-    first, last = _axial_ends(pressure, gap, grid) if pressure.any() else (0.0, 0.0)
-    return describe(xr.Dataset({"contact_length": last - first}))["contact_length"]
-
-
-def _cells(dataset: xr.Dataset) -> tuple[xr.Dataset, FloatArray, FloatArray, Grid]:
-    """Contact of one case, with its pressure and gap on its cells."""
-    require(dataset)
-    contact = single_case(dataset)
-    require(contact, "pressure", "gap")
-    pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
-    gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
-    return contact, pressure, gap, grid
 
 
 def _axial_ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:

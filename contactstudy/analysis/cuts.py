@@ -173,12 +173,8 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
 
 def _interpolate_fields(fields: dict[str, xr.DataArray], targets: dict[str, xr.DataArray]) -> xr.Dataset:
     """Interpolate every field; the positions replace its coordinates."""
-    result = {}
-    for name, array in fields.items():
-        value = _interpolate(array, targets)
-        replaced = [coordinate for coordinate in value.coords if coordinate not in value.dims]
-        result[name] = value.drop_vars(replaced).assign_attrs(array.attrs)
-    return xr.Dataset(result)
+    values = {name: _interpolate(array, targets).assign_attrs(array.attrs) for name, array in fields.items()}
+    return xr.Dataset({name: value.reset_coords(drop=True) for name, value in values.items()})
 
 
 def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:

@@ -73,7 +73,7 @@ def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
         estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}
         numbers[name] = Number(value, labels(name) | estimate)
     for source in (stress_summary(dataset), dataset):
-        for name, variable in source.variables.items():
-            if variable.ndim == 0 and name not in source.coords:
-                numbers[str(name)] = Number(float(variable.values), dict(variable.attrs))
+        for key, variable in source.variables.items():
+            if variable.ndim == 0 and key not in source.coords:
+                numbers[str(key)] = Number(float(variable.values), dict(variable.attrs))
     return numbers

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from contactstudy.analysis import contact_length, cut_ends, peak, single_case
+from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import NUMBER, TEXT, html_table, quantity, with_error
 from contactstudy.arrays.variables import AXES, STRESSES, require, variable_of
@@ -201,7 +201,7 @@ def intensity_text(value: float, error: float, exponent: float) -> str:
 def _length(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the length of the contact, unless the Dataset is a part of the contact."""
     if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
-        case = case.assign(contact_length=contact_length(case))
+        case = case.assign(contact_length=contact_edges(case)["contact_length"])
     if "contact_length" in case:
         yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
 
