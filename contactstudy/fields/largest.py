@@ -133,34 +133,28 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         )
     )
     for peak in _peaks(line, symmetric=symmetric):
-        middle, half_width = _section(pressure[peak], grid)
         width = peak_width(pressure, grid.x, grid.dy, peak)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
-            samples.append(
-                _nearest_cells(
-                    grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, depths=width * DEPTHS
-                )
-            )
-    middle, half_width = _section(pressure[int(line.argmax())], grid)
+            samples.append(_nearest_cells(grid, off_rim, x, pressure[peak], width * DEPTHS, spacing=0.1 * width))
+    highest = pressure[int(line.argmax())]
+    half_width = 0.5 * grid.dy * np.count_nonzero(highest)
     columns = np.flatnonzero(pressure.any(axis=1))
     first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     inside = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
     inside = inside[inside <= 0.5 * (last - first)]
     # One point of the second half: the middle is inside the range.
     x = np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
-    samples.append(
-        _nearest_cells(
-            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, depths=half_width * AXIS_DEPTHS
-        )
-    )
+    depths = half_width * AXIS_DEPTHS
+    samples.append(_nearest_cells(grid, off_rim, x, highest, depths, spacing=0.1 * half_width))
     return Search(grid, extent, off_rim, border, samples)
 
 
 def _nearest_cells(
-    grid: Grid, off_rim: BoolArray, x: FloatArray, spacing: float, y: FloatArray, depths: FloatArray
+    grid: Grid, off_rim: BoolArray, x: FloatArray, section: FloatArray, depths: FloatArray, spacing: float
 ) -> Points:
-    """Centres of the cells nearest to positions, at least `spacing` apart along x, on the top and below."""
+    """Centres of the cells nearest to positions, more than `spacing` apart, across a pressed section, and below."""
+    y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
     columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
     # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
     inner_rows = np.flatnonzero(off_rim[columns].any(axis=0))
@@ -168,11 +162,6 @@ def _nearest_cells(
     rows = candidates[np.unique(np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1))]
     centres = grid.x[columns]
     return Points(centres[separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
-
-
-def _section(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
-    """Middle and half-width of the contact in one column, metres."""
-    return float((pressure * grid.y).sum() / pressure.sum()), 0.5 * grid.dy * np.count_nonzero(pressure)
 
 
 def separated(positions: FloatArray, spacing: float) -> IntArray:
