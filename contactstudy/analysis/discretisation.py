@@ -145,10 +145,7 @@ def _singular_pressures(contact: xr.Dataset) -> set[str]:
 
 
 def _largest_turn(contact: xr.Dataset) -> float:
-    """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure.
-
-    A turn causes a pressure of modulus times angle; modulus of the middle column: p = E* a / (2 R), w = pi p a / 2.
-    """
+    """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure."""
     first, last = _shape_columns(contact)
     shape = contact["initial_gap"] if "initial_gap" in contact else contact["gap"] - contact["displacement_z"]
     heights = shape.transpose("x", "y").values[first : last + 1]
@@ -163,6 +160,7 @@ def _largest_turn(contact: xr.Dataset) -> float:
     curvature = 2 * (heights[middle, farthest] - heights[middle, top]) / (y[farthest] - y[top]) ** 2
     if not (curvature > 0 and axial[middle] > 0):
         return 0.0
+    # Of the middle column, p = E* a / (2 R), w = pi p a / 2. A turn causes a pressure of modulus times angle.
     modulus = np.pi * axial[middle] ** 2 / (curvature * pressure[middle].sum() * (y[1] - y[0]))
     # Far from the contact the displacement of an elastic roller varies little between columns.
     turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest]) / np.diff(x))), 1, mode="edge")

@@ -71,12 +71,10 @@ class Columns(NamedTuple):
 
 
 def step_errors(values: FloatArray) -> FloatArray:
-    """Error in each step between values: half of it; the full step and the error before it where a contact ends.
-
-    A contact may end anywhere up to the middle of the next column.
-    """
+    """Error in each step between values: half of it; the full step and the error before it where a contact ends."""
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
+    # A contact may end anywhere up to the middle of the next column.
     ends = (np.minimum(values[1:], values[:-1]) <= 0) & (steps > 0)
     at_end = np.maximum(steps, np.maximum(neighbours[1:], neighbours[:-1]))
     return np.where(ends, at_end, OPEN_STEP * steps)

@@ -220,11 +220,10 @@ def largest_stress(
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
     *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
-    shallowest = search.shallowest
-    largest = _largest_of(_refined(_interpolated(*peak), search, shallowest, stress) for peak in peaks)
+    largest = _largest_of(_refined(_interpolated(*peak), search, stress) for peak in peaks)
     axis_sample = _sampled(*axis)
     if axis_sample.largest.value > largest.value:
-        largest = _largest_of([largest, _refined(axis_sample, search, shallowest, stress)])
+        largest = _largest_of([largest, _refined(axis_sample, search, stress)])
     for points, field in samples:
         top = search.top_stresses(points, field[..., :1])
         sample = _sampled(points._replace(z=points.z[:1]), top, search.off_rim_at(points))
@@ -239,8 +238,7 @@ def largest_with_points(
     """Largest von Mises stress, and of the neighbourhood of points with a larger stress."""
     if not search.samples:
         return largest
-    shallowest = search.shallowest
-    deep = points.z >= shallowest
+    deep = points.z >= search.shallowest
     depth_groups = [deep] if deep.any() else []
     depth_groups += [points.z == depth for depth in points.z[~deep]]
     for depths in depth_groups:
@@ -251,8 +249,8 @@ def largest_with_points(
         if largest.value < value <= largest.value + largest.error:
             largest = largest._replace(value=value, position=position)
         elif value > largest.value and depths is deep:
-            neighbourhood = _neighbourhood(position, search, shallowest)
-            largest = _refined(_interpolated(neighbourhood, stress(neighbourhood)), search, shallowest, stress)
+            neighbourhood = _neighbourhood(position, search)
+            largest = _refined(_interpolated(neighbourhood, stress(neighbourhood)), search, stress)
             if largest.value < value:
                 largest = Largest(value, largest.error + value - largest.value, position)
         elif value > largest.value:
@@ -260,12 +258,12 @@ def largest_with_points(
     return largest
 
 
-def _neighbourhood(position: tuple[float, float, float], search: Search, shallowest: float) -> Points:
+def _neighbourhood(position: tuple[float, float, float], search: Search) -> Points:
     """Points about a position; their distances along y are whole cells."""
     x, y, z = position
     dy = search.grid.dy
     axial = np.clip(x + z * LOCAL_OFFSETS, *search.extent)
-    depths = np.maximum(z * (1 + LOCAL_OFFSETS), shallowest)
+    depths = np.maximum(z * (1 + LOCAL_OFFSETS), search.shallowest)
     rows = np.unique([*np.round(z * LOCAL_OFFSETS / dy), -1, 1])
     return Points(axial[separated(axial, 0.1 * z)], y + dy * rows, depths[separated(depths, 0.1 * z)])
 
@@ -315,10 +313,10 @@ def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
     return np.unique(np.clip([*between, cell - 1, cell, cell + 1], 0, count - 1))
 
 
-def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[[Points], FloatArray]) -> Largest:
+def _refined(top: _Maximum, search: Search, stress: Callable[[Points], FloatArray]) -> Largest:
     """Refine points about the largest value until polynomials of two degrees agree."""
     for _ in range(ROUNDS):
-        points, inside = _closer_points(top, search.extent, shallowest)
+        points, inside = _closer_points(top, search)
         if inside and top.largest.error <= TOLERANCE * top.largest.value:
             break
         next_top = _interpolated(points, stress(points))
@@ -330,7 +328,7 @@ def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[
             largest = _sampled(corners, stress(corners)).largest
             return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
         top = next_top
-    if top.largest.position[2] <= shallowest * (1 + 1e-9):
+    if top.largest.position[2] <= search.shallowest * (1 + 1e-9):
         return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
     return top.largest
 
@@ -347,11 +345,12 @@ def _sampled(points: Points, stresses: FloatArray, selection: BoolArray | None =
 
 def _interpolated(points: Points, stresses: FloatArray) -> _Maximum:
     """Largest value between points, of polynomials through the components."""
-    flat = int(von_mises_of(*stresses).argmax())
-    index = tuple(int(number) for number in np.unravel_index(flat, stresses.shape[1:]))
-    (value, position), (rough, _) = (_interpolate(points, stresses, index, neighbours) for neighbours in (2, 1))
-    sampled = float(von_mises_of(*stresses)[index])
-    return _Maximum(Largest(value, max(abs(value - rough), RISE_ERROR * (value - sampled)), position), points, index)
+    sample = _sampled(points, stresses)
+    (value, position), (rough, _) = (
+        _interpolate(points, stresses, sample.indices, neighbours) for neighbours in (2, 1)
+    )
+    error = max(abs(value - rough), RISE_ERROR * (value - sample.largest.value))
+    return sample._replace(largest=Largest(value, error, position))
 
 
 def _interpolate(
@@ -365,10 +364,10 @@ def _interpolate(
     return float(von_mises[best]), (x, y, z)
 
 
-def _closer_points(top: _Maximum, extent: Extent, shallowest: float) -> tuple[Points, bool]:
+def _closer_points(top: _Maximum, search: Search) -> tuple[Points, bool]:
     """Closer points around the largest one; beyond an edge of the range, shifted points at equal spacing."""
     axes, inside = [], True
-    limits = (extent, (-np.inf, np.inf), (shallowest, np.inf))
+    limits = (search.extent, (-np.inf, np.inf), (search.shallowest, np.inf))
     for axis, index, (low, high) in zip(top.points, top.indices, limits, strict=True):
         centre = axis[index]
         before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]
