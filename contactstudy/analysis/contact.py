@@ -327,14 +327,14 @@ def edge_factors(
 
 def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> dict[str, xr.DataArray]:
     """Largest value near the first and the last border, at mid-length, and anywhere."""
-    profile = measure(dataset, variable)
+    axial = axial_pressure(dataset)
+    profile = axial if variable == "pressure" else measure(dataset, variable)
     if list(axis_dimensions(profile)) != ["x"]:
         profile = largest_sample(dataset, variable, along="x")[f"peak_{variable}"]
     profile = profile.compute()
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     x, points = dimension_along(profile, "x"), positions(profile, "x")
-    axial = axial_pressure(dataset)
     loaded = positions(axial, "x").where(axial > 0)
     outermost = loaded.min(dimension_along(axial, "x")), loaded.max(dimension_along(axial, "x"))
     # A cut end has no border.

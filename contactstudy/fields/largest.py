@@ -73,14 +73,6 @@ class Border(NamedTuple):
             rise[column, second] = at_border - pressure[column, second]
         return cls(traction, rise, poisson)
 
-    def stresses(self, cells: tuple[IntArray, ...], stresses: FloatArray) -> FloatArray:
-        """Stresses (6, x, y, 1) of some cells on the top, at the border in the cells that represent it."""
-        limit = stresses.copy()
-        rise = self.rise[cells][..., None]
-        limit[:3] -= np.array([2 * self.poisson, 1.0, 1.0])[:, None, None, None] * rise
-        limit[4:] = np.where(rise != 0, -self.traction[:, cells[0], cells[1], None], limit[4:])
-        return limit
-
 
 class Search(NamedTuple):
     """Points of the search for the largest stress."""
@@ -110,8 +102,12 @@ class Search(NamedTuple):
         return np.asarray(self.off_rim[np.ix_(*self.cells(points))])
 
     def top_stresses(self, points: Points, stresses: FloatArray) -> FloatArray:
-        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that stand for it."""
-        return self.border.stresses(np.ix_(*self.cells(points)), stresses)
+        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that represent it."""
+        columns, rows = np.ix_(*self.cells(points))
+        limit, rise = stresses.copy(), self.border.rise[columns, rows, None]
+        limit[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
+        limit[4:] = np.where(rise != 0, -self.border.traction[:, columns, rows, None], limit[4:])
+        return limit
 
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:

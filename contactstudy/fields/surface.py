@@ -171,7 +171,11 @@ def surface_displacement(
     2.24
     """
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    directions = (Load.NORMAL,) if components is None else _directions(components)
+    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
+    chosen = "z" if components is None else components
+    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in chosen))
+    if not directions:
+        raise InvalidInputError("components", components, "at least one of x, y and z, or None")
     grid, loads = prescribed.grid, prescribed.loads
     operator = surface_operator(body, grid, tuple(loads), directions=directions)
     with one_blas_thread():
@@ -193,12 +197,3 @@ def surface_displacement(
 
 DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
 """Variables of the top's displacement."""
-
-
-def _directions(components: Sequence[str]) -> tuple[Load, ...]:
-    """Directions of displacements that are wanted."""
-    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
-    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in components))
-    if not directions:
-        raise InvalidInputError("components", components, "at least one of x, y and z, or None")
-    return directions
