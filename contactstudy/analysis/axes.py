@@ -24,7 +24,6 @@ from contactstudy.arrays.variables import (
     required_in_si,
     variable_of,
 )
-from contactstudy.case.case import Case
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 from contactstudy.profiles.base import in_words
@@ -313,21 +312,17 @@ def positions_over_a(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def _case_coordinates(result: xr.Dataset) -> dict[str, Any]:
-    """Coordinates of a result that identify its case."""
+    """Coordinates of a result that identify its case: e/a, friction, gamma and profile, as far as it has them."""
     if "case" not in attribute(result, INPUTS_ATTRIBUTE):
         return {}
-    values = _parameters(solved_case(result), float(result["hertz_half_width"]))
-    return {name: ((), value, labels(name, coordinate=True)) for name, value in values.items() if name not in result}
-
-
-def _parameters(case: Case, half_width: float) -> dict[str, float | str]:
-    """Values of e/a, friction, gamma and profile of a case, without those it does not have."""
+    case = solved_case(result)
     low, high = case.body.extent
     values: dict[str, float | str] = {}
     if np.isfinite(low):
-        values["e_over_a"] = case.roller_start / half_width
+        values["e_over_a"] = case.roller_start / float(result["hertz_half_width"])
     if isinstance(case.friction, float):
         values["friction"] = case.friction
     if np.isfinite(high - low):
         values["gamma"] = (high - low) / case.roller.radius
-    return values | {"profile": in_words(case.roller.profile)}
+    values["profile"] = in_words(case.roller.profile)
+    return {name: ((), value, labels(name, coordinate=True)) for name, value in values.items() if name not in result}

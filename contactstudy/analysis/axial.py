@@ -24,10 +24,7 @@ EDGE_UNCERTAINTY = 0.04
 
 
 def contact_borders(pressure: Array, centres: Array, gap: Array | None = None) -> tuple[Array, Array]:
-    """First and last y in contact of each row of cells (..., y), NaN without contact; NaN in padding.
-
-    The gap beyond the contact gives a second estimate, and the only one of a contact of fewer than 7 cells.
-    """
+    """First and last y in contact of each row of cells (..., y), from pressure and gap; NaN without contact."""
     shape, cells = pressure.shape[:-1], pressure.shape[-1]
     rows = np.nan_to_num(np.asarray(pressure, np.float64)).reshape(-1, cells)
     opening = np.full_like(rows, np.nan) if gap is None else np.asarray(gap).reshape(-1, cells)
@@ -49,6 +46,7 @@ def _last_edges(pressure: FloatArray, gap: FloatArray) -> FloatArray:
     opening = _samples(gap[rows], begin_outside, 1) ** (2 / 3)
     face = last + 0.5
     estimates = np.stack([begin_inside + _distance_to_zero(squared), begin_outside - _distance_to_zero(opening)])
+    # A contact of fewer than 7 cells has the estimate from the gap alone.
     valid = np.abs(estimates - face) <= 1
     total = np.where(valid, estimates, 0.0).sum(axis=0)
     edges[rows] = np.where(valid.any(axis=0), total / np.maximum(valid.sum(axis=0), 1), face)
@@ -107,7 +105,10 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
     >>> round(float(edges.half_width.sel(x=0, method="nearest")), 3), round(float(edges.contact_area / np.pi), 3)
     (1.0, 1.0)
     """
-    contact, pressure, gap, grid = _cells(dataset)
+    contact = single_case(dataset)
+    require(contact, "pressure", "gap")
+    pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
+    gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
     left, right = contact_borders(pressure, grid.y, gap)
     touches = bool(pressure.any())
     first, last = _axial_ends(pressure, gap, grid) if touches else (np.nan, np.nan)
@@ -124,23 +125,6 @@ def contact_edges(dataset: xr.Dataset) -> xr.Dataset:
         coords={"x": contact["x"].values},
     )
     return describe(result, "edges of a contact, within a cell")
-
-
-def contact_length(dataset: xr.Dataset) -> xr.DataArray:
-    """Return the length of a contact alone, as from `contact_edges`, metres."""
-    _, pressure, gap, grid = _cells(dataset)
-    first, last = _axial_ends(pressure, gap, grid) if pressure.any() else (0.0, 0.0)
-    return describe(xr.Dataset({"contact_length": last - first}))["contact_length"]
-
-
-def _cells(dataset: xr.Dataset) -> tuple[xr.Dataset, FloatArray, FloatArray, Grid]:
-    """Contact of one case, with its pressure and gap on its cells."""
-    require(dataset)
-    contact = single_case(dataset)
-    require(contact, "pressure", "gap")
-    pressure, grid = labelled_cells("dataset.pressure", contact["pressure"])
-    gap, _ = labelled_cells("dataset.gap", contact["gap"], infinite=True)
-    return contact, pressure, gap, grid
 
 
 def _axial_ends(pressure: FloatArray, gap: FloatArray, grid: Grid) -> tuple[float, float]:

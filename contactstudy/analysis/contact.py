@@ -130,7 +130,7 @@ def contact_results(dataset: xr.Dataset, about: float | None = None) -> xr.Datas
 
 
 def _cell_widths(pressure: xr.DataArray, axis: str) -> xr.DataArray:
-    """Width of each cell along an axis; NaN in padding."""
+    """Width of each cell along an axis, metres; NaN in padding."""
     return cell_size(pressure, axis) + 0.0 * positions(pressure, axis)
 
 
@@ -274,15 +274,6 @@ def _contact_range(dataset: xr.Dataset) -> tuple[float, float]:
     return 0.0, np.inf
 
 
-class _Values(NamedTuple):
-    """Largest value near both ends, at mid-length, and anywhere."""
-
-    first: xr.DataArray
-    last: xr.DataArray
-    middle: xr.DataArray
-    peak: xr.DataArray
-
-
 def edge_factors(
     dataset: xr.Dataset, variable: str = "pressure", reference: xr.Dataset | None = None, *, reach: float | None = None
 ) -> xr.Dataset:
@@ -324,54 +315,38 @@ def edge_factors(
     checks.instance("variable", variable, str, "a name; a second result is given as reference=")
     length = dataset["hertz_half_width"] if reach is None else checks.positive("reach", reach, "metres")
     values = _values(dataset, variable, length)
-    factors = {
-        "end_over_middle_first": values.first / values.middle,
-        "end_over_middle_last": values.last / values.middle,
-    }
+    factors = {f"end_over_middle_{end}": values[end] / values["middle"] for end in ("first", "last")}
     if reference is not None:
         reference = required_in_si(reference, "pressure", argument="reference")
         reference_values = _values(reference, variable, length)
-        for name, value, reference_value in zip(_Values._fields, values, reference_values, strict=True):
-            factors[f"over_reference_{name}"] = value / reference_value
+        factors |= {f"over_reference_{name}": value / reference_values[name] for name, value in values.items()}
     base = variable_of(variable, dataset[variable].attrs if variable in dataset else {})
     result = xr.Dataset({name: named(name, value.reset_coords(drop=True), base) for name, value in factors.items()})
     return without_error(result, *factors)
 
 
-def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> _Values:
+def _values(dataset: xr.Dataset, variable: str, reach: xr.DataArray | float) -> dict[str, xr.DataArray]:
     """Largest value near the first and the last border, at mid-length, and anywhere."""
-    profile = _section_maxima(dataset, variable).compute()
+    axial = axial_pressure(dataset)
+    profile = axial if variable == "pressure" else measure(dataset, variable)
+    if list(axis_dimensions(profile)) != ["x"]:
+        profile = largest_sample(dataset, variable, along="x")[f"peak_{variable}"]
+    profile = profile.compute()
     if (profile < 0).any():
         raise InvalidInputError("variable", variable, "a measure that is not negative", "take a stress measure")
     x, points = dimension_along(profile, "x"), positions(profile, "x")
-    borders = _borders(dataset)
-    ends = []
+    loaded = positions(axial, "x").where(axial > 0)
+    outermost = loaded.min(dimension_along(axial, "x")), loaded.max(dimension_along(axial, "x"))
+    # A cut end has no border.
+    borders = [border.where(cut == 0).compute() for border, cut in zip(outermost, cut_ends(dataset), strict=True)]
+    values = {}
     for side, border in zip(("first", "last"), borders, strict=True):
         # Distance of a point beyond the reach of an end, over the reach, that is rounding
         value = profile.where(abs(points - border) <= reach * (1 + 1e-9)).max(x)
         # Beside a singular end pressure and stress are unbounded.
         singular = np.isinf(dataset.get(f"end_pressure_{side}", xr.DataArray(0.0)))
-        ends.append(value.where(~singular | value.isnull(), np.inf))
-    return _Values(ends[0], ends[1], _nearest(profile, 0.5 * (borders[0] + borders[1])), profile.max(x))
-
-
-def _section_maxima(dataset: xr.Dataset, variable: str) -> xr.DataArray:
-    """Largest value of a variable in each cross-section."""
-    if variable == "pressure":
-        return axial_pressure(dataset)
-    array = measure(dataset, variable)
-    if list(axis_dimensions(array)) == ["x"]:
-        return array
-    return largest_sample(dataset, variable, along="x")[f"peak_{variable}"]
-
-
-def _borders(dataset: xr.Dataset) -> tuple[xr.DataArray, xr.DataArray]:
-    """First and last loaded position along x; NaN at a cut end."""
-    axial = axial_pressure(dataset)
-    x = dimension_along(axial, "x")
-    loaded = positions(axial, "x").where(axial > 0)
-    cut_first, cut_last = cut_ends(dataset)
-    return loaded.min(x).where(cut_first == 0).compute(), loaded.max(x).where(cut_last == 0).compute()
+        values[side] = value.where(~singular | value.isnull(), np.inf)
+    return values | {"middle": _nearest(profile, 0.5 * (borders[0] + borders[1])), "peak": profile.max(x)}
 
 
 def _nearest(profile: xr.DataArray, position: xr.DataArray) -> xr.DataArray:

@@ -10,7 +10,7 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.axes import axis_dimensions, positions, single_case
 from contactstudy.analysis.peaks import measure
-from contactstudy.arrays.variables import AXES, labels, require
+from contactstudy.arrays.variables import AXES, labels
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 
@@ -85,7 +85,6 @@ def along_line(
     >>> cut.tresca.values.tolist()
     [0.0, 1.5, 3.0]
     """
-    require(dataset)
     count = checks.count("points", points, least=2)
     fields = fields_on_same_points(single_case(dataset), variables, along=("x", "y"))
     first, last = (checks.coordinates(name, values) for name, values in (("start", start), ("end", end)))
@@ -145,7 +144,6 @@ def in_plane(
     >>> in_plane(xr.Dataset({"tresca": field}), x=0.5, variables="tresca").tresca.values.tolist()
     [1.0, 2.0]
     """
-    require(dataset)
     planes = {axis: value for axis, value in zip(AXES, (x, y, z), strict=True) if value is not None}
     if len(planes) != 1:
         raise InvalidInputError("x, y, z", (x, y, z), "exactly one of them a number, the others None")
@@ -173,12 +171,8 @@ def _clip_rounding(name: str, values: FloatArray, points: FloatArray) -> FloatAr
 
 def _interpolate_fields(fields: dict[str, xr.DataArray], targets: dict[str, xr.DataArray]) -> xr.Dataset:
     """Interpolate every field; the positions replace its coordinates."""
-    result = {}
-    for name, array in fields.items():
-        value = _interpolate(array, targets)
-        replaced = [coordinate for coordinate in value.coords if coordinate not in value.dims]
-        result[name] = value.drop_vars(replaced).assign_attrs(array.attrs)
-    return xr.Dataset(result)
+    values = {name: _interpolate(array, targets).assign_attrs(array.attrs) for name, array in fields.items()}
+    return xr.Dataset({name: value.reset_coords(drop=True) for name, value in values.items()})
 
 
 def _interpolate(array: xr.DataArray, targets: dict[str, xr.DataArray]) -> xr.DataArray:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from contactstudy import checks
 from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
 from contactstudy.arrays.cells import labelled_cells
 from contactstudy.arrays.variables import describe
@@ -26,23 +25,14 @@ SHARP = (
 )
 
 
-def extrapolated(coarse: float, fine: float, order: float, ratio: float = 2.0) -> float:
-    """Return the limit of a value of known order from two grids (Richardson): cell sizes in the `ratio`."""
-    coarse, fine = checks.finite("coarse", coarse), checks.finite("fine", fine)
-    order, ratio = checks.positive("order", order), checks.positive("ratio", ratio)
-    if ratio <= 1:
-        raise InvalidInputError("ratio", ratio, "more than 1")
-    return float(fine + (fine - coarse) / (ratio**order - 1))
-
-
 def discretisation_error(fine: xr.Dataset, coarse: xr.Dataset) -> xr.Dataset:
     """Return peak and end pressure and half-width of a contact, each with an estimate of its discretisation error.
 
-    The estimate is the correction of `extrapolated` with order 1, lower than the order of smooth pressures, and with
-    order 0.8 at the ends; at least the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite where
-    the grids show no limit: at a pressed sharp end inside the body's top and for the peak then; if the two grids differ
-    by more than a fifth; for peak and ends if the shape turns too much between pressed columns, as at an edge radius.
-    An edge radius, or a top that continues, within half a cell of the end is not covered.
+    The estimate is the correction of Richardson's extrapolation with order 1, lower than that of smooth pressures, and
+    with order 0.8 at the ends; at least the effect of an edge displaced by `EDGE_UNCERTAINTY` cells. It is infinite
+    where the grids show no limit: at a pressed sharp end inside the body's top and for the peak then; if the two grids
+    differ by more than a fifth; for peak and ends if the shape turns too much between pressed columns, as at an edge
+    radius. An edge radius, or a top that continues, within half a cell of the end is not covered.
 
     Parameters
     ----------
@@ -119,9 +109,9 @@ def _estimate(name: str, values: tuple[float, float], ratio: float, displacement
 
 
 def _correction(name: str, coarse: float, fine: float, ratio: float) -> float:
-    """Distance from the fine value to the extrapolated limit."""
+    """Distance from the fine value to the limit of Richardson's extrapolation."""
     order = END_ORDER if name in ENDS else ASSUMED_ORDER
-    return abs(extrapolated(coarse, fine, order, ratio) - fine)
+    return float(abs(fine - coarse) / (ratio**order - 1))
 
 
 def _end_excess(fine: dict[str, float], coarse: dict[str, float], errors: dict[str, float], ratio: float) -> float:
@@ -155,10 +145,7 @@ def _singular_pressures(contact: xr.Dataset) -> set[str]:
 
 
 def _largest_turn(contact: xr.Dataset) -> float:
-    """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure.
-
-    A turn causes a pressure of modulus times angle; modulus of the middle column: p = E* a / (2 R), w = pi p a / 2.
-    """
+    """Largest turn of the shape between columns, as its pressure over the peak; 0 without pressure."""
     first, last = _shape_columns(contact)
     shape = contact["initial_gap"] if "initial_gap" in contact else contact["gap"] - contact["displacement_z"]
     heights = shape.transpose("x", "y").values[first : last + 1]
@@ -173,6 +160,7 @@ def _largest_turn(contact: xr.Dataset) -> float:
     curvature = 2 * (heights[middle, farthest] - heights[middle, top]) / (y[farthest] - y[top]) ** 2
     if not (curvature > 0 and axial[middle] > 0):
         return 0.0
+    # Of the middle column, p = E* a / (2 R), w = pi p a / 2. A turn causes a pressure of modulus times angle.
     modulus = np.pi * axial[middle] ** 2 / (curvature * pressure[middle].sum() * (y[1] - y[0]))
     # Far from the contact the displacement of an elastic roller varies little between columns.
     turns = np.pad(np.abs(np.diff(np.diff(heights[:, farthest]) / np.diff(x))), 1, mode="edge")

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -51,9 +51,7 @@ POINTWISE: dict[str, tuple[tuple[str, ...], Measure]] = {
     "tresca": (STRESSES, tresca),
     "maximum_shear": (STRESSES, maximum_shear),
     "hydrostatic": (STRESSES[:3], hydrostatic),
-    "principal_stress_1": (STRESSES, partial(_principal, rank=1)),
-    "principal_stress_2": (STRESSES, partial(_principal, rank=2)),
-    "principal_stress_3": (STRESSES, partial(_principal, rank=3)),
+    **{f"principal_stress_{rank}": (STRESSES, partial(_principal, rank=rank)) for rank in (1, 2, 3)},
 }
 MEASURES: dict[str, tuple[tuple[str, ...], Measure]] = POINTWISE | {
     name: (("tau_yz",), lambda stress, name=name: orthogonal_shear_range(stress)[name])
@@ -135,8 +133,6 @@ def largest_sample(dataset: xr.Dataset, variable: str = "von_mises", *, along: s
     >>> stress = xr.DataArray([[1.0, 4.0], [3.0, 2.0]], dims=("x", "z"), coords={"x": [0, 1], "z": [0, 2]})
     >>> float(largest_sample(xr.Dataset({"tresca": stress}), "tresca").peak_tresca_z)
     2.0
-    >>> largest_sample(xr.Dataset({"tresca": stress}), "tresca", along="x").peak_tresca.values.tolist()
-    [4.0, 3.0]
     """
     array = measure(dataset, variable)
     axes = axis_dimensions(array)
@@ -242,9 +238,25 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
     field = samples.transpose(*dims.values())
     index = tuple(int(i) for i in np.unravel_index(int(np.nanargmax(field.values)), field.shape))
     axes = {axis: np.asarray(positions(field, axis).values, dtype=np.float64) for axis in dims}
-    search = _Interpolation(case[components], dims, axes, evaluate)
-    value, position = search.largest(index, NEIGHBOURS)
-    error = abs(value - search.largest(index, 1)[0])
+
+    def largest(neighbours: int, every: int = 1) -> tuple[float, list[float]]:
+        """Largest value between every sample or each second, and its position."""
+        numbers = [np.arange(axis.size)[i % every :: every] for axis, i in zip(axes.values(), index, strict=True)]
+        nodes = [axis[chosen] for axis, chosen in zip(axes.values(), numbers, strict=True)]
+        part = case[components].isel(dict(zip(dims.values(), numbers, strict=True))).transpose(*dims.values(), ...)
+        interpolated: dict[Hashable, Any] = {}
+        coordinates: dict[Hashable, xr.DataArray] = {}
+        for name, component in part.items():
+            centre = [i // every for i in index]
+            points, stresses = interpolate_about(nodes, centre, component.values[None], neighbours)
+            interpolated[name] = (component.dims, stresses[0])
+            coordinates |= {dim: component[dim] for dim in component.dims[len(dims) :] if dim in component.coords}
+        values = evaluate(xr.Dataset(interpolated, coordinates)).transpose(*dims.values()).values
+        best = np.unravel_index(int(np.nanargmax(values)), values.shape)
+        return float(values[best]), [float(axis[i]) for axis, i in zip(points, best, strict=True)]
+
+    value, position = largest(NEIGHBOURS)
+    error = abs(value - largest(1)[0])
     comment = _unbounded(case, axes, index)
     if comment:
         error = np.inf
@@ -252,39 +264,13 @@ def interpolated_peak(case: xr.Dataset, components: list[str], samples: xr.DataA
         if "pressure" not in case:
             # The samples alone determine whether they are close enough.
             # Fraction of the change from samples twice as far apart that is error if the pressure is not known
-            error = max(error, 0.5 * abs(value - search.largest(index, NEIGHBOURS, every=2)[0]))
+            error = max(error, 0.5 * abs(value - largest(NEIGHBOURS, every=2)[0]))
         if "peak_pressure_error" in case:
             error += abs(value) * float(case["peak_pressure_error"] / case["peak_pressure"])
     where = dict(zip(dims, position, strict=True))
     if "pressure" in case and where.get("z") == 0:
         error += ON_TOP * abs(value)
     return Peak(value, error, where, comment)
-
-
-class _Interpolation(NamedTuple):
-    """Interpolation of stresses about a sample, and the measure between the samples."""
-
-    stresses: xr.Dataset
-    dims: dict[str, str]
-    axes: dict[str, FloatArray]
-    evaluate: Measure
-
-    def largest(self, index: tuple[int, ...], neighbours: int, every: int = 1) -> tuple[float, list[float]]:
-        """Largest value and its position, with every sample or each second."""
-        numbers = [np.arange(axis.size)[i % every :: every] for axis, i in zip(self.axes.values(), index, strict=True)]
-        axes = [axis[chosen] for axis, chosen in zip(self.axes.values(), numbers, strict=True)]
-        part = self.stresses.isel(dict(zip(self.dims.values(), numbers, strict=True)))
-        components: dict[Hashable, tuple[tuple[Hashable, ...], FloatArray]] = {}
-        coordinates: dict[Hashable, xr.DataArray] = {}
-        for name, component in part.items():
-            ordered = component.transpose(*self.dims.values(), ...)
-            points, values = interpolate_about(axes, [i // every for i in index], ordered.values[None], neighbours)
-            components[name] = (ordered.dims, values[0])
-            further = [dim for dim in ordered.dims if dim not in self.dims.values() and dim in ordered.coords]
-            coordinates |= {dim: ordered[dim] for dim in further}
-        values = self.evaluate(xr.Dataset(components, coordinates)).transpose(*self.dims.values()).values
-        best = np.unravel_index(int(np.nanargmax(values)), values.shape)
-        return float(values[best]), [float(axis[i]) for axis, i in zip(points, best, strict=True)]
 
 
 def label_peak(variable: str, peak: Peak, base: Variable) -> xr.Dataset:

@@ -71,12 +71,10 @@ class Columns(NamedTuple):
 
 
 def step_errors(values: FloatArray) -> FloatArray:
-    """Error in each step between values: half of it; the full step and the error before it where a contact ends.
-
-    A contact may end anywhere up to the middle of the next column.
-    """
+    """Error in each step between values: half of it; the full step and the error before it where a contact ends."""
     steps = np.abs(np.diff(values))
     neighbours = larger_step(OPEN_STEP * steps)
+    # A contact may end anywhere up to the middle of the next column.
     ends = (np.minimum(values[1:], values[:-1]) <= 0) & (steps > 0)
     at_end = np.maximum(steps, np.maximum(neighbours[1:], neighbours[:-1]))
     return np.where(ends, at_end, OPEN_STEP * steps)
@@ -140,7 +138,14 @@ def border_load_errors(line_load: Columns, borders: FloatArray) -> FloatArray:
 
 
 def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
-    """Relative error of the largest pressure on either half: infinite at a singular end, NaN on given cells."""
+    """Relative error of the largest pressure on either half: infinite at a singular end, NaN if it is not estimated."""
+    # The errors are those of a whole contact on its own cells, not of a part, or on common cells of a study.
+    if "normal_load" not in result or result["pressure"].attrs.get(ERROR_KIND) == NOT_ESTIMATED:
+        return np.nan, np.nan
+    across, along = (cell_size(result["pressure"], axis) for axis in "xy")
+    resultant = float((result["pressure"] * across * along).sum())
+    if resultant <= (1 - MISSING_LOAD) * float(result["normal_load"]):
+        return np.nan, np.nan
     accuracy = float(attribute(result, INPUTS_ATTRIBUTE).get("settings", {}).get("accuracy", np.nan))
     errors = []
     for side in SIDES:
@@ -208,7 +213,8 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
         },
         coords={"slice": np.arange(1, number + 1)},
     )
-    result = result.assign(_with_errors(case, borders, pressure, line_load, result["normal_load"].values))
+    load = result["normal_load"].values
+    result = result.assign(_with_errors(case, borders, pressure, line_load, load).data_vars)
     means = [name for name in ("half_width", "unloaded_gap") if name in cells]
     for name in means:
         mean = (weights * cells[name]).sum(x) / weights.sum(x)
@@ -220,10 +226,10 @@ def slices(dataset: xr.Dataset, count: int = 30) -> xr.Dataset:
 
 def _with_errors(
     case: xr.Dataset, borders: FloatArray, pressure: Columns, line_load: Columns, load: FloatArray
-) -> dict[str, xr.DataArray]:
+) -> xr.Dataset:
     """Load and largest pressure of each slice with their errors, from the settled pressures and the columns."""
     largest, column_error = largest_between(pressure, borders)
-    relative = _pressure_errors(case)
+    relative = pressure_errors(case)
     middle, rounding = 0.5 * (borders[0] + borders[-1]), ROUNDING * (borders[-1] - borders[0])
     halves = (borders[:-1] < middle - rounding, borders[1:] > middle + rounding)
     peaks = [float(case.get(f"peak_pressure_{side}", np.nan)) for side in SIDES]
@@ -252,19 +258,7 @@ def _with_errors(
             for name, (numbers, comment) in values.items()
         }
     )
-    if np.isnan(relative).any():
-        result = without_error(result, *values)
-    return {str(name): array for name, array in result.items()}
-
-
-def _pressure_errors(case: xr.Dataset) -> tuple[float, float]:
-    """Relative errors of the pressure on either half; NaN for a part of a contact, and on common cells of a study."""
-    if "normal_load" not in case or case["pressure"].attrs.get(ERROR_KIND) == NOT_ESTIMATED:
-        return np.nan, np.nan
-    widths = (cell_size(case["pressure"], axis) for axis in "xy")
-    resultant = float((case["pressure"] * next(widths) * next(widths)).sum())
-    whole = resultant > (1 - MISSING_LOAD) * float(case["normal_load"])
-    return pressure_errors(case) if whole else (np.nan, np.nan)
+    return without_error(result, *values) if np.isnan(relative).any() else result
 
 
 def _with_stresses(result: xr.Dataset, case: xr.Dataset, borders: FloatArray) -> xr.Dataset:

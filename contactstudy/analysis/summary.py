@@ -8,10 +8,8 @@ import numpy as np
 import xarray as xr
 
 from contactstudy.analysis import largest_sample, peak
-from contactstudy.analysis.axes import cell_size
 from contactstudy.analysis.contact import contact_numbers
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED, STRESSES, labels, require
-from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
 
 # Comments of numbers that depend on the cells, with errors that are not estimated
@@ -26,18 +24,23 @@ COMMENTS = {
 def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
     """Numbers of the pressure; at the ends those of the Dataset, else of the outer pressed columns."""
     require(dataset, "pressure", "hertz_max_pressure")
-    variables = dataset.variables
-    pressure = variables["pressure"].transpose("x", "y").values
-    x, y, scale = variables["x"].values, variables["y"].values, float(variables["hertz_max_pressure"].values)
+    array = dataset["pressure"].transpose("x", "y")
+    pressure, x, y, scale = array.values, array["x"].values, array["y"].values, float(dataset["hertz_max_pressure"])
     pressed = pressure > 0
     facing = np.asarray(pressed.any(axis=1))
     columns = np.flatnonzero(facing)
-    numbers = contact_numbers(pressure, facing, x, y, *(_widths(dataset, axis) for axis in "xy"))
+    widths = [
+        dataset[f"{axis}_width"].values
+        if f"{axis}_width" in dataset.variables
+        else np.full(centres.size, np.ptp(centres) / max(centres.size - 1, 1))
+        for axis, centres in (("x", x), ("y", y))
+    ]
+    numbers = contact_numbers(pressure, facing, x, y, *widths)
     at_x, at_y = np.unravel_index(int(np.nanargmax(pressure)), pressure.shape)
     outermost = [float(pressure[column].max()) for column in columns[[0, -1]]] if columns.size else [np.nan, np.nan]
-    settled = [variables.get(f"end_pressure_{end}") for end in ("first", "last")]
     first, last = (
-        (value if end is None else float(end.values)) / scale for value, end in zip(outermost, settled, strict=True)
+        float(dataset.get(f"end_pressure_{end}", value)) / scale
+        for end, value in zip(("first", "last"), outermost, strict=True)
     )
     return {
         "peak_pressure": float(pressure[at_x, at_y]),
@@ -49,17 +52,6 @@ def pressure_numbers(dataset: xr.Dataset) -> dict[str, float]:
         "contact_length": float(numbers.contact_length),
         "contact_width": float(numbers.contact_width),
     }
-
-
-def _widths(dataset: xr.Dataset, axis: str) -> Array:
-    """Widths of the cells along an axis, metres."""
-    widths = dataset.variables.get(f"{axis}_width")
-    size = dataset.sizes[axis]
-    if widths is not None:
-        return np.asarray(widths.values)
-    positions = dataset.variables[axis].values
-    uniform = (positions[-1] - positions[0]) / (size - 1) if size > 1 else cell_size(dataset["pressure"], axis).item()
-    return np.full(size, uniform)
 
 
 def stress_summary(dataset: xr.Dataset) -> xr.Dataset:
@@ -82,20 +74,12 @@ class Number(NamedTuple):
 
 def case_numbers(dataset: xr.Dataset) -> dict[str, Number]:
     """All numbers of a solved case by name: scalars of the Dataset (settled), then those of its cells."""
-    numbers = {name: Number(value, _attributes(name)) for name, value in pressure_numbers(dataset).items()}
+    numbers = {}
+    for name, value in pressure_numbers(dataset).items():
+        estimate = {"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {}
+        numbers[name] = Number(value, labels(name) | estimate)
     for source in (stress_summary(dataset), dataset):
-        for name, variable in source.variables.items():
-            if variable.ndim == 0 and name not in source.coords:
-                numbers[str(name)] = Number(float(variable.values), dict(variable.attrs))
+        for key, variable in source.variables.items():
+            if variable.ndim == 0 and key not in source.coords:
+                numbers[str(key)] = Number(float(variable.values), dict(variable.attrs))
     return numbers
-
-
-def _attributes(name: str) -> dict[str, Any]:
-    """Attributes of a number of the contact."""
-    return labels(name) | ({"comment": COMMENTS[name], ERROR_KIND: NOT_ESTIMATED} if name in COMMENTS else {})
-
-
-def summarize(dataset: xr.Dataset) -> xr.Dataset:
-    """Every number of a solved case as labelled scalars."""
-    numbers = case_numbers(dataset)
-    return xr.Dataset({name: ((), number.value, number.attributes) for name, number in numbers.items()})

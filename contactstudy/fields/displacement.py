@@ -8,7 +8,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
-from contactstudy.bodies.models import Body, Part
+from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.fields.loads import UNIFORM, Loads, end_problem, prescribed_loads, superposed, unit_problem
 from contactstudy.fields.part import REFERENCE_LENGTHS, kernel_factor, reference_distance
@@ -37,21 +37,8 @@ def displacement_field(
 
     Parameters
     ----------
-    body : Body
-        The elastic body.
-    pressure : DataArray (x, y)
-        Mean pressure in each cell, Pa; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
-    friction : float
-        Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
-    x, y : sequence of float, optional
-        Positions in metres, inside the body and in any order; default: the pressure's own.
-    z : sequence of float
-        Depths in metres, not negative.
-    traction_x, traction_y : DataArray (x, y), optional
-        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
-    inside_cells : "uniform" or DataArray (x, y)
-        Distribution of the loads inside the cells: uniform, or the shape of a given pressure, as in `stress_field`.
+    body, pressure, friction, x, y, z, traction_x, traction_y, inside_cells
+        As for :func:`contactstudy.stress_field`.
 
     Returns
     -------
@@ -64,7 +51,7 @@ def displacement_field(
     Raises
     ------
     InvalidInputError
-        If an argument is of the wrong kind, a position lies outside the body, or the grid does not fit it.
+        As `stress_field`.
 
     Examples
     --------
@@ -93,43 +80,27 @@ def displacement_under(
     body: Body, loads: Loads, grid: Grid, points: Points, shape: FloatArray | None = None
 ) -> FloatArray:
     """Displacements (3, x, y, z), metres; `shape` as in `stresses_at`."""
+    material = body.material
 
     def unit_fields(directions: tuple[Load, ...], cells: FloatArray) -> dict[Load, list[FloatArray]]:
-        sizes = (axis.size for axis in points)
-        fields: dict[Load, FloatArray] = dict.fromkeys(directions, np.zeros((3, *sizes)))
+        fields = {load: np.zeros((3, *(axis.size for axis in points))) for load in directions}
         for part in body.parts:
-            for load, field in _part_displacement(
-                body, part, directions, cells, grid, points=points, shape=shape
-            ).items():
-                fields[load] = fields[load] + part.weight * field
+            length, reference = part.extent[1] - part.extent[0], reference_distance(part.extent)
+            from_ends: dict[Load, FloatArray] = {}
+            if part.freed and cells.any():
+                problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=directions)
+                from_ends = end_displacement(problem, points, reference=reference)
+            for load, total in fields.items():
+                influence = displacement_influence(load, material.poisson, length, reference)
+                field = half_space_field(cells, influence, grid, points, extent=part.extent, shape=shape)
+                field = kernel_factor(material) * field
+                if load in from_ends:
+                    field += from_ends[load] / (2 * material.shear_modulus)
+                total += part.weight * field
         return {load: [field] for load, field in fields.items()}
 
     (displacement,) = superposed(loads, unit_fields)
     return displacement
-
-
-def _part_displacement(
-    body: Body,
-    part: Part,
-    loads: tuple[Load, ...],
-    cells: FloatArray,
-    grid: Grid,
-    points: Points,
-    shape: FloatArray | None,
-) -> dict[Load, FloatArray]:
-    """Displacements (3, x, y, z) of one part of a body, before its weight."""
-    material, extent = body.material, part.extent
-    length, reference = extent[1] - extent[0], reference_distance(extent)
-    fields = {}
-    for load in loads:
-        influence = displacement_influence(load, material.poisson, length, reference)
-        field = half_space_field(cells, influence, grid, points, extent=extent, shape=shape)
-        fields[load] = kernel_factor(material) * field
-    if part.freed and cells.any():
-        problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=loads)
-        for load, from_ends in end_displacement(problem, points, reference=reference).items():
-            fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
-    return fields
 
 
 POINTS = 32  # positions along x per evaluation. Speed: memory.

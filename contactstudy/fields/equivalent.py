@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray as xr
 
@@ -11,14 +13,12 @@ from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.loads import prescribed_loads
+from contactstudy.fields.loads import end_problem, prescribed_loads
 from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.operators import Positions as LoadPositions
-from contactstudy.overlapping.problem import EndProblem
-from contactstudy.overlapping.quadrature import Resolution
 
 
 def equivalent_loads(
@@ -34,16 +34,10 @@ def equivalent_loads(
 
     Parameters
     ----------
-    body : Body
-        The elastic body.
-    pressure : DataArray (x, y)
-        Pressure in Pa on cells that begin at ``x = 0``, as for `stress_field`.
-    friction : float
-        Coefficient ``f`` of the traction along +y.
+    body, pressure, friction, traction_x, traction_y
+        As for :func:`contactstudy.stress_field`; the loads are uniform in each cell.
     z : sequence of float
         Depths on the end faces, metres, not negative.
-    traction_x, traction_y : DataArray (x, y), optional
-        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
 
     Returns
     -------
@@ -73,7 +67,7 @@ def equivalent_loads(
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
     grid, loads, (label_x, label_y), _ = prescribed
     depths = checks.coordinates("z", z)
-    top = np.array(prescribed.pressure)
+    top = np.array(loads[Load.NORMAL].values)
     faces: list[FloatArray] = []
     for load, (cells, factor) in loads.items():
         operators = overlapping_operators(body, grid, depths, load, cells)
@@ -114,14 +108,6 @@ def overlapping_operators(
     if freed is None:
         return None
     cells = np.zeros(grid.shape) if cells is None else cells
-    resolution = Resolution().for_loads((load,))
-    problem = EndProblem(
-        length=freed.length,
-        poisson=body.material.poisson,
-        cells=cells,
-        loads=(load,),
-        grid=grid,
-        resolution=resolution,
-        mirrored_once=freed.mirrored_once,
-    )
+    problem = end_problem(freed, body.material.poisson, cells, None, grid, loads=(load,))
+    problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
     return OverlappingOperators.of(problem, LoadPositions(grid.x, grid.y, depths), reference=_reference(body))

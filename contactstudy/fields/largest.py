@@ -73,14 +73,6 @@ class Border(NamedTuple):
             rise[column, second] = at_border - pressure[column, second]
         return cls(traction, rise, poisson)
 
-    def stresses(self, cells: tuple[IntArray, ...], stresses: FloatArray) -> FloatArray:
-        """Stresses (6, x, y, 1) of some cells on the top, at the border in the cells that represent it."""
-        limit = stresses.copy()
-        rise = self.rise[cells][..., None]
-        limit[:3] -= np.array([2 * self.poisson, 1.0, 1.0])[:, None, None, None] * rise
-        limit[4:] = np.where(rise != 0, -self.traction[:, cells[0], cells[1], None], limit[4:])
-        return limit
-
 
 class Search(NamedTuple):
     """Points of the search for the largest stress."""
@@ -110,8 +102,12 @@ class Search(NamedTuple):
         return np.asarray(self.off_rim[np.ix_(*self.cells(points))])
 
     def top_stresses(self, points: Points, stresses: FloatArray) -> FloatArray:
-        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that stand for it."""
-        return self.border.stresses(np.ix_(*self.cells(points)), stresses)
+        """Stresses (6, x, y, 1) at centres of cells on the top, at the border in the cells that represent it."""
+        columns, rows = np.ix_(*self.cells(points))
+        limit, rise = stresses.copy(), self.border.rise[columns, rows, None]
+        limit[:3] -= np.array([2 * self.border.poisson, 1.0, 1.0])[:, None, None, None] * rise
+        limit[4:] = np.where(rise != 0, -self.border.traction[:, columns, rows, None], limit[4:])
+        return limit
 
 
 def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
@@ -133,34 +129,28 @@ def place_search(body: Body, loads: Loads, grid: Grid) -> Search:
         )
     )
     for peak in _peaks(line, symmetric=symmetric):
-        middle, half_width = _section(pressure[peak], grid)
         width = peak_width(pressure, grid.x, grid.dy, peak)
         if not any(abs(grid.x[peak] - points.x).min() < 0.2 * width for points in samples):
             x = np.clip(grid.x[peak] + width * AXIAL_OFFSETS, *extent)
-            samples.append(
-                _nearest_cells(
-                    grid, off_rim, x, 0.1 * width, middle + half_width * LATERAL_OFFSETS, depths=width * DEPTHS
-                )
-            )
-    middle, half_width = _section(pressure[int(line.argmax())], grid)
+            samples.append(_nearest_cells(grid, off_rim, x, pressure[peak], width * DEPTHS, spacing=0.1 * width))
+    highest = pressure[int(line.argmax())]
+    half_width = 0.5 * grid.dy * np.count_nonzero(highest)
     columns = np.flatnonzero(pressure.any(axis=1))
     first, last = grid.x_edges[columns[0]], grid.x_edges[columns[-1] + 1]
     inside = np.append(half_width * END_DISTANCES, 0.5 * (last - first))
     inside = inside[inside <= 0.5 * (last - first)]
     # One point of the second half: the middle is inside the range.
     x = np.concatenate([first + inside, last - (inside[-2:-1] if symmetric else inside)])
-    samples.append(
-        _nearest_cells(
-            grid, off_rim, x, 0.1 * half_width, middle + half_width * LATERAL_OFFSETS, depths=half_width * AXIS_DEPTHS
-        )
-    )
+    depths = half_width * AXIS_DEPTHS
+    samples.append(_nearest_cells(grid, off_rim, x, highest, depths, spacing=0.1 * half_width))
     return Search(grid, extent, off_rim, border, samples)
 
 
 def _nearest_cells(
-    grid: Grid, off_rim: BoolArray, x: FloatArray, spacing: float, y: FloatArray, depths: FloatArray
+    grid: Grid, off_rim: BoolArray, x: FloatArray, section: FloatArray, depths: FloatArray, spacing: float
 ) -> Points:
-    """Centres of the cells nearest to positions, at least `spacing` apart along x, on the top and below."""
+    """Centres of the cells nearest to positions, more than `spacing` apart, across a pressed section, and below."""
+    y = (section * grid.y).sum() / section.sum() + 0.5 * grid.dy * np.count_nonzero(section) * LATERAL_OFFSETS
     columns = np.unique(np.abs(grid.x - x[:, None]).argmin(axis=1))
     # The outermost rows off the rim are included: with friction the stress on the top may grow towards the rim.
     inner_rows = np.flatnonzero(off_rim[columns].any(axis=0))
@@ -168,11 +158,6 @@ def _nearest_cells(
     rows = candidates[np.unique(np.abs(grid.y[candidates] - y[:, None]).argmin(axis=1))]
     centres = grid.x[columns]
     return Points(centres[separated(centres, spacing)], grid.y[rows], np.append(0.0, depths))
-
-
-def _section(pressure: FloatArray, grid: Grid) -> tuple[float, float]:
-    """Middle and half-width of the contact in one column, metres."""
-    return float((pressure * grid.y).sum() / pressure.sum()), 0.5 * grid.dy * np.count_nonzero(pressure)
 
 
 def separated(positions: FloatArray, spacing: float) -> IntArray:
@@ -231,11 +216,10 @@ def largest_stress(
         return Largest(0.0, 0.0, (np.nan, np.nan, np.nan))
     samples = list(zip(search.samples, stresses, strict=True))
     *peaks, axis = [(points._replace(z=points.z[1:]), field[..., 1:]) for points, field in samples]
-    shallowest = search.shallowest
-    largest = _largest_of(_refined(_interpolated(*peak), search, shallowest, stress) for peak in peaks)
+    largest = _largest_of(_refined(_interpolated(*peak), search, stress) for peak in peaks)
     axis_sample = _sampled(*axis)
     if axis_sample.largest.value > largest.value:
-        largest = _largest_of([largest, _refined(axis_sample, search, shallowest, stress)])
+        largest = _largest_of([largest, _refined(axis_sample, search, stress)])
     for points, field in samples:
         top = search.top_stresses(points, field[..., :1])
         sample = _sampled(points._replace(z=points.z[:1]), top, search.off_rim_at(points))
@@ -250,8 +234,7 @@ def largest_with_points(
     """Largest von Mises stress, and of the neighbourhood of points with a larger stress."""
     if not search.samples:
         return largest
-    shallowest = search.shallowest
-    deep = points.z >= shallowest
+    deep = points.z >= search.shallowest
     depth_groups = [deep] if deep.any() else []
     depth_groups += [points.z == depth for depth in points.z[~deep]]
     for depths in depth_groups:
@@ -262,8 +245,8 @@ def largest_with_points(
         if largest.value < value <= largest.value + largest.error:
             largest = largest._replace(value=value, position=position)
         elif value > largest.value and depths is deep:
-            neighbourhood = _neighbourhood(position, search, shallowest)
-            largest = _refined(_interpolated(neighbourhood, stress(neighbourhood)), search, shallowest, stress)
+            neighbourhood = _neighbourhood(position, search)
+            largest = _refined(_interpolated(neighbourhood, stress(neighbourhood)), search, stress)
             if largest.value < value:
                 largest = Largest(value, largest.error + value - largest.value, position)
         elif value > largest.value:
@@ -271,12 +254,12 @@ def largest_with_points(
     return largest
 
 
-def _neighbourhood(position: tuple[float, float, float], search: Search, shallowest: float) -> Points:
+def _neighbourhood(position: tuple[float, float, float], search: Search) -> Points:
     """Points about a position; their distances along y are whole cells."""
     x, y, z = position
     dy = search.grid.dy
     axial = np.clip(x + z * LOCAL_OFFSETS, *search.extent)
-    depths = np.maximum(z * (1 + LOCAL_OFFSETS), shallowest)
+    depths = np.maximum(z * (1 + LOCAL_OFFSETS), search.shallowest)
     rows = np.unique([*np.round(z * LOCAL_OFFSETS / dy), -1, 1])
     return Points(axial[separated(axial, 0.1 * z)], y + dy * rows, depths[separated(depths, 0.1 * z)])
 
@@ -326,10 +309,10 @@ def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
     return np.unique(np.clip([*between, cell - 1, cell, cell + 1], 0, count - 1))
 
 
-def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[[Points], FloatArray]) -> Largest:
+def _refined(top: _Maximum, search: Search, stress: Callable[[Points], FloatArray]) -> Largest:
     """Refine points about the largest value until polynomials of two degrees agree."""
     for _ in range(ROUNDS):
-        points, inside = _closer_points(top, search.extent, shallowest)
+        points, inside = _closer_points(top, search)
         if inside and top.largest.error <= TOLERANCE * top.largest.value:
             break
         next_top = _interpolated(points, stress(points))
@@ -341,7 +324,7 @@ def _refined(top: _Maximum, search: Search, shallowest: float, stress: Callable[
             largest = _sampled(corners, stress(corners)).largest
             return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
         top = next_top
-    if top.largest.position[2] <= shallowest * (1 + 1e-9):
+    if top.largest.position[2] <= search.shallowest * (1 + 1e-9):
         return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
     return top.largest
 
@@ -358,11 +341,12 @@ def _sampled(points: Points, stresses: FloatArray, selection: BoolArray | None =
 
 def _interpolated(points: Points, stresses: FloatArray) -> _Maximum:
     """Largest value between points, of polynomials through the components."""
-    flat = int(von_mises_of(*stresses).argmax())
-    index = tuple(int(number) for number in np.unravel_index(flat, stresses.shape[1:]))
-    (value, position), (rough, _) = (_interpolate(points, stresses, index, neighbours) for neighbours in (2, 1))
-    sampled = float(von_mises_of(*stresses)[index])
-    return _Maximum(Largest(value, max(abs(value - rough), RISE_ERROR * (value - sampled)), position), points, index)
+    sample = _sampled(points, stresses)
+    (value, position), (rough, _) = (
+        _interpolate(points, stresses, sample.indices, neighbours) for neighbours in (2, 1)
+    )
+    error = max(abs(value - rough), RISE_ERROR * (value - sample.largest.value))
+    return sample._replace(largest=Largest(value, error, position))
 
 
 def _interpolate(
@@ -376,10 +360,10 @@ def _interpolate(
     return float(von_mises[best]), (x, y, z)
 
 
-def _closer_points(top: _Maximum, extent: Extent, shallowest: float) -> tuple[Points, bool]:
+def _closer_points(top: _Maximum, search: Search) -> tuple[Points, bool]:
     """Closer points around the largest one; beyond an edge of the range, shifted points at equal spacing."""
     axes, inside = [], True
-    limits = (extent, (-np.inf, np.inf), (shallowest, np.inf))
+    limits = (search.extent, (-np.inf, np.inf), (search.shallowest, np.inf))
     for axis, index, (low, high) in zip(top.points, top.indices, limits, strict=True):
         centre = axis[index]
         before, after = axis[max(index - 1, 0)], axis[min(index + 1, axis.size - 1)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import NamedTuple, TypeVar
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -21,8 +21,6 @@ from contactstudy.kernels.fine_cells import FineCells
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.problem import EndProblem, finest_cell
 from contactstudy.overlapping.quadrature import Resolution
-
-Result = TypeVar("Result")
 
 
 class TopLoad(NamedTuple):
@@ -49,22 +47,16 @@ def sliding(pressure: FloatArray, friction: float | FloatArray) -> Loads:
     return loads | {Load.ALONG_Y: TopLoad(pressure, friction)} if friction else loads
 
 
-def grouped(loads: Loads, unit: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Result]]) -> dict[Load, Result]:
-    """Return the result of `unit` for each load, from one call for all loads with the same distribution."""
-    groups: dict[ArrayKey, list[Load]] = {}
-    for load, (cells, _) in loads.items():
-        groups.setdefault(ArrayKey(cells), []).append(load)
-    results: dict[Load, Result] = {}
-    for shared, directions in groups.items():
-        results |= unit(tuple(directions), shared.values)
-    return results
-
-
 def superposed(
     loads: Loads, unit_fields: Callable[[tuple[Load, ...], FloatArray], Mapping[Load, Sequence[FloatArray]]]
 ) -> list[FloatArray]:
-    """Sum the fields of all loads, from the fields of each distribution (`grouped`)."""
-    fields = grouped(loads, unit_fields)
+    """Sum the fields of all loads, from one call of `unit_fields` for all loads with the same distribution."""
+    groups: dict[ArrayKey, list[Load]] = {}
+    for load, (cells, _) in loads.items():
+        groups.setdefault(ArrayKey(cells), []).append(load)
+    fields: dict[Load, Sequence[FloatArray]] = {}
+    for shared, directions in groups.items():
+        fields |= unit_fields(tuple(directions), shared.values)
     first, *remaining = loads
     totals = [np.multiply(loads[first].factor, field, order="K") for field in fields[first]]
     for load in remaining:
@@ -109,11 +101,6 @@ class PrescribedLoads(NamedTuple):
     labels: Labels  # coordinates of the cell centres
     shape: FloatArray | None
     """(x, y): pressure that determines the distribution of the loads inside the cells; None: uniform."""
-
-    @property
-    def pressure(self) -> FloatArray:
-        """Pressure on the cells, Pa."""
-        return self.loads[Load.NORMAL].values
 
 
 def prescribed_loads(

@@ -36,13 +36,13 @@ class PartOperator:
     ) -> None:
         self.extent, self.grid = extent, grid
         self._spectra, self._ends = spectra, ends
-        padding = _Padding(extent, grid)
+        mirrored, padded = _padding(extent, grid)
         # A body with the second mirror alone is reversed.
-        self._flipped = padding.mirrored and bool(np.isinf(extent[0]))
+        self._flipped = mirrored and bool(np.isinf(extent[0]))
 
         def transforms(directions: Sequence[Load]) -> dict[Load, GridTransform]:
             return {
-                direction: GridTransform(*grid.shape, padding.cells_x, direction.sign_x if padding.mirrored else 0)
+                direction: GridTransform(*grid.shape, padded, direction.sign_x if mirrored else 0)
                 for direction in dict.fromkeys(directions)
             }
 
@@ -63,11 +63,6 @@ class PartOperator:
                 ends = EndCorrection.on(grid, end_kernel(request))
         spectra = {response: _spectrum(response, material, part.extent, grid) for response in responses}
         return cls(part.extent, grid, spectra, ends)
-
-    @property
-    def reference(self) -> float:
-        """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return reference_distance(self.extent)
 
     def coarsened(self, material: Material) -> PartOperator:
         """Return the operator on cells of twice the size."""
@@ -144,13 +139,10 @@ class PartOperator:
         return int(sum(spectra) + max(spectra)) + ends + buffers
 
 
-class _Padding:
-    """Continuation of the cells along x: mirror images or zeros."""
-
-    def __init__(self, extent: Extent, grid: Grid) -> None:
-        low, high = (bool(np.isfinite(end)) for end in extent)
-        self.mirrored, self.periodic = low or high, low and high
-        self.cells_x = grid.cells_x if self.periodic else 2 * grid.cells_x
+def _padding(extent: Extent, grid: Grid) -> tuple[bool, int]:
+    """Whether mirror images continue the cells along x, else zeros; and the number of cells with the continuation."""
+    ended = [bool(np.isfinite(end)) for end in extent]
+    return any(ended), grid.cells_x if all(ended) else 2 * grid.cells_x
 
 
 def check_ends(part: Part, responses: Sequence[Response]) -> None:
@@ -177,8 +169,8 @@ def kernel_factor(material: Material) -> float:
 
 def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid) -> FloatArray:
     """Spectrum (x, y), without factors i, of the kernel of the mirrored half-space."""
-    padding = _Padding(extent, grid)
-    x: FloatArray = grid.dx * np.arange(padding.cells_x + 1.0 if padding.mirrored else grid.cells_x + 1.0)
+    mirrored, padded = _padding(extent, grid)
+    x: FloatArray = grid.dx * np.arange(padded + 1.0 if mirrored else grid.cells_x + 1.0)
     y: FloatArray = grid.dy * np.arange(grid.cells_y + 1.0)
     length = extent[1] - extent[0]
     cell = (grid.dx, grid.dy)
@@ -190,12 +182,12 @@ def _spectrum(response: Response, material: Material, extent: Extent, grid: Grid
         inner = along_y[1:-1]
         if inner.size:  # the sine transform needs two columns
             inner = factor * fft.dst(inner, type=1, axis=0)
-        if padding.mirrored:
+        if mirrored:
             return np.asarray(inner if response.displacement.sign_x < 0 else -inner)
         zero = np.zeros((1, inner.shape[1]))
         return np.concatenate([zero, -inner, zero, inner[::-1]])
     spectrum = factor * fft.dct(along_y, type=1, axis=0)
-    if padding.mirrored:
+    if mirrored:
         return np.asarray(spectrum[:-1] if response.displacement.sign_x > 0 else spectrum[1:])
     return np.concatenate([spectrum, spectrum[-2:0:-1]])
 
@@ -228,11 +220,6 @@ class ColumnsOperator:
                 for response, kernel in kernels.items():
                     ends.add_to(kernel, response, edges)
         return cls(part.extent, grid, kernels)
-
-    @property
-    def reference(self) -> float:
-        """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return reference_distance(self.extent)
 
     def coarsened(self, material: Material) -> ColumnsOperator:
         """Return the operator on pairs of cells, for an initial guess."""

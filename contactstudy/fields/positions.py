@@ -30,22 +30,15 @@ Labels = tuple[FloatArray, FloatArray]
 class FieldPositions(NamedTuple):
     """Checked positions, metres."""
 
-    x: FloatArray  # positions of the field
-    y: FloatArray
-    z: FloatArray
+    points: Points
     label_x: FloatArray  # coordinates of the result; by default the unrounded coordinates of the pressure
     label_y: FloatArray
-
-    @property
-    def points(self) -> Points:
-        """Positions without labels."""
-        return Points(self.x, self.y, self.z)
 
     def dataset(self, fields: Mapping[str, FloatArray]) -> xr.Dataset:
         """Label fields (x, y, z)."""
         return xr.Dataset(
             {name: (("x", "y", "z"), values) for name, values in fields.items()},
-            coords={"x": self.label_x, "y": self.label_y, "z": self.z},
+            coords={"x": self.label_x, "y": self.label_y, "z": self.points.z},
         )
 
 
@@ -54,24 +47,22 @@ def field_positions(
 ) -> FieldPositions:
     """Positions of a field in a body."""
     body.check_span(grid)
-    x_values = _inside_body(body, grid.x if x is None else checks.coordinates("x", numbers_in_si("x", x, "m")), grid)
-    y_values = grid.y if y is None else checks.coordinates("y", numbers_in_si("y", y, "m"))
-    z_values = checks.coordinates("z", numbers_in_si("z", z, "m"))
-    if (z_values < 0).any():
-        raise InvalidInputError("z", float(z_values.min()), "not negative (metres below the top)")
+    chosen = {"x": grid.x if x is None else x, "y": grid.y if y is None else y, "z": z}
+    points = Points(*(checks.coordinates(axis, numbers_in_si(axis, values, "m")) for axis, values in chosen.items()))
+    points = points._replace(x=_inside_body(body, points.x, grid))
+    if (points.z < 0).any():
+        raise InvalidInputError("z", float(points.z.min()), "not negative (metres below the top)")
     low, high = body.extent
     size = max(grid.x_range[1] - grid.x_range[0], grid.y_range[1] - grid.y_range[0])
     size = max(size, high - low) if np.isfinite([low, high]).all() else size
-    for name, values in (("x", x_values), ("y", y_values), ("z", z_values)):
+    for name, values in zip("xyz", points, strict=True):
         farthest = float(values[np.abs(values).argmax()])
         if abs(farthest) > FARTHEST * size:
             raise InvalidInputError(
                 name, farthest, f"within {FARTHEST:g} times the size of load and body, {FARTHEST * size:g} m"
             )
     label_x, label_y = labels or (grid.x, grid.y)
-    return FieldPositions(
-        x_values, y_values, z_values, label_x if x is None else x_values, label_y if y is None else y_values
-    )
+    return FieldPositions(points, label_x if x is None else points.x, label_y if y is None else points.y)
 
 
 def _inside_body(body: Body, x: FloatArray, grid: Grid) -> FloatArray:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -12,7 +11,7 @@ from scipy.sparse.linalg import LinearOperator
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import STRESSES, describe
-from contactstudy.bodies.models import Body, Part
+from contactstudy.bodies.models import Body
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.checks import FloatArray
 from contactstudy.fields.largest import Largest, largest_stress, largest_with_points, place_search
@@ -102,18 +101,18 @@ def stress_dataset(
 
 def _labelled(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions) -> xr.Dataset:
     """Label stresses (6, x, y, z)."""
-    _free_edge(body, grid, stresses, positions)
+    _free_edge(body, grid, stresses, positions.points)
     fields = positions.dataset({name: stresses[i] for i, name in enumerate(STRESSES)})
     fields["von_mises"] = von_mises(fields)
     return describe(fields, "stresses under a prescribed pressure")
 
 
-def _free_edge(body: Body, grid: Grid, stresses: FloatArray, positions: FieldPositions | Points) -> None:
+def _free_edge(body: Body, grid: Grid, stresses: FloatArray, points: Points) -> None:
     """Set the traction on the edges between top and free ends to zero, where both auxiliary bodies have a logarithm."""
     if all(part.freed for part in body.parts):
-        on_end, on_top = np.isin(positions.x, body.extent), positions.z < CORNER_OFFSET * grid.dy
+        on_end, on_top = np.isin(points.x, body.extent), points.z < CORNER_OFFSET * grid.dy
         for component in (0, 3, 4):
-            stresses[component][np.ix_(on_end, np.ones(positions.y.size, bool), on_top)] = 0.0
+            stresses[component][np.ix_(on_end, np.ones(points.y.size, bool), on_top)] = 0.0
 
 
 def stresses_at(
@@ -141,11 +140,24 @@ def _unit_stress(
     shape: ArrayKey | None,
 ) -> dict[Load, list[FloatArray]]:
     """Stresses (6, x, y, z) at each set of points under a distribution in each direction."""
+    poisson, shape_cells = body.material.poisson, None if shape is None else shape.values
+    axes = [Points(*(axis.values for axis in key)) for key in point_sets]
     fields: dict[Load, list[FloatArray]] = {}
     for part in body.parts:
-        for load, added in _part_stress(
-            part, body.material.poisson, grid, loads, cells, keys=point_sets, shape=shape
-        ).items():
+        from_ends: list[dict[Load, FloatArray]] = [{} for _ in axes]
+        if part.freed and cells.values.any():
+            problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
+            from_ends = end_stress(problem, axes, reference_distance(part.extent))
+        for load in loads:
+            added = []
+            for key, points, by_load in zip(point_sets, axes, from_ends, strict=True):
+                field = _mirrored_stress(load, poisson, part.extent, grid, cells, points=key, shape=shape)
+                if load in by_load:
+                    # The two auxiliary bodies leave no traction on the top, by construction.
+                    for component in (2, 4, 5):  # eq. (1)
+                        by_load[load][component][..., points.z == 0] = 0.0
+                    field = np.add(by_load[load], field, out=by_load[load])
+                added.append(field if part.weight == 1 else part.weight * field)
             fields[load] = [a + b for a, b in zip(fields[load], added, strict=True)] if load in fields else added
     return fields
 
@@ -167,60 +179,14 @@ def _mirrored_stress(
     return half_space_field(cells.values, influence, grid, axes, extent=extent, shape=values)
 
 
-def _part_stress(
-    part: Part,
-    poisson: float,
-    grid: Grid,
-    loads: tuple[Load, ...],
-    cells: ArrayKey,
-    keys: tuple[tuple[ArrayKey, ...], ...],
-    shape: ArrayKey | None,
-) -> dict[Load, list[FloatArray]]:
-    """Stresses of one part of a body, times its weight."""
-    point_sets = [Points(*(axis.values for axis in key)) for key in keys]
-    mirrored = {
-        load: [_mirrored_stress(load, poisson, part.extent, grid, cells, points=key, shape=shape) for key in keys]
-        for load in loads
-    }
-    fields: dict[Load, list[FloatArray]] = {load: [] for load in loads}
-    if part.freed and cells.values.any():
-        shape_cells = None if shape is None else shape.values
-        problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
-        reference = reference_distance(part.extent)
-        for number, (points, by_load) in enumerate(
-            zip(point_sets, end_stress(problem, point_sets, reference), strict=True)
-        ):
-            for load, from_ends in by_load.items():
-                # The two auxiliary bodies leave no traction on the top, by construction.
-                for component in (2, 4, 5):  # eq. (1)
-                    from_ends[component][..., points.z == 0] = 0.0
-                from_ends += mirrored[load][number]
-                fields[load].append(from_ends)
-    else:
-        fields = {load: [field.copy("K") for field in cached_fields] for load, cached_fields in mirrored.items()}
-    if part.weight != 1:
-        for by_points in fields.values():
-            for field in by_points:
-                field *= part.weight
-    return fields
-
-
-class ContactStresses(NamedTuple):
-    """Stresses under a contact."""
-
-    field: xr.Dataset  # stresses at the requested positions, Pa
-    residual: float  # largest traction on the free ends over the peak pressure
-    largest: Largest  # largest von Mises stress in the body
-
-
 def contact_stresses(
     body: Body,
     loads: Loads,
     grid: Grid,
     positions: Callable[[Largest], FieldPositions],
     on_ends: tuple[FloatArray, FloatArray],
-) -> ContactStresses:
-    """Largest stress, residual on the ends, and stresses at positions that may depend on the largest stress."""
+) -> tuple[xr.Dataset, float, Largest]:
+    """Stresses at positions that may depend on the largest stress, residual on the ends, and the largest stress."""
     ends, search = _ends(body), place_search(body, loads, grid)
     pressure = loads[Load.NORMAL].values
 
@@ -235,7 +201,7 @@ def contact_stresses(
     points = located.points
     field = stress(points)
     largest = largest_with_points(largest, points, field, search, stress)
-    return ContactStresses(_labelled(body, grid, field, located), residual, largest)
+    return _labelled(body, grid, field, located), residual, largest
 
 
 def end_traction_residual(body: Body, loads: Loads, grid: Grid, y: FloatArray, z: FloatArray) -> float:

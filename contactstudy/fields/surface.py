@@ -18,7 +18,7 @@ from contactstudy.cache import cached
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.loads import prescribed_loads
-from contactstudy.fields.part import ColumnsOperator, PartOperator
+from contactstudy.fields.part import ColumnsOperator, PartOperator, reference_distance
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.threads import one_blas_thread
@@ -83,7 +83,7 @@ class SurfaceOperator:
     @property
     def reference(self) -> float:
         """Distance along y at which the displacement is zero, metres; infinite unless the body has two ends."""
-        return self._parts[0][1].reference
+        return reference_distance(self.body.parts[0].extent)
 
     @property
     def nbytes(self) -> int:
@@ -141,15 +141,8 @@ def surface_displacement(
 
     Parameters
     ----------
-    body : Body
-        The elastic body.
-    pressure : DataArray (x, y)
-        Pressure in Pa, uniform in each cell; coordinates are cell centres in metres. On a body with free ends the
-        cells begin at ``x = 0``, and on a finite-length space they end at its length.
-    friction : float
-        Coefficient ``f``; the traction on the body is ``f`` times the pressure along +y.
-    traction_x, traction_y : DataArray (x, y), optional
-        Tractions on the body along +x and +y, Pa, on the cells of the pressure; `traction_y` instead of `friction`.
+    body, pressure, friction, traction_x, traction_y
+        As for :func:`contactstudy.stress_field`; the loads are uniform in each cell.
     components : sequence of str, optional
         Some of "x", "y" and "z"; default: the normal displacement alone, as a DataArray.
 
@@ -176,17 +169,21 @@ def surface_displacement(
     >>> body = HalfSpace(material=Material(1.0, 0.0))
     >>> round(float(surface_displacement(body, pressure).max()), 2)
     2.24
-    >>> dragged = surface_displacement(body, 0 * pressure, traction_x=pressure, components="xy")
-    >>> round(float(dragged.displacement_x.max()), 2), round(float(abs(dragged.displacement_y).max()), 2)
-    (2.24, 0.0)
     """
     prescribed = prescribed_loads(body, pressure, friction, traction_x, traction_y)
-    directions = (Load.NORMAL,) if components is None else _directions(components)
+    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
+    chosen = "z" if components is None else components
+    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in chosen))
+    if not directions:
+        raise InvalidInputError("components", components, "at least one of x, y and z, or None")
     grid, loads = prescribed.grid, prescribed.loads
     operator = surface_operator(body, grid, tuple(loads), directions=directions)
     with one_blas_thread():
         displaced = operator.displaced({load: top.values for load, top in loads.items()}, directions)
-    attributes = displacement_reference(operator.reference)
+    attributes: dict[str, str | float] = {}
+    if np.isfinite(operator.reference):
+        reference = "zero at |y| = reference_distance (m) on the top"
+        attributes = {"reference_distance": operator.reference, "reference": reference}
     coords = {"x": pressure["x"], "y": pressure["y"]}
     labelled = {
         name: named(name, xr.DataArray(displaced[direction], coords, dims=("x", "y"))).assign_attrs(attributes)
@@ -200,19 +197,3 @@ def surface_displacement(
 
 DISPLACEMENTS = {"displacement_x": Load.ALONG_X, "displacement_y": Load.ALONG_Y, "displacement_z": Load.NORMAL}
 """Variables of the top's displacement."""
-
-
-def _directions(components: Sequence[str]) -> tuple[Load, ...]:
-    """Directions of displacements that are wanted."""
-    axes = {name[-1]: direction for name, direction in DISPLACEMENTS.items()}
-    directions = tuple(dict.fromkeys(axes[checks.known_name("components", axis, axes)] for axis in components))
-    if not directions:
-        raise InvalidInputError("components", components, "at least one of x, y and z, or None")
-    return directions
-
-
-def displacement_reference(reference: float) -> dict[str, str | float]:
-    """Attributes with the reference of a relative displacement of the top; empty for an absolute one."""
-    if not np.isfinite(reference):
-        return {}
-    return {"reference_distance": reference, "reference": "zero at |y| = reference_distance (m) on the top"}

@@ -21,7 +21,7 @@ from contactstudy.analysis import (
 from contactstudy.arrays.variables import require
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.singular import mark_at_top, near_singular, singular_ends
-from contactstudy.plots.style import LEGEND_WIDTH, fold_text, label_axes, line_styles, new_axes, units
+from contactstudy.plots.style import LEGEND_WIDTH, Units, fold_text, label_axes, line_styles, new_axes, units
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -65,19 +65,28 @@ def plot_axial_pressure(
     >>> plot_axial_pressure(case).get_ylabel()
     'contact pressure, $p/p_0$'
     """
-    require(dataset, "pressure")
     case = single_case(dataset)
     require(case, "pressure")
     unit = units(case, si=si)
     ax = new_axes(ax)
-    axial = axial_pressure(case)
-    ends = singular_ends(case)
-    pressure = np.where(near_singular(case, ends), np.nan, axial.values)
-    x = axial[dimension_along(axial, "x")].values
-    (line,) = ax.plot(x / unit.length + shift, pressure / unit.stress, **style)
-    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
+    draw_section_maxima(ax, case, "pressure", unit, shift, **style)
     label_axes(ax, unit.axis("x"), unit.stress_label("pressure"))
     return ax
+
+
+def draw_section_maxima(
+    ax: Axes, case: xr.Dataset, variable: str, unit: Units, shift: float = 0.0, **style: Any
+) -> None:
+    """Draw the largest value in each cross-section, without the neighbourhood of singular ends, which are marked."""
+    if variable == "pressure":
+        profile = axial_pressure(case)
+    else:
+        profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
+    x = profile[dimension_along(profile, "x")].values
+    ends = singular_ends(case) if "pressure" in case else []
+    values = np.where(near_singular(case, ends, x), np.nan, profile.values)
+    (line,) = ax.plot(x / unit.length + shift, values / unit.stress, **style)
+    mark_at_top(ax, [end / unit.length + shift for end in ends], line.get_color())
 
 
 def plot_comparison(
@@ -96,17 +105,11 @@ def plot_comparison(
         Name in the legend to a single case, drawn over its a and p0.
     variable : str
         `pressure`, or a stress or measure, see :func:`contactstudy.analysis.measure`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     centred : bool, optional
         Whether positions count from the middle of the contact; default: if the middles of the contacts differ by
         more than a half-width, as for bodies of different length.
-
-    Returns
-    -------
-    Axes
 
     Raises
     ------
@@ -123,10 +126,7 @@ def plot_comparison(
     if not isinstance(results, Mapping) or not results:
         raise InvalidInputError("results", results, "a mapping of names to results, at least one")
     ax = new_axes(ax)
-    cases = {}
-    for name, dataset in results.items():
-        require(dataset)
-        cases[name] = single_case(dataset)
+    cases = {name: single_case(dataset) for name, dataset in results.items()}
     middles = {name: _middle_of_contact(case) for name, case in cases.items()}
     if centred is None:
         half_widths = [float(case["hertz_half_width"]) for case in cases.values() if "hertz_half_width" in case]
@@ -134,16 +134,8 @@ def plot_comparison(
         centred = bool(half_widths) and spread > min(half_widths)
     for (name, case), style in zip(cases.items(), line_styles(len(cases)), strict=True):
         unit = units(case, si=si)
-        if variable == "pressure":
-            profile = axial_pressure(case)
-        else:
-            profile = largest_sample(case, variable, along="x")[f"peak_{variable}"]
-        x = profile[dimension_along(profile, "x")].values
-        ends = singular_ends(case) if "pressure" in case else []
-        values = np.where(near_singular(case, ends, x), np.nan, profile.values)
-        origin = middles[name] if centred else 0.0
-        ax.plot((x - origin) / unit.length, values / unit.stress, label=fold_text(name, LEGEND_WIDTH), **style)
-        mark_at_top(ax, [(end - origin) / unit.length for end in ends], style["color"])
+        shift = -middles[name] / unit.length if centred else 0.0
+        draw_section_maxima(ax, case, variable, unit, shift, label=fold_text(name, LEGEND_WIDTH), **style)
     ax.set_ylim(bottom=min(0.0, ax.get_ylim()[0]))
     ax.legend(frameon=False, fontsize="small")
     along = unit.axis("x") if not centred else f"position from mid-length, $x{unit.over_length}$"
@@ -177,12 +169,10 @@ def plot_depth(
         A single case with stresses.
     variables : sequence of str
         Stresses or measures, see :func:`contactstudy.analysis.measure`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     x, y : float, optional
         The point, metres; default: the middle of the positions of stresses along x, and ``y = 0``.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
 
     Returns
     -------
@@ -204,8 +194,6 @@ def plot_depth(
     names = [variables] if isinstance(variables, str) else list(variables)
     if not names:
         raise InvalidInputError("variables", variables, "at least one")
-    for name in names:
-        measure(dataset, name)
     case = single_case(dataset)
     unit = units(case, si=si)
     field = measure(case, names[0])

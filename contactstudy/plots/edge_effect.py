@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import dimension_along, in_plane, single_case
+from contactstudy.analysis import axial_pressure, dimension_along, in_plane, single_case
 from contactstudy.arrays.selections import place_of
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
@@ -22,20 +22,12 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-LoadCase = Callable[[xr.Dataset], xr.Dataset]
-"""Takes the part of a study with one case, returns the case with its surfaces, as `solve` does."""
+Entry = tuple[float, xr.Dataset]  # e/a and the case there
+LoadCase = Callable[[xr.Dataset], xr.Dataset]  # from the part of a study with one case to the case
 
 EDGE_AXES = ("e_over_a", "body")  # Parameters with several values in the figure
-UNSOLVED = "a study with finished cases and stored pressures"
 TITLE_WIDTH = 60  # letters of a line
 PLATEAU = 0.1  # Relative deviation from the pressure at mid-length up to which a curve counts as level
-
-
-class Entry(NamedTuple):
-    """One case of the figure."""
-
-    end_distance: float  # e/a
-    case: xr.Dataset
 
 
 def plot_edge_effect(
@@ -45,6 +37,7 @@ def plot_edge_effect(
     depth: float = 3.0,
     most: int = 6,
     selection: Mapping[str, Any] | None = None,
+    load: LoadCase = single_case,
 ) -> Figure:
     """Draw the pressure along the axis, and von Mises stress in the plane y = 0, for several e/a.
 
@@ -61,6 +54,8 @@ def plot_edge_effect(
         Largest number of values of e/a, evenly selected.
     selection : mapping, optional
         Values of other swept parameters; default: the first.
+    load : callable
+        Takes the part of a study with one case, returns the case with its surfaces; default: those of the Dataset.
 
     Returns
     -------
@@ -74,47 +69,33 @@ def plot_edge_effect(
     """
     if "e_over_a" not in dataset.dims or "status" not in dataset:
         raise InvalidInputError("dataset", list(map(str, dataset.dims)), "a study with the dimension e_over_a")
-    if "pressure" not in dataset:
-        raise InvalidInputError("dataset", dict(dataset.sizes), UNSOLVED)
-    return edge_effect_figure(dataset, single_case, selection or {}, distance=distance, depth=depth, most=most)
-
-
-def edge_effect_figure(
-    dataset: xr.Dataset,
-    load: LoadCase,
-    selection: Mapping[str, Any],
-    *,
-    distance: float | None = None,
-    depth: float = 3.0,
-    most: int = 6,
-) -> Figure:
-    """Draw :func:`plot_edge_effect` with cases that `load` reads one by one."""
     from matplotlib import pyplot
 
-    dataset, remarks = _select_beside(dataset, selection)
+    dataset, remarks = _select_beside(dataset, selection or {})
     has_bodies = "body" in dataset.dims
     bodies = [str(name) for name in np.atleast_1d(dataset["body"].values)] if "body" in dataset.coords else [""]
 
     def solved(body: str) -> list[Entry]:
         part = dataset.sel(body=body) if has_bodies else dataset
-        entries = [Entry(float(e), part.isel(e_over_a=i)) for i, e in enumerate(part["e_over_a"].values)]
-        return [entry for entry in entries if np.isfinite(float(entry.case["hertz_half_width"]))]
+        entries = [(float(e), part.isel(e_over_a=i)) for i, e in enumerate(part["e_over_a"].values)]
+        return [(e, case) for e, case in entries if np.isfinite(float(case["hertz_half_width"]))]
 
     def with_surfaces(entries: list[Entry]) -> list[Entry]:
-        loaded = [Entry(entry.end_distance, load(entry.case)) for entry in entries]
-        return [entry for entry in loaded if "pressure" in entry.case]
+        loaded = [(e, load(case)) for e, case in entries]
+        return [(e, case) for e, case in loaded if "pressure" in case]
 
     finite = next((body for body in bodies if body != "half-space"), bodies[0])
     candidates = solved(finite)
     numbers = sorted(set(np.linspace(0, len(candidates) - 1, min(most, len(candidates))).round().astype(int)))
     entries = with_surfaces([candidates[number] for number in numbers])
     if not entries:
-        raise InvalidInputError("dataset", dict(dataset.sizes), UNSOLVED)
+        allowed = "a study with finished cases and stored pressures"
+        raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     half_spaces = solved("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
     # On a half-space the distance shifts the coordinate only: one case suffices.
-    first = [entry for entry in half_spaces if entry.end_distance == entries[0].end_distance] or half_spaces
+    first = [(e, case) for e, case in half_spaces if e == entries[0][0]] or half_spaces
     comparison = with_surfaces(first[:1])
-    stressed = [entry for entry in entries if "von_mises" in entry.case]
+    stressed = [(e, case) for e, case in entries if "von_mises" in case]
     height = 0.5 + 1.1 * len(stressed)
     figure = pyplot.figure(figsize=(5.4, 4.0 + height), layout="constrained")
     parts: Any = figure.subfigures(2, 1, height_ratios=(4.0, height)) if stressed else [figure]
@@ -132,19 +113,15 @@ def edge_effect_figure(
 
 def _select_beside(dataset: xr.Dataset, selection: Mapping[str, Any]) -> tuple[xr.Dataset, list[str]]:
     """One case per e/a and body, and the text of the values of the other parameters."""
-    remarks = []
-    for dim in map(str, dataset["status"].dims):
-        if dim in EDGE_AXES:
-            continue
-        count = dataset.sizes[dim]
-        dataset = dataset.isel({dim: place_of(dataset, dim, selection[dim]) if dim in selection else 0})
-        if dim in dataset.coords and dim != "case":
-            entry = dataset[dim]
-            remarks.append(describe_value(dim, entry.item(), str(entry.attrs.get("units", "1")), count))
-    for name, entry in dataset["status"].coords.items():
-        scalar = entry.ndim == 0 and str(name) not in (*EDGE_AXES, "case")
-        if scalar and not any(remark.startswith(describe_value(str(name), "", "")) for remark in remarks):
-            remarks.append(describe_value(str(name), entry.item(), str(entry.attrs.get("units", "1"))))
+    sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dim not in EDGE_AXES}
+    places = {dim: place_of(dataset, dim, selection[dim]) if dim in selection else 0 for dim in sizes}
+    dataset = dataset.isel(places)
+    scalars = {str(name): entry for name, entry in dataset["status"].coords.items() if entry.ndim == 0}
+    names = [name for name in dict.fromkeys([*sizes, *scalars]) if name in scalars and name not in (*EDGE_AXES, "case")]
+    remarks = [
+        describe_value(name, scalars[name].item(), str(scalars[name].attrs.get("units", "1")), sizes.get(name, 1))
+        for name in names
+    ]
     return dataset, remarks
 
 
@@ -168,10 +145,8 @@ def _level_distance(entries: list[Entry]) -> float:
     limits = []
     for _, case in entries:
         unit = units(case, si=False)
-        pressure = case["pressure"]
-        x_dim, y_dim = (dimension_along(pressure, axis) for axis in "xy")
-        axial = pressure.max(y_dim)
-        x, values = axial[x_dim].values / unit.length, axial.values
+        axial = axial_pressure(case)
+        x, values = axial[dimension_along(axial, "x")].values / unit.length, axial.values
         middle = 0.5 * (x[0] + x[-1])
         half = x <= middle
         level = np.abs(values[half] / values[half][-1] - 1) < PLATEAU if half.any() else np.array([True])
@@ -197,7 +172,7 @@ def _draw_planes(figure: Any, entries: list[Entry], distance: float, depth: floa
     largest = max(float(np.nanmax(values[x <= distance][:, z <= depth])) for x, z, values in planes)
     levels = MaxNLocator(20).tick_values(0.0, largest)
     axes = figure.subplots(len(entries), sharex=True, sharey=True, squeeze=False)[:, 0]
-    unit = units(entries[0].case, si=False)
+    unit = units(entries[0][1], si=False)
     for ax, (end_distance, case) in zip(axes, entries, strict=True):
         plot_stress_plane(case, "von_mises", y=0.0, ax=ax, levels=levels, colorbar=False)
         ax.set(xlabel="", ylabel=f"$z{unit.over_length}$", ylim=(depth, 0.0), title=f"$e/a$ = {end_distance:g}")

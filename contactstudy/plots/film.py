@@ -27,12 +27,10 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     ----------
     dataset : Dataset
         Result of `solve_film`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`contactstudy.plots.plot_axial_pressure`.
     fringes : int
         Contours up to 1.5 times the central film.
-    si : bool
-        Whether to draw mm instead of lengths over a.
 
     Returns
     -------
@@ -54,8 +52,8 @@ def plot_film_map(dataset: xr.Dataset, ax: Axes | None = None, *, fringes: int =
     'position along rolling, $y/a$'
     """
     checks.count("fringes", fringes)
-    require(dataset, "film_thickness", "central_film", "least_film_x", "least_film_y")
     case = single_case(dataset)
+    require(case, "film_thickness", "central_film", "least_film_x", "least_film_y")
     unit, ax = units(case, si=si), new_axes(ax)
     film = 1e6 * case["film_thickness"].transpose("y", "x")
     x, y = (film[axis].values / unit.length for axis in "xy")
@@ -80,12 +78,10 @@ def plot_film_line(
     ----------
     dataset : Dataset
         Result of `solve_film`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`contactstudy.plots.plot_axial_pressure`.
     x, y : float, optional
         Position of the line along y or along the axis, metres; default: along the axis at ``y = 0``.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and pressures over p0.
 
     Returns
     -------
@@ -106,10 +102,10 @@ def plot_film_line(
     >>> plot_film_line(case, x=0.5).get_xlabel()
     'position along rolling, $y/a$'
     """
-    require(dataset, "film_thickness", "pressure", "central_film")
     if x is not None and y is not None:
         raise InvalidInputError("x, y", (x, y), "one of the two")
     case = single_case(dataset)
+    require(case, "film_thickness", "pressure", "central_film")
     unit, ax = units(case, si=si), new_axes(ax)
     axis, fixed, position = ("x", "y", y or 0.0) if x is None else ("y", "x", x)
     line = case[["film_thickness", "pressure"]].dropna("x").interp({fixed: position})

@@ -82,14 +82,8 @@ def plot_profiles(
         Profiles by their names in the legend.
     length : float
         Length of the rollers, metres.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
-    deepest : float, optional
-        Largest drop on the axis, metres; default: the largest of the profiles.
-
-    Returns
-    -------
-    Axes
+    ax, deepest
+        As for :func:`plot_profile`.
 
     Raises
     ------

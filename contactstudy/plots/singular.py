@@ -41,9 +41,8 @@ def singular_ends(case: xr.Dataset) -> list[float]:
     ]
 
 
-def near_singular(case: xr.Dataset, ends: list[float], x: FloatArray | None = None) -> BoolArray:
-    """Whether positions along x (default: the cells') lie within `OMITTED_DISTANCE` of a singular end."""
-    x = positions(case["pressure"], "x").values if x is None else x
+def near_singular(case: xr.Dataset, ends: list[float], x: FloatArray) -> BoolArray:
+    """Whether positions along x lie within `OMITTED_DISTANCE` of a singular end."""
     near = np.zeros(x.size, dtype=bool)
     if "hertz_half_width" in case:
         for end in ends:

@@ -66,14 +66,12 @@ def plot_stress_plane(
     y, x, z : float, optional
         Position of the plane, metres, at most one of them; interpolated between the positions of the result.
         Default: ``y = 0``.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     levels : int or sequence of float, optional
         Contour levels, or their approximate number.
     colorbar : bool
         Whether to add one.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
 
     Returns
     -------
@@ -94,18 +92,11 @@ def plot_stress_plane(
     >>> plot_stress_plane(case).get_ylabel()
     'depth, $z/a$'
     """
-    measure(dataset, variable)
     case = single_case(dataset)
     unit = units(case, si=si)
     plane_position = {axis: value for axis, value in (("x", x), ("y", y), ("z", z)) if value is not None} or {"y": 0.0}
     field, bound = cap_field(case, measure(case, variable))
-    plane = in_plane(
-        case.assign({variable: field}),
-        variables=variable,
-        x=plane_position.get("x"),
-        y=plane_position.get("y"),
-        z=plane_position.get("z"),
-    )[variable]
+    plane = in_plane(case.assign({variable: field}), variables=variable, **plane_position)[variable]
     ((normal, position),) = plane_position.items()
     across, down = (axis for axis in "xyz" if axis != normal)
     first, second, values = _plane_arrays(plane, across, down, unit)
@@ -165,24 +156,14 @@ def plot_end_face(
     ----------
     dataset : Dataset
         A single case with stresses on the end face: positions of stresses with ``x = 0``, or the body's length.
-    variable : str
-        A stress, or a measure, see :func:`contactstudy.analysis.measure`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    variable, ax, levels, si
+        As for :func:`plot_stress_plane`.
     end : {"first", "last"}
         End: ``x = 0``, or the largest x of the stresses.
     side : {1, -1}
         Half of the face: y > 0 (the direction of sliding) or y < 0.
     distance : float, optional
         Extent along x, in the unit of the figure; default: twice the extent along y.
-    levels : int or sequence of float, optional
-        Contour levels, or their approximate number.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and stresses over p0.
-
-    Returns
-    -------
-    Axes
 
     Raises
     ------
@@ -198,7 +179,6 @@ def plot_end_face(
     >>> plot_end_face(case).get_ylabel()
     'depth, $z/a$'
     """
-    measure(dataset, variable)
     case = single_case(dataset)
     unit = units(case, si=si)
     checks.known_name("end", end, ("first", "last"))

@@ -13,7 +13,7 @@ from contactstudy import checks
 from contactstudy.analysis import single_case
 from contactstudy.arrays.variables import DERIVED, require
 from contactstudy.errors import ContactStudyError, InvalidInputError
-from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, edge_effect_figure
+from contactstudy.plots.edge_effect import EDGE_AXES, LoadCase, plot_edge_effect
 from contactstudy.plots.selection import (
     describe_value,
     most_solved,
@@ -136,10 +136,8 @@ def _draw_panel(
     labels = [None] if hue is None else _value_labels(values[hue], hue)
     for number, style in enumerate(line_styles(count)):
         line, bars, open_cases = (
-            None if array is None else array.values if hue is None else array.isel({hue: number}).values
-            for array in (values, errors, unestimated)
+            array.values if hue is None else array.isel({hue: number}).values for array in (values, errors, unestimated)
         )
-        assert line is not None
         marker, unbounded = MARKERS[number % len(MARKERS)], np.isinf(line)
         finite = np.where(unbounded, np.nan, line)
         text = labels[number]
@@ -148,9 +146,9 @@ def _draw_panel(
         )
         if np.isnan(line).all():
             curve.set_label("_unsolved")  # omitted in the legend
-        if bars is not None:
+        if np.isfinite(bars).any():
             ax.errorbar(positions, finite, bars, fmt="none", ecolor=style["color"], elinewidth=1.0, capsize=3.0)
-        if open_cases is not None and np.isfinite(finite[open_cases]).any():
+        if np.isfinite(finite[open_cases]).any():
             marks[OPEN_LABEL] = {"marker": "o", **OPEN_MARK}
             if (np.isfinite(finite) & ~open_cases).any():
                 open_values = np.where(open_cases, finite, np.nan)
@@ -166,7 +164,7 @@ def _draw_panel(
     ax.set_xlabel(x_label)
     ax.set_ylabel(label)
     fold_labels(ax)
-    tops = values if errors is None else values + errors.fillna(0.0)
+    tops = values + errors.fillna(0.0)
     ax.set_ylim(0.0, 1.08 * max(np.nan_to_num(float(tops.where(np.isfinite(tops)).max())), 1e-300))
     ax.grid(color="0.9", linewidth=0.6)
     return marks
@@ -196,14 +194,16 @@ def _extra_lines(ax: Axes) -> int:
 
 def _errors(
     dataset: xr.Dataset, name: str, axes: tuple[str, ...], values_beside: Mapping[str, Any]
-) -> tuple[xr.DataArray | None, xr.DataArray | None]:
+) -> tuple[xr.DataArray, xr.DataArray]:
     """Finite errors in the unit of the panel, and the finite values without an estimated error."""
     values = select_one(dataset[name], axes, values_beside)
-    if f"{name}_error" not in dataset:
-        return None, values.notnull() & (abs(values) < np.inf) if name.startswith(ESTIMATED_PREFIXES) else None
-    errors = select_one(dataset[f"{name}_error"], axes, values_beside)
+    if f"{name}_error" in dataset:
+        errors = select_one(dataset[f"{name}_error"], axes, values_beside)
+    else:
+        missing = np.inf if name.startswith(ESTIMATED_PREFIXES) else np.nan
+        errors = xr.full_like(values, missing, dtype=np.float64)
     factor, _ = scale_of(values)
-    return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (values < np.inf)
+    return errors.where(np.isfinite(errors)) / factor, (errors == np.inf) & (abs(values) < np.inf)
 
 
 def _value_labels(values: xr.DataArray, name: str) -> list[str]:
@@ -328,19 +328,18 @@ def study_figures(dataset: xr.Dataset, *, selection: Mapping[str, Any] | None = 
     ['study']
     """
     part = select_values(dataset, selection or {})
-    load = single_case if "pressure" in dataset else None
-    return {name: figure for name, (figure, _) in figures_with_selections(part, load).items()}
+    return {name: figure for name, (figure, _) in figures_with_selections(part, single_case).items()}
 
 
-def figures_with_selections(dataset: xr.Dataset, load: LoadCase | None) -> dict[str, tuple[Figure, list[str]]]:
+def figures_with_selections(dataset: xr.Dataset, load: LoadCase) -> dict[str, tuple[Figure, list[str]]]:
     """Figures of :func:`study_figures`, with the parameters of which a figure shows one value among several."""
     sizes = {str(dim): dataset.sizes[dim] for dim in dataset["status"].dims if dataset.sizes[dim] > 1}
     swept = sorted(sizes, key=lambda dim: -sizes[dim])
     figures = {}
-    if "e_over_a" in dataset.dims and load is not None and "hertz_half_width" in dataset:
+    if "e_over_a" in dataset.dims and "hertz_half_width" in dataset:
         values_beside = most_solved(dataset["hertz_half_width"], EDGE_AXES, {})
-        with contextlib.suppress(ContactStudyError):  # no case is solved
-            figure = edge_effect_figure(dataset, load, values_beside)
+        with contextlib.suppress(ContactStudyError):  # no case has a pressure
+            figure = plot_edge_effect(dataset, selection=values_beside, load=load)
             figures["edge_effect"] = (figure, [name for name in swept if name not in EDGE_AXES])
     names = [name for name in swept if name != "case"]
     if names and (quantities := _finite_quantities(dataset)):

@@ -133,20 +133,15 @@ def _unstack_cases(array: xr.DataArray, x: str, y: str) -> xr.DataArray:
     if x == y or not listed or listed[0] in (x, y):
         return array
     (dim,) = listed
-    pairs = list(zip(array[x].values.tolist(), array[y].values.tolist(), strict=True))
-    repeated = next((pair for pair in pairs if pairs.count(pair) > 1), None)
-    if repeated is not None:
-        raise InvalidInputError(
-            "x, y",
-            (x, y),
-            "parameters that distinguish the cases",
-            f"several have {x} = {repeated[0]}, {y} = {repeated[1]}",
-        )
-    attributes = {name: array[name].attrs for name in (x, y)}
-    coordinates = [name for name in array.coords if name not in (x, y)]
-    unstacked = array.drop_vars(coordinates).set_index({dim: (x, y)}).unstack(dim)
-    for name, entries in attributes.items():
-        unstacked[name].attrs = entries
+    stacked = array.drop_vars([name for name in array.coords if name not in (x, y)]).set_index({dim: (x, y)})
+    index = stacked.indexes[dim]
+    if index.has_duplicates:
+        first, second = index[index.duplicated()][0]
+        hint = f"several have {x} = {first}, {y} = {second}"
+        raise InvalidInputError("x, y", (x, y), "parameters that distinguish the cases", hint)
+    unstacked = stacked.unstack(dim)
+    for name in (x, y):
+        unstacked[name].attrs = array[name].attrs
     return unstacked
 
 

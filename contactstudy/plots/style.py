@@ -45,7 +45,7 @@ LETTER_WIDTH = 0.073  # inches, of a label
 SHORTEST_LINE = 14  # letters
 LEGEND_WIDTH = 40  # letters of a name in a legend within the axes
 WORD = re.compile(r"(?:\\.|\$(?:[^$\\]|\\.)*\$|\S)+")  # formulas in one piece
-BREAKS = (";:", ",")  # last letters of the phrases that stay together, longest phrases first
+BREAKS = (";:", ",", "")  # last letters of the phrases that stay together, longest phrases first, then words
 MARKUP = re.compile(r"\\[A-Za-z]+|[\\{}$_^]")
 
 
@@ -123,27 +123,22 @@ def fold_text(text: str, width: int) -> str:
 
 def _fold_words(words: list[str], width: int, breaks: Sequence[str]) -> list[str]:
     """Lines of words, broken after the letters of the first entry of `breaks`; longer phrases after the next's."""
-    lines: list[str] = []
-    for phrase in _split_phrases(words, breaks[0]) if breaks else words:
-        if lines and _visible_length(f"{lines[-1]} {phrase}") <= width:
-            lines[-1] += f" {phrase}"
-        elif _visible_length(phrase) <= width or (not breaks and "$" in phrase):
-            lines.append(phrase)
-        elif breaks:
-            lines += _fold_words(WORD.findall(phrase), width, breaks[1:])
+    lines, phrase = [""], []
+    for number, word in enumerate(words, start=1):
+        phrase.append(word)
+        if breaks[0] and number < len(words) and not word.endswith(tuple(breaks[0])):
+            continue
+        text = " ".join(phrase)
+        if _visible_length(f"{lines[-1]} {text}".strip()) <= width:
+            lines[-1] = f"{lines[-1]} {text}".strip()
+        elif _visible_length(text) <= width or (not breaks[0] and "$" in text):
+            lines.append(text)
+        elif breaks[0]:
+            lines += _fold_words(phrase, width, breaks[1:])
         else:
-            lines += [phrase[start : start + width] for start in range(0, len(phrase), width)]
-    return lines
-
-
-def _split_phrases(words: list[str], ends: str) -> list[str]:
-    """Phrases of words, each up to a word that ends with one of the letters `ends`."""
-    phrases: list[list[str]] = [[]]
-    for word in words:
-        phrases[-1].append(word)
-        if word.endswith(tuple(ends)):
-            phrases.append([])
-    return [" ".join(phrase) for phrase in phrases if phrase]
+            lines += [text[start : start + width] for start in range(0, len(text), width)]
+        phrase = []
+    return [line for line in lines if line]
 
 
 def _visible_length(text: str) -> int:

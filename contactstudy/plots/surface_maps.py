@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import dimension_along, single_case
+from contactstudy.analysis import dimension_along, positions, single_case
 from contactstudy.arrays.engineering import unit_for
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import BoolArray, FloatArray, IntArray
@@ -56,7 +56,6 @@ class Surface(NamedTuple):
 
 def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
     """Surface of a single case with these variables; `load` is positive in the contact."""
-    require(dataset, *names)
     case = single_case(dataset)
     require(case, *names)
     unit = units(case, si=si)
@@ -75,7 +74,7 @@ def _draw_border(ax: Axes, surface: Surface, values: FloatArray, level: float, *
     """Draw a closed contour of values over (y, x), 0 beyond the cells; None for too few cells."""
     if min(values.shape) < 2 or values.max() <= level:
         return None
-    x, y = (_with_outer_edges(positions) for positions in (surface.x, surface.y))
+    x, y = (_with_outer_edges(centres) for centres in (surface.x, surface.y))
     return ax.contour(x, y, np.pad(values, 1), levels=[level], **style)
 
 
@@ -104,10 +103,10 @@ def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
 
 def _crop(ax: Axes, surface: Surface) -> None:
     """Limit the axes to the contact with a margin."""
-    for positions, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
+    for centres, axis, limit in ((surface.x, 0, ax.set_xlim), (surface.y, 1, ax.set_ylim)):
         loaded = np.flatnonzero(surface.pressed.any(axis=axis))
         if loaded.size > 1:
-            low, high = positions[loaded[0]], positions[loaded[-1]]
+            low, high = centres[loaded[0]], centres[loaded[-1]]
             around = MARGIN * (high - low)
             limit(low - around, high + around)
 
@@ -125,10 +124,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     ----------
     dataset : Dataset
         A single case with `pressure`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and pressures over p0.
+    ax, si
+        As for :func:`plot_axial_pressure`.
 
     Returns
     -------
@@ -150,7 +147,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     """
     surface = _surface(dataset, ("pressure",), si=si)
     ax = new_axes(ax)
-    near = near_singular(surface.case, singular_ends(surface.case))
+    x = positions(surface.case["pressure"], "x").values
+    near = near_singular(surface.case, singular_ends(surface.case), x)
     stress = surface.unit.stress
     largest = float(surface.pressure[:, ~near].max()) / stress if near.any() and not near.all() else None
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=largest)
@@ -167,10 +165,8 @@ def plot_stick_and_slip(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool
     ----------
     dataset : Dataset
         A single case with stick and slip.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and tractions over p0.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     arrows : int
         Arrows along x; half as many along y.
 
@@ -243,12 +239,10 @@ def plot_traction_map(
     ----------
     dataset : Dataset
         A single case with stick and slip.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     variable : {"traction", "slip"}
         Vector to draw. The slip is the roller's against the body: per distance rolled, or of a shift.
-    si : bool
-        Whether to draw mm and MPa instead of lengths over a and tractions over p0.
 
     Returns
     -------
@@ -295,12 +289,10 @@ def plot_temperature_map(
     ----------
     dataset : Dataset
         Result of `flash_temperature`.
-    ax : Axes, optional
-        Axes to draw in; default: a new figure.
+    ax, si
+        As for :func:`plot_axial_pressure`.
     surface : {"body", "roller"}
         Surface to draw.
-    si : bool
-        Whether to draw lengths in mm instead of over a.
 
     Returns
     -------

@@ -13,7 +13,6 @@ from contactstudy.analysis import single_case
 from contactstudy.analysis.axes import axis_dimensions
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import quantity
-from contactstudy.arrays.variables import require
 from contactstudy.case.serialization import tables_within
 from contactstudy.report.summary_table import NOT_ESTIMATED, Quantity, Summary, summary
 
@@ -84,8 +83,7 @@ def assess(dataset: xr.Dataset) -> Assessment:
     >>> assess(xr.Dataset({"converged": True, "iterations": 7})).overall
     'yes'
     """
-    require(dataset)
-    case = single_case(dataset).assign_attrs(dataset.attrs)
+    case = single_case(dataset)
     return assess_case(case, summary(case))
 
 

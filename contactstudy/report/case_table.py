@@ -18,6 +18,13 @@ from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import in_words
 
 
+class Input(NamedTuple):
+    """One row: meaning, and value with its unit."""
+
+    meaning: str
+    text: str
+
+
 @dataclass(frozen=True, repr=False)
 class CaseTable:
     """Rows of a case by subject, with a repr as text and as HTML."""
@@ -49,31 +56,20 @@ def case_table(case: Case) -> CaseTable:
     >>> print(str(table).splitlines()[0])
     Roller: radius R: 5 mm
     """
-    return CaseTable(inputs(case))
-
-
-class Input(NamedTuple):
-    """One row: meaning, and value with its unit."""
-
-    meaning: str
-    text: str
-
-
-def inputs(case: Case) -> dict[str, list[Input]]:
-    """Rows on a case, by subject."""
     place = [Input("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
     if isinstance(case.body, FiniteLengthSpace):
         distance = case.body.length - case.roller_start - case.roller.length
         place.append(Input("from the roller to end II", quantity(distance, "m")))
-    return {
-        "Roller": roller_rows(case.roller),
+    subjects = {
+        "Roller": _roller(case.roller),
         "Body": [Input("kind", body_words(case.body)), Input("material", material_words(case.body.material))],
         "Place": place,
         "Load": _load(case),
     }
+    return CaseTable(subjects)
 
 
-def roller_rows(roller: Roller) -> list[Input]:
+def _roller(roller: Roller) -> list[Input]:
     """Rows on a roller: geometry, material, and how far its profile drops."""
     rows = [
         Input("radius R", quantity(roller.radius, "m")),

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from contactstudy.analysis import largest_sample, measure, positions
+from contactstudy.analysis import axial_pressure, largest_sample, positions
 from contactstudy.arrays.engineering import quantity
 from contactstudy.case.case import Case
 from contactstudy.case.roller import Roller
@@ -28,7 +28,9 @@ from contactstudy.plots import (
     plot_stress_plane,
     plot_traction_map,
 )
-from contactstudy.plots.singular import cap_field, mark_at_top, near_singular, singular_ends
+from contactstudy.plots.axial import draw_section_maxima
+from contactstudy.plots.singular import cap_field
+from contactstudy.plots.style import MILLIMETRES
 from contactstudy.profiles.base import checked_drop, local_radius
 
 if TYPE_CHECKING:
@@ -47,6 +49,7 @@ SMALLEST, LARGEST, SCREEN = 0.5, 1.4, 380
 BLUE = "#1f4e79"
 BODY, ROLLER, LINE = "#d9dee3", "#b9c6d2", "#24313d"
 """Colours of curves, and of body, roller and lines of the side view."""
+ARROW: dict[str, Any] = {"arrowstyle": "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
 
 
 class Picture(NamedTuple):
@@ -105,8 +108,10 @@ def case_pictures(result: xr.Dataset, case: Case | None) -> list[Picture]:
     if "film_thickness" in result:
         film = "Film thickness. Cross: least film. The two axes have different scales."
         draw += [_film_lines, partial(_map, plot_film_map, film)]
-    if case is not None and checked_drop(case.roller.profile, _along(case.roller, 0.5), case.roller.length).any():
-        draw.append(partial(_profile, case.roller))
+    if case is not None:
+        roller = case.roller
+        if checked_drop(roller.profile, np.linspace(-0.5, 0.5, 201) * roller.length, roller.length).any():
+            draw.append(partial(_profile, roller))
     if "von_mises" in result and bool(result["von_mises"].notnull().any()):
         draw += [_axial_plane, _cross_section, _section_maxima]
     pictures = []
@@ -132,8 +137,7 @@ def _axial_pressure(figure: Figure, result: xr.Dataset) -> str:
         ax.set_ylim(bottom=0.0)
     caption = "Largest pressure across the contact, along the roller's axis. Dashed: Hertz line contact."
     if zoomed:
-        pressure = result["pressure"]
-        along = pressure.max([dim for dim in pressure.dims if dim != pressure.dims[0]]).values
+        along = axial_pressure(result).values
         loaded = x[along > 0]
         at_end_1 = along[x <= loaded[0] + panel].max() >= along[x >= loaded[-1] - panel].max()
         limits = (
@@ -188,49 +192,37 @@ def _slip_map(figure: Figure, result: xr.Dataset) -> str:
 
 def _profile(roller: Roller, figure: Figure, result: xr.Dataset) -> str:
     """Profile of the roller."""
-    drop = checked_drop(roller.profile, _along(roller, 0.47), roller.length)
+    drop = checked_drop(roller.profile, np.linspace(-0.47, 0.47, 201) * roller.length, roller.length)
     crown = float(drop[np.isfinite(drop)].max(initial=0.0))
     deepest = 3 * crown if crown > 0 else None
     plot_profile(roller.profile, roller.length, ax=figure.subplots(), deepest=deepest, color=BLUE)
     return "Profile of the roller: drop from the cylinder, downwards."
 
 
-def _along(roller: Roller, reach: float) -> FloatArray:
-    """Positions along the roller, up to a part of its length from mid-length."""
-    return np.linspace(-reach, reach, 201) * roller.length
-
-
-def _cap_remark(result: xr.Dataset, stress: xr.DataArray) -> str:
+def _cap_remark(result: xr.Dataset) -> str:
     """Remark on the limit of the colours beside a singular end."""
-    limit = cap_field(result, stress)[1]
+    _, limit = cap_field(result, result["von_mises"])
     return f" Beside a singular end the stress exceeds the largest colour, {quantity(limit, 'Pa')}." * (limit < np.inf)
 
 
 def _axial_plane(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress in the plane of the axis."""
     plot_stress_plane(result, "von_mises", y=0.0, ax=figure.subplots(), si=True)
-    remark = _cap_remark(result, result["von_mises"])
-    return f"Von Mises stress in the plane y = 0, along the roller.{remark}"
+    return f"Von Mises stress in the plane y = 0, along the roller.{_cap_remark(result)}"
 
 
 def _cross_section(figure: Figure, result: xr.Dataset) -> str:
     """Von Mises stress across the roller, in the section of its largest value."""
-    stress = measure(result, "von_mises")
-    column = int(np.nanargmax(stress.max([dim for dim in stress.dims if dim != stress.dims[0]]).values))
-    x = float(positions(stress, "x").values[column])
+    x = float(largest_sample(result, "von_mises")["peak_von_mises_x"])
     plot_stress_plane(result, "von_mises", ax=figure.subplots(), x=x, si=True)
     caption = f"Von Mises stress across the roller, in the section of its largest value, x = {quantity(x, 'm')}."
-    return caption + _cap_remark(result, stress)
+    return caption + _cap_remark(result)
 
 
 def _section_maxima(figure: Figure, result: xr.Dataset) -> str:
     """Largest von Mises stress of each cross-section."""
-    stress = largest_sample(result, "von_mises", along="x")["peak_von_mises"]
     ax = figure.subplots()
-    x: Any = positions(stress, "x").values
-    ends = singular_ends(result)
-    ax.plot(1e3 * x, np.where(near_singular(result, ends, x), np.nan, 1e-6 * stress.values), color=BLUE, linewidth=1.6)
-    mark_at_top(ax, [1e3 * end for end in ends], BLUE)
+    draw_section_maxima(ax, result, "von_mises", MILLIMETRES, color=BLUE, linewidth=1.6)
     caption = "Largest von Mises stress of each section across the roller."
     peak, peak_x = (float(result.get(f"peak_von_mises{suffix}", np.nan)) for suffix in ("", "_x"))
     if np.isfinite(peak) and np.isfinite(peak_x):
@@ -331,15 +323,14 @@ def _draw_roller(ax: Axes, view: SideView, radius: float) -> None:
     cut = view.height < radius
     ax.plot(view.x[[0, -1]], [view.height] * 2, color=LINE, linewidth=0.8, linestyle="--" if cut else "-.")
     middle = float(view.x.mean())
-    arrow = {"arrowstyle": "->" if cut else "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
+    arrow = ARROW | {"arrowstyle": "->" if cut else "<->"}
     ax.annotate("", (middle, 0.0), (middle, view.height), arrowprops=arrow)
     ax.text(middle, 0.5 * view.height, f"  R = {quantity(radius, 'm')}", va="center", color=LINE)
 
 
 def _dimension(ax: Axes, ends: tuple[float, float], z: float, text: str) -> None:
     """Dimension line along x with its text."""
-    arrow = {"arrowstyle": "<->", "color": LINE, "shrinkA": 0.0, "shrinkB": 0.0}
-    ax.annotate("", (ends[0], z), (ends[1], z), arrowprops=arrow)
+    ax.annotate("", (ends[0], z), (ends[1], z), arrowprops=ARROW)
     box = {"facecolor": "white", "edgecolor": "none", "pad": 1.5}
     ax.text(0.5 * (ends[0] + ends[1]), z, text, ha="center", va="center", bbox=box)
 

@@ -14,10 +14,9 @@ from contactstudy import checks
 from contactstudy.analysis import single_case, solved_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, RUN_ATTRIBUTE, attribute
 from contactstudy.arrays.variables import package_version
-from contactstudy.case.case import Case
 from contactstudy.errors import InvalidInputError
 from contactstudy.report.assessment import assess_case
-from contactstudy.report.case_table import inputs
+from contactstudy.report.case_table import case_table
 from contactstudy.report.figures import case_pictures, side_view
 from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
@@ -194,10 +193,10 @@ def _render(template: str, context: dict[str, Any]) -> str:
 
 def _case_context(dataset: xr.Dataset) -> dict[str, Any]:
     """Return the context of a case's page."""
-    result = single_case(dataset).assign_attrs(dataset.attrs)
-    case, table = stored_case(result), summary(result)
+    result = single_case(dataset)
+    case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
     return {
-        "inputs": inputs(case) if case is not None else {},
+        "inputs": case_table(case).subjects if case is not None else {},
         "drawing": side_view(case) if case is not None else None,
         "numbers": table.numbers,
         "assessment": assess_case(result, table),
@@ -205,8 +204,3 @@ def _case_context(dataset: xr.Dataset) -> dict[str, Any]:
         "provenance": provenance(result),
         "citations": citations(result).entries,
     }
-
-
-def stored_case(result: xr.Dataset) -> Case | None:
-    """Case of a result, from its attributes; None without them."""
-    return solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None

@@ -116,13 +116,11 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
 def figures_of_folder(
     path: Path, selection: Mapping[str, Any] | None = None
 ) -> dict[str, tuple[Figure, dict[str, str]]]:
-    """Draw the figures of the study in a folder, by name; only files of cases with drawn surfaces are opened.
-
-    Each has its parameters with a single value, and another value of these as an example.
-    """
+    """Draw the figures of the study in a folder, each with its parameters of one value and another value of these."""
     results = Folder(path).results()
     part = select_values(collect(path), selection or {})
 
+    # Only files of cases with drawn surfaces are opened.
     def load(case: xr.Dataset) -> xr.Dataset:
         return single_case(results.case(str(case["case_id"].item()), FIELDS))
 

@@ -10,10 +10,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from contactstudy.analysis import contact_length, cut_ends, peak, single_case
+from contactstudy.analysis import contact_edges, cut_ends, peak, single_case
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import NUMBER, TEXT, html_table, quantity, with_error
-from contactstudy.arrays.variables import AXES, STRESSES, require, variable_of
+from contactstudy.arrays.variables import AXES, STRESSES, variable_of
 from contactstudy.case.gridding import TOLERANCE
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.edge_tension import edge_tension
@@ -46,8 +46,7 @@ SCALARS = {
 SOLVED = ("approach", "load_position", "force_x", "force_y", "moment_z", "shift_x", "shift_y", "friction_work")
 """Scalars of these that follow from the solution unless the case prescribes them."""
 
-BALANCED = ("load_position",)
-"""Scalars with a variable ``_error`` that is the residual of a prescribed value, in other units."""
+BALANCED = "load_position"  # its variable ``_error`` is the residual of a prescribed value, in other units
 
 
 class Quantity(NamedTuple):
@@ -87,9 +86,8 @@ class Summary:
 
     def to_dataframe(self) -> pd.DataFrame:
         """Table of the numbers in SI, by name."""
-        columns = ["name", "value", "error", "units", "meaning", "remark"]
-        rows = [(row.name, row.value, row.error, row.units, row.meaning, row.remark) for row in self.numbers]
-        return pd.DataFrame(rows, columns=columns).set_index("name")
+        rows = pd.DataFrame(self.numbers, columns=Quantity._fields).set_index("name")
+        return rows[["value", "error", "units", "meaning", "remark"]]
 
 
 def summary(dataset: xr.Dataset) -> Summary:
@@ -119,7 +117,6 @@ def summary(dataset: xr.Dataset) -> Summary:
     Hertz pressure p0  1.5 GPa
     largest pressure   2 GPa    mean over the cell of largest pressure, error not estimated
     """
-    require(dataset)
     return Summary(tuple(_rows(single_case(dataset))))
 
 
@@ -148,7 +145,7 @@ def _rows(case: xr.Dataset) -> Iterator[Quantity]:
     yield from _edge_tension(case)
     for name, meaning in SCALARS.items():
         if name in case and float(case[name]) != 0 and np.isfinite(float(case[name])):
-            estimated = f"{name}_error" in case and name not in BALANCED
+            estimated = f"{name}_error" in case and name != BALANCED
             yield _rounded(case, _row(case, name, meaning, None if estimated else _mark(case, name)))
     yield from _slip(case)
 
@@ -201,7 +198,7 @@ def intensity_text(value: float, error: float, exponent: float) -> str:
 def _length(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the length of the contact, unless the Dataset is a part of the contact."""
     if {"pressure", "gap"} <= set(case.data_vars) and (case["pressure"] > 0).any() and not any(cut_ends(case)):
-        case = case.assign(contact_length=contact_length(case))
+        case = case.assign(contact_length=contact_edges(case)["contact_length"])
     if "contact_length" in case:
         yield _row(case, "contact_length", "length of the contact", NOT_ESTIMATED)
 
@@ -257,12 +254,10 @@ def _nearest_end(case: xr.Dataset, x: float) -> str:
 
 
 def _rounded(case: xr.Dataset, row: Quantity) -> Quantity:
-    """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration.
-
-    A contact that is symmetric about y = 0 leaves up to 3e-8 of the largest force across it.
-    """
+    """Row of a force or moment, with the text 0 if it is below the tolerance of the iteration."""
     force = max((abs(float(case[name])) for name in ("force_x", "force_y") if name in case), default=0.0)
     arms = {"force_x": 1.0, "force_y": 1.0, "moment_z": float(case.get("hertz_half_width", 0.0))}
+    # A contact that is symmetric about y = 0 leaves up to 3e-8 of the largest force across it.
     limit = TOLERANCE * force * arms.get(row.name, 0.0)
     # A value larger than its error differs from zero, however small; an error above the limit is worth showing.
     zero = np.isnan(row.error) or abs(row.value) <= row.error < limit
@@ -293,7 +288,7 @@ def _slip(case: xr.Dataset) -> Iterator[Quantity]:
 def _mark(case: xr.Dataset, name: str) -> str:
     """Remark of a number without an error; empty if the case prescribes the number."""
     # In a study's case a residual above zero shows that the value was prescribed.
-    balanced = name in BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
+    balanced = name == BALANCED and float(case.get(f"{name}_error", 0.0)) > 0
     return "" if _prescribed(case, name) is not None or balanced or name not in SOLVED else NOT_ESTIMATED
 
 

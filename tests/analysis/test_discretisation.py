@@ -15,7 +15,7 @@ from contactstudy import (
     profiles,
     solve,
 )
-from contactstudy.analysis.discretisation import discretisation_error, extrapolated
+from contactstudy.analysis.discretisation import discretisation_error
 
 STEEL = Material(210e9, 0.3)
 HALF_WIDTH = 65e-6
@@ -81,18 +81,6 @@ def test_the_fine_grid_must_be_finer():
     contact = solved(case_of(8 * HALF_WIDTH, profiles.Cylinder()), 16)
     with pytest.raises(InvalidInputError, match="coarse"):
         discretisation_error(contact, contact)
-
-
-def test_richardson():
-    for order, ratio in ((1, 2.0), (2, 2.0), (1.5, 3.0)):
-        coarse, fine = (7.0 + 0.3 * step**order for step in (ratio, 1.0))
-        assert extrapolated(coarse, fine, order, ratio) == pytest.approx(7.0, abs=1e-13)
-
-
-@pytest.mark.parametrize("arguments", [(np.nan, 1, 1, 2), (1, 1, 0, 2), (1, 1, 1, 1)])
-def test_richardson_bad_input(arguments):
-    with pytest.raises(InvalidInputError):
-        extrapolated(*arguments)
 
 
 @pytest.mark.parametrize(("pressure", "cells"), [(1e9, 2), (0.8e9, 6)])

@@ -27,7 +27,7 @@ from contactstudy import (
     verification,
     wear,
 )
-from contactstudy.analysis.summary import summarize
+from contactstudy.analysis.summary import case_numbers
 from contactstudy.arrays.variables import (
     COORDINATES,
     ERROR_KIND,
@@ -184,7 +184,9 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
             roller=metal,
             z=depths,
         ),
-        "summarize": summarize(solved),
+        "case_numbers": xr.Dataset(
+            {name: ((), number.value, number.attributes) for name, number in case_numbers(solved).items()}
+        ),
         "self_affine": rough,
         "read_height_map": cs.roughness.read_height_map(file, grid),
         "slice_model": bearing.slice_model(case),
