@@ -15,8 +15,8 @@ from contactstudy.fields.part import REFERENCE_LENGTHS, kernel_factor, reference
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import unit_fields
-from contactstudy.overlapping.harmonics import DISPLACEMENT, end_displacement
+from contactstudy.overlapping.field import end_fields, unit_fields
+from contactstudy.overlapping.harmonics import DISPLACEMENT
 
 COMPONENTS = ("u_x", "u_y", "u_z")
 
@@ -127,8 +127,9 @@ def _part_displacement(
         fields[load] = kernel_factor(material) * field
     if part.freed and cells.any():
         problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=loads)
-        for load, from_ends in end_displacement(problem, points, reference=reference).items():
-            fields[load] = fields[load] + from_ends / (2 * material.shear_modulus)
+        (from_ends,) = end_fields(problem, DISPLACEMENT, [points], reference)
+        for load, field in from_ends.items():
+            fields[load] = fields[load] + field / (2 * material.shear_modulus)
     return fields
 
 
@@ -150,8 +151,7 @@ def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float
         if part.freed:
             problem = unit_problem(part.freed, material.poisson, grid, load)
             line = Points(x, np.zeros(1), np.array([z]))
-            finite = reference if np.isfinite(reference) else None
-            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference=finite):
+            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference):
                 field = np.einsum("xniz,njy->xij", amplitudes[normal], filters[normal], optimize=True)
                 total += part.weight / (2 * material.shear_modulus) * field
     return total

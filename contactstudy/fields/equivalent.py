@@ -7,6 +7,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
@@ -16,7 +17,6 @@ from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
-from contactstudy.overlapping.operators import Positions as LoadPositions
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -124,4 +124,4 @@ def overlapping_operators(
         resolution=resolution,
         mirrored_once=freed.mirrored_once,
     )
-    return OverlappingOperators.of(problem, LoadPositions(grid.x, grid.y, depths), reference=_reference(body))
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_reference(body))

@@ -21,8 +21,8 @@ from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import UnitFields, unit_fields
-from contactstudy.overlapping.harmonics import STRESS, end_stress
+from contactstudy.overlapping.field import UnitFields, end_fields, unit_fields
+from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import CORNER_OFFSET
 from contactstudy.stress import von_mises
 
@@ -188,7 +188,7 @@ def _part_stress(
         problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
         reference = reference_distance(part.extent)
         for number, (points, by_load) in enumerate(
-            zip(point_sets, end_stress(problem, point_sets, reference), strict=True)
+            zip(point_sets, end_fields(problem, STRESS, point_sets, reference), strict=True)
         ):
             for load, from_ends in by_load.items():
                 # The two auxiliary bodies leave no traction on the top, by construction.
@@ -282,9 +282,7 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
                 )
             if part.freed:
                 problem = unit_problem(part.freed, poisson, grid, load)
-                reference = reference_distance(part.extent)
-                grows = load.sign_x < 0 and np.isfinite(reference)
-                for amplitudes, filters in unit_fields(problem, STRESS, points, reference=reference if grows else None):
+                for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(part.extent)):
                     amplitudes[[2, 4, 5]] *= (points.z != 0) * part.weight
                     amplitudes[[0, 1, 3]] *= part.weight
                     self._ends.append(UnitFields(amplitudes, filters))
