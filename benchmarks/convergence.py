@@ -27,7 +27,8 @@ from contactstudy.contact.solve import solve_contact
 from contactstudy.fields.stress import stress_field
 from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.harmonics import end_stress
+from contactstudy.overlapping.field import end_fields
+from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification import closed_forms
@@ -224,10 +225,11 @@ def _from_ends(resolution: Resolution) -> tuple[FloatArray, FloatArray]:
     pressure = np.broadcast_to(quartic(grid.y), grid.shape)
     points = (np.array([0.0, 0.1, 1.0, 4.0]), np.array([0.0, 0.5]), np.array([0.05, 0.5, 3.0]))
     body = FiniteLengthSpace(length=8.0, material=unit_material())
-    stress = end_stress(
+    stress = end_fields(
         EndProblem(
             length=8.0, poisson=0.3, cells=pressure, loads=(Load.NORMAL, Load.ALONG_Y), grid=grid, resolution=resolution
         ),
+        STRESS,
         [Points(*points)],
     )[0]
     operator = SurfaceOperator.of(body, grid, resolution=resolution)

@@ -53,15 +53,16 @@ class CacheInfo:
         return "\n".join(rows)
 
 
-@dataclass(frozen=True)
-class _Entry:
-    value: Any
-    nbytes: int
+Store = LRUCache[tuple[str, Hashable], tuple[Any, int]]  # value and bytes, by kind and key
+
+
+def _empty_store(nbytes: int) -> Store:
+    return LRUCache(nbytes, getsizeof=lambda entry: entry[1])
 
 
 _lock = RLock()
 _counts: dict[str, list[int]] = {}
-_store: LRUCache[tuple[str, Hashable], _Entry] = LRUCache(LIMIT, getsizeof=lambda entry: entry.nbytes)
+_store = _empty_store(LIMIT)
 
 
 def info() -> CacheInfo:
@@ -78,7 +79,7 @@ def info() -> CacheInfo:
         kinds = {
             kind: KindInfo(
                 values=sum(1 for owner, _ in _store if owner == kind),
-                nbytes=sum(entry.nbytes for (owner, _), entry in _store.items() if owner == kind),
+                nbytes=sum(nbytes for (owner, _), (_, nbytes) in _store.items() if owner == kind),
                 reused=reused,
                 computed=computed,
             )
@@ -119,10 +120,10 @@ def limit(nbytes: int) -> None:
     global _store
     bound = checks.count("nbytes", nbytes, least=0)
     with _lock:
-        smaller: LRUCache[tuple[str, Hashable], _Entry] = LRUCache(bound, getsizeof=lambda entry: entry.nbytes)
+        smaller = _empty_store(bound)
         while _store:
             key, entry = _store.popitem()  # the least recently used first: the order is preserved
-            if entry.nbytes <= bound:
+            if entry[1] <= bound:
                 smaller[key] = entry
         _store = smaller
 
@@ -132,7 +133,7 @@ def recall(kind: str, key: Hashable) -> Any | None:
     with _lock:
         entry = _store.get((kind, key))
         _counts.setdefault(kind, [0, 0])[0 if entry else 1] += 1
-    return entry.value if entry else None
+    return entry[0] if entry else None
 
 
 def retain(kind: str, key: Hashable, value: Value, nbytes: int, *, replace: bool = False) -> Value:
@@ -145,7 +146,7 @@ def retain(kind: str, key: Hashable, value: Value, nbytes: int, *, replace: bool
         if replace:
             _store.pop((kind, key), None)
         if nbytes <= _store.maxsize:
-            value = _store.setdefault((kind, key), _Entry(value, nbytes)).value
+            value = _store.setdefault((kind, key), (value, nbytes))[0]
     return value
 
 

@@ -21,7 +21,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.equivalent import overlapping_operators
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.fields.stress import StressOperator
-from contactstudy.fields.surface import SurfaceOperator, surface_operator
+from contactstudy.fields.surface import surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.threads import one_blas_thread
@@ -144,30 +144,6 @@ class Overlapping:
         return faces[1]
 
 
-class _Displacement(LinearOperator):  # type: ignore[misc]
-    """Displacement of the top in one direction under a load in one direction."""
-
-    def __init__(self, body: Body, grid: Grid, load: Load, direction: Load) -> None:
-        self._grid, self._load, self._direction = grid, load, direction
-        self._forward = surface_operator(body, grid, (load,), directions=(direction,))
-        self._backward = surface_operator(body, grid, (direction,), directions=(load,))
-        # On columns the displacement is a mean: forces on the cells and means are conjugate.
-        self._weights = grid.weights if grid.observes_means else np.ones((1, 1))
-        super().__init__(np.float64, (grid.cells_x * grid.cells_y,) * 2)
-
-    def _product(self, operator: SurfaceOperator, load: Load, direction: Load, cells: FloatArray) -> FloatArray:
-        with one_blas_thread():
-            return np.array(operator.displaced({load: cells}, (direction,))[direction])
-
-    def _matvec(self, vector: FloatArray) -> FloatArray:
-        cells = vector.reshape(self._grid.shape)
-        return self._product(self._forward, self._load, self._direction, cells).ravel()
-
-    def _rmatvec(self, vector: FloatArray) -> FloatArray:
-        cells = vector.reshape(self._grid.shape) / self._weights
-        return (self._weights * self._product(self._backward, self._direction, self._load, cells)).ravel()
-
-
 def surface_displacement(body: Body, grid: Grid, load: str = "pressure", component: str = "z") -> LinearOperator:
     """Return the operator of every contact solution: from a load on the cells to a displacement of the top.
 
@@ -209,7 +185,22 @@ def surface_displacement(body: Body, grid: Grid, load: str = "pressure", compone
     if any(part.freed is not None and part.freed.mirrored_once for part in body.parts):
         raise InvalidInputError("body.model", "single-mirror", "a model with reciprocity", "its ends keep some shear")
     direction = COMPONENTS[checks.known_name("component", component, COMPONENTS)]
-    return _Displacement(body, grid, LOADS[checks.known_name("load", load, LOADS)], direction)
+    loaded = LOADS[checks.known_name("load", load, LOADS)]
+    forward = surface_operator(body, grid, (loaded,), directions=(direction,))
+    backward = surface_operator(body, grid, (direction,), directions=(loaded,))
+    # On columns the displacement is a mean: forces on the cells and means are conjugate.
+    weights = grid.weights if grid.observes_means else np.ones((1, 1))
+
+    def displaced(vector: FloatArray) -> FloatArray:
+        with one_blas_thread():
+            return np.array(forward.displaced({loaded: vector.reshape(grid.shape)}, (direction,))[direction]).ravel()
+
+    def transposed(vector: FloatArray) -> FloatArray:
+        with one_blas_thread():
+            cells = vector.reshape(grid.shape) / weights
+            return (weights * np.array(backward.displaced({direction: cells}, (loaded,))[loaded])).ravel()
+
+    return LinearOperator((grid.x.size * grid.y.size,) * 2, matvec=displaced, rmatvec=transposed, dtype=np.float64)
 
 
 def stress(
@@ -225,14 +216,10 @@ def stress(
 
     Parameters
     ----------
-    body : Body
-        The elastic body.
-    grid : Grid
-        Cells: uniform, or columns of any width.
+    body, grid, load
+        As in `surface_displacement`.
     x, y, z : sequence of float
         Positions, as a tensor product, metres; a plane has one position along one axis. Default: the centres of cells.
-    load : {"pressure", "traction_x", "traction_y"}
-        Direction of the load, Pa.
 
     Returns
     -------

@@ -159,7 +159,11 @@ def read_height_map(
     checks.instance("grid", grid, Grid, "a Grid")
     for name, value in (("remove_slope", remove_slope), ("remove_form", remove_form)):
         checks.instance(name, value, bool, "True or False")
-    x, y, heights = turned(_read(path), turn, mirror)
+    if of_instrument(path):
+        measured = read_heights(path)
+    else:
+        measured = _read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)
+    x, y, heights = turned(measured, turn, mirror)
     if y is None:
         raise InvalidInputError("path", str(path), "a file with heights over x and y", "it holds one line")
     if corner is not None:
@@ -174,13 +178,6 @@ def read_height_map(
     if remove_slope or remove_form:
         heights = heights - _form(x, y, heights, order=2 if remove_form else 1)
     return _height_map(grid, _interpolated(x, y, heights, grid), f"measured, {path.name}")
-
-
-def _read(path: Path) -> Heights:
-    """Return the positions and heights of a file, metres."""
-    if of_instrument(path):
-        return read_heights(path)
-    return Heights(*(_read_netcdf(path) if path.suffix.lower() == ".nc" else _read_csv(path)))
 
 
 def heights_on(grid: Grid, heights: xr.DataArray) -> FloatArray:
@@ -258,10 +255,7 @@ def _form(x: FloatArray, y: FloatArray, heights: FloatArray, order: int) -> Floa
     return np.asarray(along_x @ factors @ along_y.T)
 
 
-Map = tuple[FloatArray, FloatArray, FloatArray]
-
-
-def _read_csv(path: Path) -> Map:
+def _read_csv(path: Path) -> Heights:
     """Positions along x and y and heights ``(x, y)`` from a table of points, NaN without a point."""
     columns = read_columns(path, ("x", "y"), ("height",))
     for name in ("x", "y"):
@@ -274,18 +268,15 @@ def _read_csv(path: Path) -> Map:
         raise InvalidInputError("height", f"{counts.max()} values at {where}", "one value at every point")
     heights = np.full((x.size, y.size), np.nan)
     heights[at_x, at_y] = columns["height"]
-    return x, y, heights
+    return Heights(x, y, heights)
 
 
-def _read_netcdf(path: Path) -> Map:
+def _read_netcdf(path: Path) -> Heights:
     """Positions along x and y and heights ``(x, y)`` from a netCDF file."""
     dataset = read_netcdf(path)
     if "height" not in dataset or set(dataset["height"].dims) != {"x", "y"} or not {"x", "y"} <= set(dataset.coords):
         raise InvalidInputError("path", str(path), "a file with height along x and y, and their coordinates")
-    scales = {name: unit_in_metres(name, dataset[name].attrs.get("units")) for name in ("x", "y", "height")}
-    heights = dataset["height"].transpose("x", "y")
-    return (
-        scales["x"] * heights["x"].values.astype(np.float64),
-        scales["y"] * heights["y"].values.astype(np.float64),
-        scales["height"] * heights.values.astype(np.float64),
+    arrays = {"x": dataset["x"], "y": dataset["y"], "height": dataset["height"].transpose("x", "y")}
+    return Heights(
+        *(unit_in_metres(name, array.attrs.get("units")) * array.values.astype(float) for name, array in arrays.items())
     )

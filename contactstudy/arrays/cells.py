@@ -63,7 +63,7 @@ def _grid(array: xr.DataArray, extent: tuple[float, float], y_range: tuple[float
         centres = checks.coordinates("x", array["x"].values)
         low, high = centres - 0.5 * widths, centres + 0.5 * widths
         apart = np.abs(high[:-1] - low[1:])
-        wrong = np.flatnonzero(apart > SPACING_TOLERANCE * np.minimum(high - low, np.inf)[:-1])
+        wrong = np.flatnonzero(apart > SPACING_TOLERANCE * (high - low)[:-1])
         if wrong.size:
             index = int(wrong[0])
             borders = f"one cell ends at {high[index]:g} m, the next begins at {low[index + 1]:g} m"

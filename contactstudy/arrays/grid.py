@@ -76,10 +76,8 @@ class Grid:
         ----------
         x_edges : sequence of float
             Edges of the cells, increasing, metres. Neighbouring widths may differ by a factor of 4 at most.
-        y_range : tuple of float
-            First and last cell edge along y, metres.
-        cells_y : int
-            Number of cells along y.
+        y_range, cells_y
+            As in `Grid`.
 
         Raises
         ------

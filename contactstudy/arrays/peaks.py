@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +27,15 @@ def section_maxima(pressure: FloatArray) -> FloatArray:
     return np.sqrt(np.where(maxima > 0, np.maximum(middle + np.minimum(rise, 0.25 * middle), maxima), 0.0))
 
 
+def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
+    """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial."""
+    matrix = np.empty((points.size, nodes.size))
+    for i, node in enumerate(nodes):
+        poles = np.delete(nodes, i)
+        matrix[:, i] = np.prod((points[:, None] - poles) / (node - poles), axis=1)
+    return matrix
+
+
 class LocalPolynomial(NamedTuple):
     """Polynomial interpolation of samples about one of them."""
 
@@ -43,11 +51,7 @@ def local_polynomial(positions: FloatArray, centre: int, neighbours: int) -> Loc
     nodes = positions[start : start + count]
     low, high = positions[max(centre - 1, 0)], positions[min(centre + 1, positions.size - 1)]
     points = np.unique(np.append(np.linspace(low, high, SAMPLES_BETWEEN), positions[centre])) if count > 1 else nodes
-    matrix = np.ones((points.size, count))
-    for i, j in product(range(count), repeat=2):
-        if i != j:
-            matrix[:, i] *= (points - nodes[j]) / (nodes[i] - nodes[j])
-    return LocalPolynomial(slice(start, start + count), points, matrix)
+    return LocalPolynomial(slice(start, start + count), points, lagrange(nodes, points))
 
 
 def interpolate_about(

@@ -143,24 +143,19 @@ def required_in_si(dataset: xr.Dataset, *names: str, argument: str = "dataset", 
     """Return a Dataset that must hold some variables, with these and all positions in SI."""
     require(dataset, *names, argument=argument)
     changed: dict[str, xr.DataArray] = {}
-    for name in names:
-        units, array = VARIABLES[name].units, dataset[name]
+    positions_in = {axis: "m" for axis in POSITIONS if axis in dataset.coords}
+    for name, units in ({name: VARIABLES[name].units for name in names} | positions_in).items():
+        array = dataset[name]
         stated_unit = array.attrs.get("units", units)
-        if not units:  # depends on another variable
+        if not units or stated_unit == units:  # without units: depends on another variable
             continue
-        if stated_unit == "1" != units and not normalized:
-            hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
-            raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
-        factor = (
-            1.0 if stated_unit in ("1", units) else factor_to(units, f"{argument}.{name}.attrs['units']", stated_unit)
-        )
-        if factor != 1:
-            changed[name] = (array * factor).assign_attrs({**array.attrs, "units": units})
-    for axis in POSITIONS:
-        if axis in dataset.coords and dataset[axis].attrs.get("units", "m") not in ("m", "1"):
-            coordinate = dataset[axis]
-            factor = factor_to("m", f"{argument}.{axis}.attrs['units']", coordinate.attrs["units"])
-            changed[axis] = (coordinate * factor).assign_attrs({**coordinate.attrs, "units": "m"})
+        if stated_unit == "1":
+            if name not in positions_in and not normalized:
+                hint = "lengths over a and pressures over p0, as from analysis.normalized, are for figures and files"
+                raise InvalidInputError(argument, f"{name} without unit", f"in SI, {name} in {units}", hint)
+            continue
+        factor = factor_to(units, f"{argument}.{name}.attrs['units']", stated_unit)
+        changed[name] = (array * factor).assign_attrs({**array.attrs, "units": units})
     positions = {name: array.variable for name, array in changed.items() if name in POSITIONS}
     values = {name: array.variable for name, array in changed.items() if name not in POSITIONS}
     return dataset.assign_coords(positions).assign(values) if changed else dataset

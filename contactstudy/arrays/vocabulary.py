@@ -31,12 +31,11 @@ class Variable(NamedTuple):
 
 X, XY, XZ, YZ, XYZ, SCALAR = ("x",), ("x", "y"), ("x", "z"), ("y", "z"), ("x", "y", "z"), ()
 SLICE, CHECK = ("slice",), ("check",)
-EVALUATION, PARAMETER = ("evaluation",), ("parameter",)  # dimensions, for short
+EVALUATION, PARAMETER, SLIDE_ROLL = ("evaluation",), ("parameter",), ("slide_roll_ratio",)  # dimensions, for short
 AXES = ("x", "y", "z")  # along the roller's axis, along rolling, and into the body
 
 STRESSES = ("sigma_xx", "sigma_yy", "sigma_zz", "tau_xy", "tau_xz", "tau_yz")
 """The six components, in the order of every array of stresses."""
-
 
 COORDINATES = {  # coordinates of results; swept parameters stand in :data:`contactstudy.study.parameters.PARAMETERS`
     "x": Variable(X, "m", "x", "position along the axis", "from end I of the body"),
@@ -46,9 +45,7 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "y_field": Variable(("y_field",), "m", "y", "position along rolling", "of the stresses"),
     "x_bounds": Variable(("x", "bounds"), "m", "", "edges of the cells", "along the axis"),
     "x_width": Variable(X, "m", "w", "width of the cells", "along the axis"),
-    "e_over_a": Variable(
-        SCALAR, "1", "e/a", "end distance over a", "distance e of roller end and free end over Hertz half-width a"
-    ),
+    "e_over_a": Variable(SCALAR, "1", "e/a", "end distance over a", "roller end to free end over Hertz half-width"),
     "length_over_a": Variable(SCALAR, "1", "L/a", "length over a", "of the roller"),
     "crown": Variable(SCALAR, "1", "", "crown", "amplitude of the logarithmic profile over a**2 / R"),
     "friction": Variable(SCALAR, "1", "f", "coefficient of friction"),
@@ -68,11 +65,9 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "raceway": Variable(("raceway",), "", "", "raceway"),
     "roller": Variable(("roller",), "1", "j", "number of the roller"),
     "approach": Variable(("approach",), "m", r"\delta", "approach", "of roller and body, relative to its reference"),
-    "tilt": Variable(
-        ("tilt",), "rad", r"\vartheta", "tilt", "relative to its reference, positive if larger x is pressed deeper"
-    ),
+    "tilt": Variable(("tilt",), "rad", r"\vartheta", "tilt", "from its reference, positive if larger x is deeper"),
     "normal_load": Variable(("normal_load",), "N", "W", "normal load"),
-    "slide_roll_ratio": Variable(("slide_roll_ratio",), "1", "S", "slide-roll ratio"),
+    "slide_roll_ratio": Variable(SLIDE_ROLL, "1", "S", "slide-roll ratio"),
     "moment": Variable(("moment",), "N m", "M", "moment", "of the pressure, positive for a load at larger x"),
     "pass_number": Variable(("pass_number",), "1", "N", "number of the pass"),
 }
@@ -92,17 +87,13 @@ CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough su
     "height": Variable(XY, "m", "h", "height of the rough surface, positive towards the other body"),
     "normal_load": Variable(SCALAR, "N", "W", "normal load"),
     "approach": Variable(SCALAR, "m", r"\delta", "approach of roller and body, relative to its reference"),
-    "tilt": Variable(
-        SCALAR, "rad", r"\vartheta", "tilt relative to its reference, positive if larger x is pressed deeper"
-    ),
+    "tilt": Variable(SCALAR, "rad", r"\vartheta", "tilt from its reference, positive if larger x is pressed deeper"),
     "load_position": Variable(SCALAR, "m", "x_W", "position x of the pressure's resultant"),
     "force_x": Variable(SCALAR, "N", "F_x", "force on the body along the roller's axis"),
     "force_y": Variable(SCALAR, "N", "F_y", "force on the body along +y"),
     "moment_z": Variable(SCALAR, "N m", "M_z", "moment on the body about the normal through the roller's middle"),
-    "longitudinal_creepage": Variable(
-        SCALAR, "1", r"\xi", "velocity of the roller against the body along +y, over rolling"
-    ),
-    "lateral_creepage": Variable(SCALAR, "1", r"\eta", "velocity of the roller against the body along x, over rolling"),
+    "longitudinal_creepage": Variable(SCALAR, "1", r"\xi", "relative velocity of the roller along +y, over rolling"),
+    "lateral_creepage": Variable(SCALAR, "1", r"\eta", "relative velocity of the roller along x, over rolling"),
     "spin": Variable(SCALAR, "rad/m", r"\varphi", "angular velocity of the roller about z, over rolling"),
     "shift_x": Variable(SCALAR, "m", "", "shift of the roller against the body along x"),
     "shift_y": Variable(SCALAR, "m", "", "shift of the roller against the body along y"),
@@ -110,9 +101,7 @@ CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough su
     "friction_work": Variable(SCALAR, "", "A", "frictional work per distance rolled, or of a shift"),
     "friction_steps": Variable(SCALAR, "1", "", "steps of Newton's method for stick and slip"),
     "bound_error": Variable(SCALAR, "1", "", "largest traction above the friction's bound, over the largest bound"),
-    "slip_error": Variable(
-        SCALAR, "1", "", "largest slip where surfaces stick, or across or against the traction, over the rigid slip"
-    ),
+    "slip_error": Variable(SCALAR, "1", "", "largest slip that contradicts stick or traction, over the rigid slip"),
     "force_error": Variable(SCALAR, "1", "", "resultant of the tractions minus the prescribed one, over the largest"),
     "iterations": Variable(SCALAR, "1", "", "applications of the contact operator"),
     "converged": Variable(SCALAR, "1", "", "whether the iteration reached its tolerance"),
@@ -124,9 +113,7 @@ CONTACT = {  # the contact: of a case, of a shape with a body, and of a rough su
     "load_position_error": Variable(
         SCALAR, "1", "", "distance of the pressure's resultant from load_position, over the length of the contact"
     ),
-    "end_traction_residual": Variable(
-        SCALAR, "1", "", "largest traction left on the free ends, over the peak pressure"
-    ),
+    "end_traction_residual": Variable(SCALAR, "1", "", "largest traction on the free ends, over the peak pressure"),
     "hertz_half_width": Variable(SCALAR, "m", "a", "half-width of the Hertz line contact of the same load per length"),
     "hertz_max_pressure": Variable(
         SCALAR, "Pa", "p_0", "peak pressure of the Hertz line contact of the same load per length"
@@ -243,14 +230,10 @@ FATIGUE = {  # variables of :mod:`contactstudy.fatigue`. The unit of a risk has 
     "relative_life": Variable(SCALAR, "1", "", "life over that of the reference"),
     "first_yield_stress": Variable(XZ, "Pa", "k_e", "yield stress in shear below which the first passage yields"),
     "shakedown_stress": Variable(XZ, "Pa", "k_s", "yield stress in shear below which every passage yields"),
-    "residual_sigma_yy": Variable(
-        XZ, "Pa", r"\rho_{yy}", "residual stress along rolling that lets the point shake down"
-    ),
-    "residual_sigma_xx": Variable(
-        XZ, "Pa", r"\rho_{xx}", "residual stress along the axis that lets the point shake down"
-    ),
-    "residual_sigma_zz": Variable(XZ, "Pa", r"\rho_{zz}", "residual stress along depth that lets the point shake down"),
-    "residual_tau_xz": Variable(XZ, "Pa", r"\rho_{xz}", "residual shear stress xz that lets the point shake down"),
+    "residual_sigma_yy": Variable(XZ, "Pa", r"\rho_{yy}", "residual stress along rolling for the point's shakedown"),
+    "residual_sigma_xx": Variable(XZ, "Pa", r"\rho_{xx}", "residual stress along the axis for the point's shakedown"),
+    "residual_sigma_zz": Variable(XZ, "Pa", r"\rho_{zz}", "residual stress along depth for the point's shakedown"),
+    "residual_tau_xz": Variable(XZ, "Pa", r"\rho_{xz}", "residual shear stress xz for the point's shakedown"),
     "program_gap": Variable(SCALAR, "1", "", "part of the yield stress that the convex program could still gain"),
     "shakedown_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for shakedown"),
     "first_yield_limit": Variable(SCALAR, "1", "p_0/k", "pressure p0 over the least yield stress k for no yield"),
@@ -281,14 +264,9 @@ BEARING = {  # variables of :mod:`contactstudy.bearing`
     "strain_energy": Variable(LAW, "J", "U", "strain energy of the contact"),
     "normal_stiffness": Variable(LAW, "N/m", r"\partial Q/\partial\delta", "change of the load with the approach"),
     "coupling_stiffness": Variable(
-        LAW,
-        "N/rad",
-        r"\partial Q/\partial\vartheta",
-        "change of the load with the tilt, and of the moment with approach",
+        LAW, "N/rad", r"\partial Q/\partial\vartheta", "change of the load with tilt, and of the moment with approach"
     ),
-    "tilting_stiffness": Variable(
-        LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with the tilt"
-    ),
+    "tilting_stiffness": Variable(LAW, "N m/rad", r"\partial M/\partial\vartheta", "change of the moment with tilt"),
     "relative_load_error": Variable(LAW, "1", "", "error of the contact law's load, over the load"),
     "relative_moment_error": Variable(LAW, "1", "", "error of the contact law's moment, over load times length"),
     "accuracy": Variable(SCALAR, "1", "", "accuracy to which the peak pressure is settled"),
@@ -296,9 +274,7 @@ BEARING = {  # variables of :mod:`contactstudy.bearing`
     "inner_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the inner raceway"),
     "outer_approach": Variable(SCALAR, "m", "", "approach of the contact with the outer raceway"),
     "outer_tilt": Variable(SCALAR, "rad", "", "tilt of the contact with the outer raceway"),
-    "hertz_load_per_length": Variable(
-        SLICE, "N/m", "", "load per length of the line contact that has the solved pressure"
-    ),
+    "hertz_load_per_length": Variable(SLICE, "N/m", "", "load per length of the line contact with the solved pressure"),
     "stress_riser": Variable(
         ("model", "raceway", "roller", "slice"), "1", "f_k", "factor on the load of a lamina, from solved pressures"
     ),
@@ -365,7 +341,6 @@ VERIFICATION = {  # variables of :func:`contactstudy.verification.verify`
     "passed": Variable(CHECK, "", "", "whether the difference is within the tolerance"),
 }
 
-
 FILM = {  # film thickness and derived quantities
     "film_thickness": Variable(XY, "m", "h", "film thickness", "mean height between rough surfaces"),
     "asperity_pressure": Variable(XY, "Pa", r"p_\mathrm{c}", "pressure of the asperities"),
@@ -395,15 +370,11 @@ FILM = {  # film thickness and derived quantities
     "end_film_ratio": Variable(SCALAR, "1", "", "least film thickness over that of the middle section"),
     "least_film_ratio": Variable(SCALAR, "1", r"\Lambda_\mathrm{m}", "least film thickness over the roughness"),
     "slice_film": Variable(X, "m", "", "film of each slice by Moes' formula, from the dry load per length"),
-    "viscosity_ratio": Variable(
-        SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the film of the middle section"
-    ),
+    "viscosity_ratio": Variable(SCALAR, "1", r"\kappa", "viscosity ratio of ISO 281, from the middle section's film"),
     "film_ratio": Variable(X, "1", r"\Lambda", "least film thickness across y over the composite roughness"),
-    "traction_coefficient": Variable(("slide_roll_ratio",), "1", r"\mu", "traction over the load"),
-    "power_loss": Variable(("slide_roll_ratio",), "W", "", "power that sliding and rolling take"),
-    "thermal_reduction": Variable(
-        ("slide_roll_ratio",), "1", r"\varphi_T", "film with a heated inlet over the isothermal one"
-    ),
+    "traction_coefficient": Variable(SLIDE_ROLL, "1", r"\mu", "traction over the load"),
+    "power_loss": Variable(SLIDE_ROLL, "W", "", "power that sliding and rolling take"),
+    "thermal_reduction": Variable(SLIDE_ROLL, "1", r"\varphi_T", "film with a heated inlet over the isothermal one"),
     "rolling_force": Variable((), "N", "", "force along y on either surface from the film's pressure gradient"),
     "rolling_moment": Variable((), "N m", "t", "moment of the rolling force about the roller's axis"),
 }
@@ -415,7 +386,6 @@ ATLAS = {  # contacts of the atlas, in units of the Hertz line contact
     "stiffness_ratio": Variable(SCALAR, "1", "", "stiffness over the contact modulus times the length"),
     "end_load_ratio": Variable(SCALAR, "1", "", "load on the last half-width over the mean load per half-width"),
 }
-
 
 VARIABLES = (  # every variable of the package, without names made by a rule
     CONTACT

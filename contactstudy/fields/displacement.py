@@ -15,8 +15,8 @@ from contactstudy.fields.part import REFERENCE_LENGTHS, kernel_factor, reference
 from contactstudy.fields.positions import Positions, field_positions
 from contactstudy.kernels.field import displacement_influence, half_space_field, half_space_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import unit_fields
-from contactstudy.overlapping.harmonics import DISPLACEMENT, end_displacement
+from contactstudy.overlapping.field import end_fields, unit_fields
+from contactstudy.overlapping.harmonics import DISPLACEMENT
 
 COMPONENTS = ("u_x", "u_y", "u_z")
 
@@ -89,7 +89,7 @@ def displacement_under(
             from_ends: dict[Load, FloatArray] = {}
             if part.freed and cells.any():
                 problem = end_problem(part.freed, material.poisson, cells, shape, grid, loads=directions)
-                from_ends = end_displacement(problem, points, reference=reference)
+                (from_ends,) = end_fields(problem, DISPLACEMENT, [points], reference)
             for load, total in fields.items():
                 influence = displacement_influence(load, material.poisson, length, reference)
                 field = half_space_field(cells, influence, grid, points, extent=part.extent, shape=shape)
@@ -121,8 +121,7 @@ def normal_influence(body: Body, grid: Grid, load: Load, x: FloatArray, z: float
         if part.freed:
             problem = unit_problem(part.freed, material.poisson, grid, load)
             line = Points(x, np.zeros(1), np.array([z]))
-            finite = reference if np.isfinite(reference) else None
-            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference=finite):
+            for amplitudes, filters in unit_fields(problem, DISPLACEMENT, line, reference):
                 field = np.einsum("xniz,njy->xij", amplitudes[normal], filters[normal], optimize=True)
                 total += part.weight / (2 * material.shear_modulus) * field
     return total

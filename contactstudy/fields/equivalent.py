@@ -9,6 +9,7 @@ import xarray as xr
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.arrays.variables import describe
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
@@ -18,7 +19,6 @@ from contactstudy.fields.part import REFERENCE_LENGTHS
 from contactstudy.fields.positions import Positions
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.operators import OverlappingOperators
-from contactstudy.overlapping.operators import Positions as LoadPositions
 
 
 def equivalent_loads(
@@ -110,4 +110,4 @@ def overlapping_operators(
     cells = np.zeros(grid.shape) if cells is None else cells
     problem = end_problem(freed, body.material.poisson, cells, None, grid, loads=(load,))
     problem = replace(problem, resolution=problem.resolution.for_loads((load,)))
-    return OverlappingOperators.of(problem, LoadPositions(grid.x, grid.y, depths), reference=_reference(body))
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, depths), reference=_reference(body))

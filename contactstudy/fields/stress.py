@@ -20,8 +20,8 @@ from contactstudy.fields.part import reference_distance
 from contactstudy.fields.positions import FieldPositions, Positions, field_positions
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.field import UnitFields, unit_fields
-from contactstudy.overlapping.harmonics import STRESS, end_stress
+from contactstudy.overlapping.field import UnitFields, end_fields, unit_fields
+from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import CORNER_OFFSET
 from contactstudy.stress import von_mises
 
@@ -147,7 +147,7 @@ def _unit_stress(
         from_ends: list[dict[Load, FloatArray]] = [{} for _ in axes]
         if part.freed and cells.values.any():
             problem = end_problem(part.freed, poisson, cells.values, shape_cells, grid, loads=loads)
-            from_ends = end_stress(problem, axes, reference_distance(part.extent))
+            from_ends = end_fields(problem, STRESS, axes, reference_distance(part.extent))
         for load in loads:
             added = []
             for key, points, by_load in zip(point_sets, axes, from_ends, strict=True):
@@ -248,9 +248,7 @@ class StressOperator(LinearOperator):  # type: ignore[misc]
                 )
             if part.freed:
                 problem = unit_problem(part.freed, poisson, grid, load)
-                reference = reference_distance(part.extent)
-                grows = load.sign_x < 0 and np.isfinite(reference)
-                for amplitudes, filters in unit_fields(problem, STRESS, points, reference=reference if grows else None):
+                for amplitudes, filters in unit_fields(problem, STRESS, points, reference_distance(part.extent)):
                     amplitudes[[2, 4, 5]] *= (points.z != 0) * part.weight
                     amplitudes[[0, 1, 3]] *= part.weight
                     self._ends.append(UnitFields(amplitudes, filters))

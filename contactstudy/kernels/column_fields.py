@@ -25,7 +25,6 @@ from contactstudy.kernels.corner_sums import (
     Jumps,
     Layer,
     aligned_points,
-    divide_edges,
     merge_columns,
     midpoint_cells,
 )
@@ -95,7 +94,7 @@ class AlongY:
             centred, edges = midpoint_cells(column, self.begin, span, step / number)
             if fine:
                 return [Layer.of(centred, depths, numbers, step=step / number, edges=edges, parts=1)]
-            split = divide_edges(edges, parts)
+            split = np.linspace(edges[0], edges[-1], parts * (edges.size - 1) + 1)
             return [Layer.of(centred, depths, numbers, step=step / number, edges=split, parts=parts)]
         if not fine:
             edges = self.begin + dy / PARTS_Y * np.arange(PARTS_Y * self.count + 1.0)
@@ -126,11 +125,6 @@ class SplitColumns(NamedTuple):
     load: FloatArray
 
     @property
-    def depths(self) -> int:
-        """Number of the few depths."""
-        return self.beyond[0].numbers.size
-
-    @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
         parts = (jumps for near, sides in self.jumps for part in (near, *sides) for jumps in part)
@@ -156,8 +150,8 @@ def split_columns(
         first, load = int(loaded[0]), cells.values[:, loaded[0] : loaded[-1] + 1]
         lateral = AlongY(grid, y, first, load.shape[1])
         layers, beyond = lateral.uniform(z, np.arange(z.size)), lateral.uniform(depths, depth_indices)
-        uniform = _Uniform(mirrored(grid.x_edges, extent), with_images(load, image, extent))
-        jumps = list(_uniform_jumps(x, layers, beyond, uniform, reach))
+        edges, loads = mirrored(grid.x_edges, extent), with_images(load, image, extent)
+        jumps = [_uniform_jumps(position, layers, beyond, edges, loads, reach=reach) for position in x.tolist()]
         return SplitColumns(layers=layers, beyond=beyond, to_z=to_z, jumps=jumps, first=first, load=load)
     fine = FineCells(load=cells.values, shape=shape.values, grid=grid, extent=extent, image=image)
     lateral = AlongY(grid, y, fine.first, fine.count)
@@ -169,23 +163,14 @@ def split_columns(
     return SplitColumns(layers=layers, beyond=beyond, to_z=to_z, jumps=jumps, first=fine.first, load=fine.cells)
 
 
-class _Uniform(NamedTuple):
-    """Edges along x and loads (column, y) of cells with uniform loads, and of their nearest images."""
-
-    edges: FloatArray
-    loads: FloatArray
-
-
 def _uniform_jumps(
-    x: FloatArray, layers: list[Layer], beyond: list[Layer], cells: _Uniform, reach: float
-) -> Iterator[tuple[list[Jumps], list[list[Jumps]]]]:
-    """Jumps of the columns within the distance `reach` of each position, and of far columns."""
-    edges, loads = cells
-    for position in x.tolist():
-        column = int(np.clip(np.searchsorted(edges, position, side="right") - 1, 0, edges.size - 2))
-        low, high = _Surroundings(edges[column : column + 1], column, column).within(edges, position, reach)
-        near = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
-        yield near, _far_jumps(edges, [loads] * len(beyond), beyond, position, low=low, high=high)
+    x: float, layers: list[Layer], beyond: list[Layer], edges: FloatArray, loads: FloatArray, *, reach: float
+) -> tuple[list[Jumps], list[list[Jumps]]]:
+    """Jumps of columns with uniform loads (column, y) within the distance `reach` of a position, and of far columns."""
+    column = int(np.clip(np.searchsorted(edges, x, side="right") - 1, 0, edges.size - 2))
+    low, high = _Surroundings(edges[column : column + 1], column, column).within(edges, x, reach)
+    near = [Jumps.of(edges[low : high + 1], loads[low:high], layer) for layer in layers]
+    return near, _far_jumps(edges, [loads] * len(beyond), beyond, x, low=low, high=high)
 
 
 def _far_jumps(
@@ -318,7 +303,7 @@ def columns_field(
     key = None if shape is None else ArrayKey(shape)
     columns = split_columns(ArrayKey(load), key, grid, extent, influence.load.sign_x, axes=axes)
     field = np.zeros((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
-    far_field = np.zeros((influence.components, x.size, y.size, columns.depths))
+    far_field = np.zeros((influence.components, x.size, y.size, columns.beyond[0].numbers.size))
     for i, (position, (near, sides)) in enumerate(zip(x.tolist(), columns.jumps, strict=True)):
         _add(field[:, i], influence, columns.layers, near, position)
         for side in sides:

@@ -31,6 +31,15 @@ def odd_spectrum(kernel: FloatArray) -> FloatArray:
     return spectrum
 
 
+def spectrum_matrices(cells: int) -> tuple[FloatArray, FloatArray]:
+    """Matrices (offset, wavenumber) of `even_spectrum` and of `odd_spectrum`, at offsets 0 .. `cells`."""
+    numbers = np.arange(cells + 1)
+    phase = np.pi * np.outer(numbers, numbers) / cells
+    ends = np.full(cells + 1, 2.0)
+    ends[[0, -1]] = 1.0
+    return ends[:, None] * np.cos(phase), np.where(ends == 1.0, 0.0, -2.0)[:, None] * np.sin(phase)
+
+
 class _Buffers:
     """Aligned memory and the transforms planned on it, for one thread."""
 
@@ -55,11 +64,6 @@ class _Buffers:
             self.along = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), **options)
             self.back = pyfftw.FFTW(self.lateral, self.lateral, axes=(0,), direction="FFTW_BACKWARD", **options)
         self.real[:] = 0.0
-
-    @property
-    def nbytes(self) -> int:
-        """Memory, bytes."""
-        return int(self.real.nbytes + self.lateral.nbytes)
 
 
 class GridTransform:
@@ -102,7 +106,7 @@ class GridTransform:
     @property
     def nbytes(self) -> int:
         """Memory of one thread's buffers, bytes."""
-        return self._buffers.nbytes
+        return int(self._buffers.real.nbytes + self._buffers.lateral.nbytes)
 
     def invert(self, spectrum_correction: ComplexArray | None = None) -> FloatArray:
         """Cell values of the spectrum in the buffer, plus a correction (cell, wavenumber) transformed along y only."""
@@ -193,14 +197,6 @@ def _kernel_spectrum(request: CentredConvolution) -> FloatArray:
     return np.ascontiguousarray(spectrum)
 
 
-def _load_spectrum(load: FloatArray, shape: tuple[int, int], *, mirrored: bool) -> ComplexArray:
-    """Spectrum of a load (cell, cell): array (wavenumber along x, wavenumber along y)."""
-    along_y = fft.rfft(load, 2 * shape[1], axis=1)
-    if not mirrored:
-        return np.asarray(fft.fft(along_y, 2 * shape[0], axis=0))
-    return np.asarray(fft.dct(along_y, type=2, n=shape[0], axis=0))
-
-
 def centred_field(
     load: FloatArray,
     influence: Influence,
@@ -224,7 +220,8 @@ def centred_field(
         half = cells_x
     # At half a period an odd kernel is undefined: both signs coincide.
     shape = (half, fft.next_fast_len(reach_y + 1, real=True))
-    transformed = _load_spectrum(load, shape, mirrored=mirrored)
+    along_y = fft.rfft(load, 2 * shape[1], axis=1)
+    transformed = fft.dct(along_y, type=2, n=half, axis=0) if mirrored else fft.fft(along_y, 2 * half, axis=0)
     if mirrored and np.isfinite(length) and half % 2 == 0:
         odd, most = np.abs(transformed[1::2]).max(), np.abs(transformed).max()
         if odd <= NEGLIGIBLE * most:
@@ -233,13 +230,7 @@ def centred_field(
     field = np.empty((influence.components, rows.size, z.size, columns.size))
     for number, depth in enumerate(z.tolist()):
         convolution = CentredConvolution(
-            influence=influence,
-            dx=cell[0],
-            dy=cell[1],
-            length=length,
-            mirrored=mirrored,
-            shape=shape,
-            depth=depth,
+            influence=influence, dx=cell[0], dy=cell[1], length=length, mirrored=mirrored, shape=shape, depth=depth
         )
         convolution.fill(field[:, :, number], transformed, rows, columns)
     return field.swapaxes(2, 3)

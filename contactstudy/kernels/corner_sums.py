@@ -98,11 +98,6 @@ def midpoint_cells(column: AlignedPoints, start: float, span: float, step: float
     return AlignedPoints(0.5 * step, column.points, column.cells - before - 1), edges
 
 
-def divide_edges(edges: FloatArray, parts: int) -> FloatArray:
-    """Edges of uniform cells divided into equal parts."""
-    return np.linspace(edges[0], edges[-1], parts * (edges.size - 1) + 1)
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Jumps:
     """Nonzero mixed jumps of a load at the edges along x: array (edge, corner), backwards along y."""
@@ -167,8 +162,7 @@ class Jumps:
     @property
     def nbytes(self) -> int:
         """Memory held, bytes."""
-        arrays = (self.edges, self.values, self.folded)
-        return sum(array.nbytes for array in arrays if array is not None)
+        return self.edges.nbytes + self.values.nbytes + (0 if self.folded is None else self.folded.nbytes)
 
 
 class EvenOffsets:
@@ -208,19 +202,15 @@ class EvenOffsets:
 
     def folded(self, jumps: FloatArray, start: int) -> FloatArray:
         """Jumps (edge, corner) from offset `start` on summed over both sides of 0: (edge and distance, parity)."""
-        matrix = self._folding_matrices.get((start, jumps.shape[1]))
-        if matrix is None:
-            matrix = self._folding_matrices[start, jumps.shape[1]] = self._folding_matrix(start, jumps.shape[1])
-        return (jumps @ matrix).reshape(-1, 2)
-
-    def _folding_matrix(self, start: int, count: int) -> FloatArray:
-        """Matrix that sums over both sides of 0: array (corner, distance and parity)."""
         assert self.index is not None
-        window, corners = slice(start, start + count), np.arange(count)
-        matrix = np.zeros((count, self.along_y.size, 2))
-        matrix[corners, self.index[window], 0] = 1.0
-        matrix[corners, self.index[window], 1] = self._sides[window]
-        return matrix.reshape(count, -1)
+        count = jumps.shape[1]
+        if (start, count) not in self._folding_matrices:
+            window, corners = slice(start, start + count), np.arange(count)
+            matrix = np.zeros((count, self.along_y.size, 2))
+            matrix[corners, self.index[window], 0] = 1.0
+            matrix[corners, self.index[window], 1] = self._sides[window]
+            self._folding_matrices[start, count] = matrix.reshape(count, -1)
+        return (jumps @ self._folding_matrices[start, count]).reshape(-1, 2)
 
 
 def merge_columns(edges: FloatArray, loads: FloatArray, x: float) -> tuple[FloatArray, FloatArray]:

@@ -94,7 +94,6 @@ def _uniform_field(
     """Field at points with equal offsets from uniform cells, by fast convolution."""
     x, y, z = points
     in_first, in_second = bool(np.isfinite(extent[0])), bool(np.isfinite(extent[1]))
-    periodic = in_first and in_second
     loaded = np.flatnonzero(load.any(axis=0))
     first, last = int(loaded[0]), int(loaded[-1]) + 1
     load = load[:, first:last]
@@ -103,24 +102,16 @@ def _uniform_field(
     on_centres = len(rows) == len(columns) == 1 and rows[0].offset == columns[0].offset == 0
     image = influence.load.sign_x
     if on_centres and (in_first or not in_second) and (image > 0 or not in_first):
-        return centred_field(
-            load,
-            influence,
-            (grid.dx, grid.dy),
-            rows[0].cells,
-            columns[0].cells,
-            z=z,
-            extent=extent,
-        )
+        cell = (grid.dx, grid.dy)
+        return centred_field(load, influence, cell, rows[0].cells, columns[0].cells, z=z, extent=extent)
     start = grid.x[0]
     if in_first:  # the mirrored load precedes the load
         load = np.concatenate([image * load[::-1], load])
         start -= grid.cells_x * grid.dx
     elif in_second:
         load = np.concatenate([load, image * load[::-1]])
-    cells = _LoadedCells(
-        load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=extent[1] if periodic else np.inf
-    )
+    length = extent[1] if in_first and in_second else np.inf
+    cells = _LoadedCells(load=load, influence=influence, dx=grid.dx, dy=grid.dy, length=length)
     field = np.empty((influence.components, x.size, z.size, y.size)).swapaxes(2, 3)
     for column in columns:
         for row in aligned_points(x, float(start), grid.dx):
@@ -134,7 +125,6 @@ def half_space_influence(
     """Field (component, x, cell, y, z) of a unit load on each cell along x, with all images, at distances y from it."""
     image, columns, half = influence.load.sign_x, grid.cells_x, 0.5 * grid.dy
     distances = snapped(points.x[:, None] - mirrored(grid.x_edges, extent), float(grid.widths.min()))[..., None]
-    periodic = bool(np.isfinite(extent).all())
     far = FarImages(extent[1] - extent[0], image, CHEBYSHEV_X)
     first = columns if np.isfinite(extent[0]) else 0
     layers = []
@@ -146,7 +136,7 @@ def half_space_influence(
         for start in range(0, cells.shape[2], columns):
             if start != first:
                 field += image * cells[:, :, start : start + columns][:, :, ::-1]
-        if periodic:
+        if np.isfinite(extent).all():
             kernel = far.influence(corner, points.y, grid.dy, np.array(influence.image_level))
             loaded = far.means(grid.x_edges - extent[0]) * grid.widths
             field += np.einsum("xp,cpqy,qi->cxiy", far.values(points.x - extent[0]), kernel, loaded, optimize=True)
@@ -164,24 +154,15 @@ class _LoadedCells:
     dy: float
     length: float
 
-    @property
-    def periodic(self) -> bool:
-        return bool(np.isfinite(self.length))
-
-    def lateral_offsets(self, column: AlignedPoints) -> tuple[FloatArray, IntArray]:
-        """Offsets along y from the cells to the points of the column, and the indices of the points."""
-        first = int(column.cells.min()) - self.load.shape[1] + 1
-        steps = np.arange(first, int(column.cells.max()) + 1)
-        return self.dy * steps + column.offset, column.cells - first
-
 
 def _aligned_field(
     cells: _LoadedCells, rows: IntArray, offset: float, column: AlignedPoints, z: FloatArray
 ) -> FloatArray:
     """Field (component, row, column, z) at one offset along x from the centres of the cells `rows`."""
-    count = cells.load.shape[0]
-    y, at_y = cells.lateral_offsets(column)
-    if cells.periodic:
+    count, cells_y = cells.load.shape
+    first_y = int(column.cells.min()) - cells_y + 1
+    y = cells.dy * np.arange(first_y, int(column.cells.max()) + 1) + column.offset
+    if np.isfinite(cells.length):
         # One period holds the load and its mirror image; offsets are wrapped into -length .. length.
         first, size = -(count // 2), count
         shape = (size, fft.next_fast_len(y.size, real=True))
@@ -191,7 +172,7 @@ def _aligned_field(
         shape = (fft.next_fast_len(size, real=True), fft.next_fast_len(y.size, real=True))
     x = cells.dx * np.arange(first, first + size) + offset
     spectrum = fft.rfft2(cells.load, shape)
-    at_x = (rows - first) % shape[0]
+    at_x, at_y = (rows - first) % shape[0], column.cells - first_y
 
     def layer(depth: float) -> FloatArray:
         kernel = _kernel_by_symmetry(cells, depth, x, y)
@@ -220,23 +201,26 @@ def _kernel_by_symmetry(cells: _LoadedCells, depth: float, x: FloatArray, y: Flo
 STRESS_PARITIES = ((1, 1, 1, -1, -1, 1), (1, 1, 1, -1, 1, -1))
 """Parities along x and along y of the components xx, yy, zz, xy, xz, yz under a pressure."""
 
-
-def stress_influence(load: Load, poisson: float) -> Influence:
-    """Stresses xx, yy, zz, xy, xz, yz of a unit load."""
-    return Influence.of(STRESS_CORNERS[load], poisson, load, STRESS_PARITIES)
-
-
 DISPLACEMENT_PARITIES = ((-1, 1, 1), (1, -1, 1))
 """Parities along x and along y of the components x, y, z under a pressure."""
 
 
+def stress_influence(load: Load, poisson: float) -> Influence:
+    """Stresses xx, yy, zz, xy, xz, yz of a unit load."""
+    level = (0.0,) * len(STRESS_PARITIES[0])
+    return Influence(
+        corner=STRESS_CORNERS[load], poisson=poisson, load=load, parities=STRESS_PARITIES, image_level=level
+    )
+
+
 def displacement_influence(load: Load, poisson: float, length: float, reference: float) -> Influence:
     """Displacements times ``4 pi G`` of a unit load, relative to the top at the reference between two mirrors."""
-    level = None
-    if np.isfinite(length):
-        directions = (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
-        level = tuple(
-            row_level(strips_of(Response(direction, load), poisson), load.sign_x, length, reference)
-            for direction in directions
-        )
-    return Influence.of(DISPLACEMENT_CORNERS[load], poisson, load, DISPLACEMENT_PARITIES, level)
+    level = tuple(
+        row_level(strips_of(Response(direction, load), poisson), load.sign_x, length, reference)
+        if np.isfinite(length)
+        else 0.0
+        for direction in (Load.ALONG_X, Load.ALONG_Y, Load.NORMAL)
+    )
+    return Influence(
+        corner=DISPLACEMENT_CORNERS[load], poisson=poisson, load=load, parities=DISPLACEMENT_PARITIES, image_level=level
+    )

@@ -33,9 +33,7 @@ SPARE = 1  # cells beyond the loaded cells along y: a shape may extend into the 
 class FineCells:
     """A load on the cells of a grid as a smooth function, and as its means on finer cells."""
 
-    load: FloatArray
-    """(cell_x, cell_y): load on the cells of `grid`, and the pressure that determines its distribution inside the
-    cells."""
+    load: FloatArray  # (cell_x, cell_y): load on the cells, and the pressure that determines its distribution inside
     shape: FloatArray
     grid: Grid
     extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none

@@ -18,6 +18,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
+from contactstudy.kernels.patch import Corner
 
 CornerFunction = Callable[[FloatArray, FloatArray], FloatArray]
 
@@ -44,8 +45,10 @@ def snapped(offsets: FloatArray, size: float) -> FloatArray:
 def mirrored_kernel(
     corner: CornerFunction, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float
 ) -> FloatArray:
-    """`cell_kernel` of a load and all its images at distances ``2 length``; offsets along x up to ``length``."""
+    """`cell_kernel` of a load and all its images at distances ``2 length``, if finite; offsets x up to ``length``."""
     # A quantity that grows with distance contains the constant of a spread load up to ``FAR_LIMIT * length``.
+    if np.isinf(length):
+        return cell_kernel(corner, x, y, dx, dy)
     images = image_kernel(corner, x, y, dx, dy, length=length, nearest=2 * length)
     return cell_kernel(corner, x, y, dx, dy) + images
 
@@ -156,40 +159,30 @@ def _chebyshev_points(values: FloatArray, span: float, count: int) -> tuple[Floa
 class Influence:
     """Components of a field around a unit load on one cell; compared by value, as part of a cached request."""
 
-    corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
+    corner: Corner
     """Corner functions (component, ...) of broadcastable offsets ``X, Y`` and depths, and Poisson's ratio."""
     poisson: float
     load: Load
-    sign_along_x: tuple[int, ...]  # per component, 1 or -1 if it is even or odd in the offset along x and along y
-    sign_along_y: tuple[int, ...]
+    parities: tuple[tuple[int, ...], tuple[int, ...]]
+    """Along x and along y per component: 1 or -1 if it is even or odd in the offset under a pressure."""
     image_level: tuple[float, ...]
     """Per component, the constant that the images of a unit load per area add to the kernel (`mirrored_kernel`): the
     reference of a quantity that grows with distance."""
 
-    @classmethod
-    def of(
-        cls,
-        corner: Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray],
-        poisson: float,
-        load: Load,
-        under_pressure: tuple[tuple[int, ...], tuple[int, ...]],
-        image_level: tuple[float, ...] | None = None,
-    ) -> Influence:
-        """Influence of a load in any direction, from the parities along x and y of the components under a pressure."""
-        along_x, along_y = under_pressure
-        return cls(
-            corner=corner,
-            poisson=poisson,
-            load=load,
-            sign_along_x=tuple(load.sign_x * sign for sign in along_x),
-            sign_along_y=tuple(load.sign_y * sign for sign in along_y),
-            image_level=(0.0,) * len(along_x) if image_level is None else image_level,
-        )
+    @property
+    def sign_along_x(self) -> tuple[int, ...]:
+        """Per component, 1 or -1 if it is even or odd in the offset along x."""
+        return tuple(self.load.sign_x * sign for sign in self.parities[0])
+
+    @property
+    def sign_along_y(self) -> tuple[int, ...]:
+        """Per component, 1 or -1 if it is even or odd in the offset along y."""
+        return tuple(self.load.sign_y * sign for sign in self.parities[1])
 
     @property
     def components(self) -> int:
         """Number of components."""
-        return len(self.sign_along_x)
+        return len(self.image_level)
 
     def corner_at(self, depth: float) -> CornerFunction:
         """Corner functions at one depth."""
@@ -197,10 +190,9 @@ class Influence:
 
     def kernel(self, x: FloatArray, y: FloatArray, dx: float, dy: float, length: float, depth: float) -> FloatArray:
         """Influence at uniform offsets `x` and `y`, with all images where `length` is finite: (component, x, y)."""
-        if np.isinf(length):
-            return cell_kernel(self.corner_at(depth), x, y, dx, dy)
         kernel = mirrored_kernel(self.corner_at(depth), x, y, dx, dy, length=length)
-        return np.asarray(kernel + dx * dy * np.array(self.image_level)[:, None, None])
+        level = np.array(self.image_level)[:, None, None]
+        return kernel if np.isinf(length) else np.asarray(kernel + dx * dy * level)
 
 
 LOAD_POINTS = 10

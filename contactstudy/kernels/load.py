@@ -9,12 +9,11 @@ from typing import NamedTuple
 class Load(Enum):
     """Direction of a load on the top; sign_x, sign_y: 1 if a reflection along x, along y keeps the load, -1 if not."""
 
-    NORMAL = ("pressure, positive into the body", 1, 1)
-    ALONG_X = ("traction on the body along +x", -1, 1)
-    ALONG_Y = ("traction on the body along +y", 1, -1)
+    NORMAL = (1, 1)  # pressure, positive into the body
+    ALONG_X = (-1, 1)  # traction on the body along +x
+    ALONG_Y = (1, -1)  # traction on the body along +y
 
-    def __init__(self, meaning: str, sign_x: int, sign_y: int) -> None:
-        self.meaning = meaning
+    def __init__(self, sign_x: int, sign_y: int) -> None:
         self.sign_x = sign_x
         self.sign_y = sign_y
 
@@ -34,11 +33,6 @@ class Response(NamedTuple):
     def sign_y(self) -> int:
         """1 if the kernel is even along y, -1 if it is odd."""
         return self.displacement.sign_y * self.load.sign_y
-
-    @property
-    def reciprocal(self) -> Response:
-        """The pair with exchanged directions: its kernel is this one at opposite offsets."""
-        return Response(self.load, self.displacement)
 
 
 NORMAL_RESPONSE = Response(Load.NORMAL, Load.NORMAL)  # normal displacement of the top under a pressure

@@ -16,10 +16,14 @@ displacements are
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
+
+Corner = Callable[[FloatArray, FloatArray, FloatArray | float, float], FloatArray]
 
 TINY = 1e-150  # least denominator, with a representable square, far below any offset in metres
 
@@ -83,15 +87,6 @@ def tangential_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poiss
     )
 
 
-def axial_corner(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-    """Corner functions of the six stresses under unit traction along +x: those along +y with x and y exchanged."""
-    return tangential_corner(y, x, z, poisson)[[1, 0, 2, 3, 5, 4]]
-
-
-STRESS_CORNERS = {Load.NORMAL: normal_corner, Load.ALONG_X: axial_corner, Load.ALONG_Y: tangential_corner}
-"""Corner functions of the six stresses, by the direction of the load."""
-
-
 class _Potentials:
     """Corner functions of the potentials' derivatives at offsets ``(X, Y, z)``."""
 
@@ -137,13 +132,14 @@ def tangential_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray |
     )
 
 
-def axial_displacement_inside(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
-    """Corner functions under unit shear traction along +x: those along +y with x and y exchanged."""
-    return tangential_displacement_inside(y, x, z, poisson)[[1, 0, 2]]
+def _corners(normal: Corner, tangential: Corner, exchanged: list[int]) -> dict[Load, Corner]:
+    """Corner functions by the direction of the load; those along +x are those along +y with x and y `exchanged`."""
+
+    def axial(x: FloatArray, y: FloatArray, z: FloatArray | float, poisson: float) -> FloatArray:
+        return tangential(y, x, z, poisson)[exchanged]
+
+    return {Load.NORMAL: normal, Load.ALONG_X: axial, Load.ALONG_Y: tangential}
 
 
-DISPLACEMENT_CORNERS = {  # corner functions of the three displacements, by the direction of the load
-    Load.NORMAL: normal_displacement_inside,
-    Load.ALONG_X: axial_displacement_inside,
-    Load.ALONG_Y: tangential_displacement_inside,
-}
+STRESS_CORNERS = _corners(normal_corner, tangential_corner, [1, 0, 2, 3, 5, 4])
+DISPLACEMENT_CORNERS = _corners(normal_displacement_inside, tangential_displacement_inside, [1, 0, 2])

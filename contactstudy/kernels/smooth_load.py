@@ -263,16 +263,8 @@ class _Row:
 
     def reversed(self) -> _Row:
         """Return the same arrays in the opposite direction."""
-        return _Row(
-            loads=self.loads[:, ::-1],
-            sign=self.sign[:, ::-1],
-            widths=self.widths[::-1],
-            first=self.last[:, ::-1],
-            middle=self.middle[:, ::-1],
-            last=self.first[:, ::-1],
-            knot=self.knot[:, ::-1],
-            fixed=self.fixed[:, ::-1],
-        )
+        flipped = {name: values[..., ::-1] for name, values in vars(self).items()}
+        return _Row(**{**flipped, "first": flipped["last"], "last": flipped["first"]})
 
     def shape_ends(self, *, spilling: bool) -> list[tuple[IntArray, IntArray]]:
         """Shape the last loaded cells; return rows and cells that exchange force with the next cell."""

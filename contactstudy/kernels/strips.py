@@ -1,26 +1,13 @@
 """Displacements of the top under loads on cells: the kernels of strips of load along y, and their integrals.
 
-``k(X, Y)`` is the displacement at a distance X from a strip, differenced over a cell along y, and ``F'' = k`` its
-double primitive in X. With ``R**2 = X**2 + Y**2``:
+``k(X, Y)`` is the displacement at a distance X from a strip, differenced over a cell along y, ``P' = k`` the corner
+function of a loaded rectangle, and ``F'' = k`` the double primitive in X (Love's rectangle integrated once more; terms
+that cancel in the differences are left out). Distances and their sign determine the kernels.
 
-    of 1 / R:        k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y X**2 / (2 R + 2 |Y|)
-    of X**2 / R**3:  k = Y / R,           F = X Y asinh(X / |Y|) - Y R
-    of Y / R**2:     k = ln R,            F = X**2 / 2 ln R + X Y atan(X / Y) - Y**2 / 4 ln(1 + X**2 / Y**2)
-    of X / R**2:     k = atan(Y / X),     F = X**2 / 2 atan(Y / X) + X Y ln R + Y**2 / 2 atan(X / Y)
-    of X Y / R**3:   k = -X / R,          F = -X R / 2 - Y**2 / 2 asinh(X / |Y|)
-
-(Love's rectangle integrated once more; terms that cancel in the differences are left out). The first three are even in
-X, the last two odd: distances and their sign determine the kernels. ``P' = k`` is the
-corner function of a loaded rectangle.
-
-There are two observers: the centre of a uniform cell, ``P((m + 1/2) dx) - P((m - 1/2) dx)`` (eq. (39a)), and the
-mean over the width of a column, below. `Grid.observes_means` selects one. With forces ``f = w p`` per length of y (w:
-width of a column) the mean displacement of a column, at its centre along y, is
-
-    u_i = sum_j K_ij f_j,   K_ij = (1 / (w_i w_j)) int_i dx int_j dx' k(x - x', Y),   eq. (35)
-
-symmetric to the last bit for the normal displacement under a pressure. The integrals are mixed differences of F over
-the edges of the columns. A mirrored column lies at the sum of the distances from the mirror.
+There are two observers: the centre of a uniform cell (eq. (39a)), and the mean over the width of a column, eq. (35) of
+docs/explanation/columns.md, symmetric to the last bit for the normal displacement under a pressure; its integrals are
+mixed differences of F over the edges of the columns. `Grid.observes_means` selects one. A mirrored column lies at the
+sum of the distances from the mirror.
 """
 
 from __future__ import annotations
@@ -33,8 +20,8 @@ import numpy as np
 
 from contactstudy.cache import recall, retain
 from contactstudy.checks import BoolArray, FloatArray, IntArray
-from contactstudy.kernels.convolution import even_spectrum, odd_spectrum
-from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, cell_kernel, mirrored_kernel
+from contactstudy.kernels.convolution import even_spectrum, odd_spectrum, spectrum_matrices
+from contactstudy.kernels.images import FAR_LIMIT, CornerFunction, FarImages, mirrored_kernel
 from contactstudy.kernels.load import Load, Response
 from contactstudy.kernels.patch import TINY
 
@@ -63,7 +50,7 @@ def _log(x: FloatArray, y: FloatArray) -> FloatArray:
     return np.asarray(0.5 * np.log(np.maximum(_squared(x, y), TINY)))
 
 
-INVERSE = Strip(  # of 1 / R
+INVERSE = Strip(  # of 1 / R, with R**2 = X**2 + Y**2
     kernel=lambda x, y: np.arcsinh(y / x),  # eq. (36)
     curvature=lambda x, y: y * (2 * x * x + y * y) / (x * x * _squared(x, y) * np.hypot(x, y)),
     primitive=lambda x, y: x * np.arcsinh(y / x) + y * np.arcsinh(x / y),
@@ -179,10 +166,10 @@ def surface_kernel(
 ) -> FloatArray:
     """Displacement times ``4 pi G`` of the surface from a unit load on one cell, at uniform offsets: array (x, y)."""
     strips = strips_of(response, poisson)
+    kernel = mirrored_kernel(corner_function(strips), x, y, *cell, length)  # eq. (39a)
     if np.isinf(length):
-        return cell_kernel(corner_function(strips), x, y, *cell)  # eq. (39a)
-    level = row_level(strips, response.load.sign_x, length, reference)
-    return mirrored_kernel(corner_function(strips), x, y, *cell, length) + cell[0] * cell[1] * level
+        return kernel
+    return kernel + cell[0] * cell[1] * row_level(strips, response.load.sign_x, length, reference)
 
 
 FAR_COLUMNS = 24.0
@@ -209,18 +196,11 @@ class Lateral:
     @property
     def matrix(self) -> FloatArray:
         """Matrix (edge, wavenumber) that takes the difference over each cell and its transform."""
-        numbers = np.arange(self.cells + 1)
-        phase = np.pi * np.outer(numbers, numbers) / self.cells
         difference = np.eye(self.cells + 1) - np.eye(self.cells + 1, k=-1)
-        if self.even:  # F is odd in Y: the difference over the first cell is twice its value
-            difference[0, 0] = 2.0
-            ends = np.full(self.cells + 1, 2.0)
-            ends[[0, -1]] = 1.0
-            return np.asarray(difference.T @ (ends[:, None] * np.cos(phase)))
-        difference[0, 0] = 0.0
-        ends = np.full(self.cells + 1, -2.0)
-        ends[[0, -1]] = 0.0
-        return np.asarray(difference.T @ (ends[:, None] * np.sin(phase)))
+        # Where the kernel is even, F is odd in Y: the difference over the first cell is twice its value.
+        difference[0, 0] = 2.0 if self.even else 0.0
+        even, odd = spectrum_matrices(self.cells)
+        return np.asarray(difference.T @ (even if self.even else odd))
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -2,28 +2,12 @@
 
 In H every load is extended evenly about both ends, so it is a sum of modes ``cos(k_n x)``, ``k_n = n pi / L``. Modes
 with even and odd ``n`` (loads symmetric and antisymmetric about mid-length, ``parity = +1, -1``) never mix. The first
-few terms form a sum; the others an integral along a ray from the real axis (formula of Abel and Plana): with ``g``
-analytic and real on the real axis,
+few terms form a sum; the others an integral along a ray from the real axis (formula of Abel and Plana, eqs. (31) and
+(32) of docs/explanation/numerics.md), where the contributions of the two ends decay. A quarter space has one end: the
+ray starts at ``k = 0`` without the second end's part (``parity = 0``).
 
-    sum_n g(k_n) cos(k_n x) = Re int_ray g(k) e(k) L dk / (2 pi),
-    e(k) = [exp(i k x) + parity exp(i k (L - x))] / (1 - parity exp(i k L)).
-
-Both exponentials, the contributions of the two ends, decay along the ray. A quarter space has one end: the ray starts
-at ``k = 0`` without the second exponential (``parity = 0``).
-
-The single-mirror scheme serves comparisons. H carries ``P_h1`` on 0 .. L and its mirror images on -L .. 0 and L .. 2L;
-V1 and V2 are half-spaces with their faces at x = 0 and x = L, each mirrored at the top. The equation set contains the
-load on the top and the normal stress on the ends, with the stress of the opposite half-space; some shear remains on
-the ends (Z. M. Zhang, W. Wang, P. L. Wong, An explicit solution for the elastic quarter-space problem in matrix
-formulation, Int. J. Solids Struct. 50 (2013) 976, for two ends). It differs from the exact set in three terms:
-
-* H's normal stress on end I comes from a load and its image, and from the second image alone: per load at x' it is
-  ``exp(i k x') (1 + parity exp(i k L) / 2)``, the first terms of the exact geometric series;
-* a face load ``S`` meets the normal stress ``parity (1 + kappa L) exp(-kappa L) S`` of the opposite half-space, so
-  ``T = 1 / (1 + parity (1 + kappa L) exp(-kappa L))``;
-* the load of V on the top, ``K(x) = exp(-kappa x) (a - b kappa x)`` with ``b = k_z**2 / kappa**2`` and
-  ``a = b + 2 nu k_y**2 / kappa**2``, acts on H between 0 and L only: its spectrum lacks the tail beyond L and has an
-  image.
+The single-mirror scheme serves comparisons (docs/explanation/theory.md, section 10): H carries ``P_h1`` and one pair of
+images, V1 and V2 are half-spaces at x = 0 and x = L.
 """
 
 from __future__ import annotations
@@ -74,14 +58,10 @@ class AxialModes:
         single = np.where(self.discrete == 0, 1.0, 2.0) / self.length  # eq. (7)
         return np.concatenate([single, self.weights * (1 if self.parity else 2) / np.pi])
 
-    @property
-    def face_weights(self) -> ComplexArray:
-        """Factor from the face loads' ``int M T S / kappa dk_z`` to the weighted spectrum of their load on the top."""
-        return self.load_weights * (4 if self.parity else 2)
-
     def load_on_top(self, core: ComplexArray, depth: FloatArray, lateral: float, poisson: float) -> ComplexArray:
         """Weighted spectrum of the load of V on the top per scaled face load: array (wavenumber, depth)."""
-        return np.asarray(self.face_weights[:, None] * core.T)  # eq. (23), without T / kappa
+        # Factor from the face loads' ``int M T S / kappa dk_z``: eq. (23), without T / kappa.
+        return np.asarray((self.load_weights * (4 if self.parity else 2))[:, None] * core.T)
 
     def face_factor(self, kappa: ComplexArray | FloatArray) -> ComplexArray:
         """Factor ``T``: load on the top per normal stress removed from the ends."""
@@ -166,8 +146,6 @@ def axial_modes(length: float, lateral: float, shortest: float, resolution: Reso
 
 def slab_factors(kappa: ComplexArray | FloatArray, length: float, parity: int) -> tuple[ComplexArray, ComplexArray]:
     """Factors ``T`` and ``tau`` of a slab; 1 and 0 for a half-space."""
-    # With ``t = kappa length / 2``: even parity ``T = 2 sinh(t)**2 / (sinh(2t) + 2t)``, ``tau = t (coth(t) - 1)``; odd
-    # parity ``T = 2 cosh(t)**2 / (sinh(2t) - 2t)``, ``tau = t (tanh(t) - 1)``.
     if not parity:
         return np.ones(kappa.shape, np.complex128), np.zeros(kappa.shape, np.complex128)
     doubled = np.asarray(kappa * length, dtype=np.complex128)
@@ -200,6 +178,7 @@ class SingleMirrorModes(AxialModes):
         """Weighted spectrum of the load of V1 and V2 on 0 .. L and of its two images: array (wavenumber, depth)."""
         length, k = self.length, self.ray[:, None]
         kappa = np.sqrt(depth**2 + lateral**2)
+        # V's load on the top: K(x) = exp(-kappa x) (a - b kappa x).
         b = (depth / kappa) ** 2
         a = b + 2 * poisson * (lateral / kappa) ** 2
         across, decay = np.exp(1j * k * length), np.exp(-kappa * length)

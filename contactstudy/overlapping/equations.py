@@ -1,18 +1,10 @@
 """The equation set of the overlapping, for one wavenumber along y: face loads from top loads.
 
-With the weighted spectra of axial.py, ``D = k_x**2 + k_y**2 + k_z**2`` and the coupling core
-
-    M(k_x, k_z) = k_x**2 k_z**2 / D**2 + nu k_y**2 / D
-
-a top load ``P`` has on the ends, in H, the normal stress ``-(4/pi) M / k`` per unit (cosine transform along z), and
-a face load ``S`` has on the top, in V, ``4 M T / kappa`` per unit (cosine coefficients along x), where
-``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` is the factor of the slab (axial.py). The ends are
-free when
-
-    S = (4/pi) sum (M / k) (P + R),    R = int (4 M T / kappa) S dk_z,
-
-a linear system for ``S`` at the depth nodes whose matrix is symmetric after scaling (reciprocity). It is the equation
-set of Hetenyi's and Keer's alternating scheme, solved at once.
+With the coupling core ``M``, eq. (17), a top load ``P`` has on the ends, in H, the normal stress ``-(4/pi) M / k`` per
+unit (cosine transform along z), and a face load ``S`` has on the top, in V, ``4 M T / kappa`` per unit (cosine
+coefficients along x), where ``k**2 = k_x**2 + k_y**2``, ``kappa**2 = k_y**2 + k_z**2`` and ``T`` is the factor of the
+slab (axial.py). The ends are free when ``S`` solves eqs. (26) and (26a), a linear system at the depth nodes whose
+matrix is symmetric after scaling, eq. (27): Hetenyi's and Keer's alternating scheme, solved at once.
 """
 
 from __future__ import annotations
@@ -27,68 +19,42 @@ from scipy import linalg
 from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes
-from contactstudy.overlapping.quadrature import (
-    Resolution,
-    ray_nodes,
-    scale_nodes,
-)
-
-
-def inverse_square(axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float) -> ComplexArray:
-    """``1 / D``, which all couplings share: array (depth, axial)."""
-    return np.asarray(1.0 / ((axial * axial + lateral**2)[None, :] + (depth * depth)[:, None]))
+from contactstudy.overlapping.quadrature import Resolution, ray_nodes, scale_nodes
 
 
 def coupling_core(
-    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+    axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
-    """Core ``M(k_x, k_z)``, from ``1 / D``: array (depth, axial)."""
-    core = (depth * depth)[:, None] * inverse  # eq. (17)
+    """Core ``M(k_x, k_z)``: array (depth, axial)."""
+    depth2 = (depth * depth)[:, None]
+    inverse = 1.0 / ((axial * axial + lateral**2)[None, :] + depth2)
+    core = depth2 * inverse  # eq. (17)
     core *= axial * axial
     core += poisson * lateral**2
     core *= inverse
-    return core
+    return np.asarray(core)
 
 
-def normal_on_end(
-    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
+def load_on_end(
+    load: Load, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
 ) -> ComplexArray:
-    """Face load that frees the end from a unit top pressure, from ``1 / D``: array (depth, axial)."""
-    k = np.sqrt(axial * axial + lateral**2)
-    # eq. (16), from the transforms of eq. (15)
-    return np.asarray(coupling_core(inverse, axial, depth, lateral, poisson) * (4 / np.pi / k))
-
-
-def lateral_on_end(
-    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
-) -> ComplexArray:
-    """Face load that frees the end from a unit top traction along y, without its factor i: array (depth, axial)."""
+    """Face load that frees the end from a unit load on the top: array (depth, axial)."""
+    # Tractions: along y without its factor i, along x as a sine series. A traction along x makes
+    # ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end (along y with x and y exchanged),
+    # with the cosine transform along z of opposite sign.
+    if load is Load.NORMAL:
+        k = np.sqrt(axial * axial + lateral**2)
+        # eq. (16), from the transforms of eq. (15)
+        return np.asarray(coupling_core(axial, depth, lateral, poisson) * (4 / np.pi / k))
     axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
     k2 = axial2 + lateral**2
-    # eq. (18)
-    bracket = 2 * poisson * lateral**2 - axial2 * (k2 - depth2) * inverse
+    inverse = 1.0 / (k2 + depth2)
+    along_y = load is Load.ALONG_Y
+    constant = 2 * poisson * lateral**2 if along_y else 2 * (k2 + poisson * lateral**2)  # eqs. (18) and (29a)
+    bracket = constant - axial2 * (k2 - depth2) * inverse
     bracket *= inverse
-    bracket *= -(2 / np.pi) * lateral / k2
+    bracket *= -(2 / np.pi) * (lateral if along_y else axial) / k2
     return np.asarray(bracket)
-
-
-def axial_on_end(
-    inverse: ComplexArray, axial: ComplexArray, depth: ComplexArray | FloatArray, lateral: float, poisson: float
-) -> ComplexArray:
-    """Face load that frees the end from a unit top traction along x, a sine series: array (depth, axial)."""
-    # The traction makes ``(k_x / k) [2 + 2 nu k_y**2 / k**2 - (k_x / k)**2 k z] exp(-k z)`` on the end
-    # (`lateral_on_end` with x and y exchanged), with the cosine transform along z of opposite sign.
-    axial2, depth2 = (axial * axial)[None, :], (depth * depth)[:, None]
-    k2 = axial2 + lateral**2
-    # eq. (29a)
-    bracket = 2 * (k2 + poisson * lateral**2) - axial2 * (k2 - depth2) * inverse
-    bracket *= inverse
-    bracket *= -(2 / np.pi) * axial / k2
-    return np.asarray(bracket)
-
-
-ON_END = {Load.NORMAL: normal_on_end, Load.ALONG_X: axial_on_end, Load.ALONG_Y: lateral_on_end}
-"""Face load that frees the end from a unit load on the top, by its direction."""
 
 
 def real_product(first: ComplexArray, second: ComplexArray) -> FloatArray:
@@ -130,9 +96,7 @@ class Factorisation:
 class AuxiliaryLoads(NamedTuple):
     """Loads on the auxiliary bodies, for one wavenumber along y."""
 
-    equivalent: ComplexArray
-    """(wavenumber, column): weighted spectrum, before `AxialModes.cosine`, of the load that is added on the top of
-    H."""
+    equivalent: ComplexArray  # (wavenumber, column): weighted spectrum, before `cosine`, of the load added on H's top
     depth: ComplexArray  # depth wavenumbers on their ray, where the face loads are an analytic function
     face_load: ComplexArray  # (depth, column): normal stress freed on the faces of V, times the quadrature's weights
 
@@ -161,7 +125,7 @@ class EquationSet:
         kappa = np.sqrt(depth**2 + lateral**2)
         scale = np.real(modes.face_factor(kappa)) * weights / kappa
         axial = modes.wavenumbers
-        core = coupling_core(inverse_square(axial, depth, lateral), axial, depth, lateral, poisson)
+        core = coupling_core(axial, depth, lateral, poisson)
         k = np.sqrt(axial**2 + lateral**2)
         top = modes.load_on_top(core, depth, lateral, poisson)
         end = core * (4 / np.pi / k * modes.on_end)
@@ -190,10 +154,9 @@ class EquationSet:
         """Face loads that free the ends from unit modes of a top load in H alone: array (depth, wavenumber)."""
         # The matrix of a traction along y lacks its factor i; the modes of a traction along x are sines.
         axial = self.modes.wavenumbers
-        if load is Load.NORMAL:  # as normal_on_end, from the stored core
+        if load is Load.NORMAL:  # as load_on_end, from the stored core
             return self.core * (4 / np.pi / np.sqrt(axial**2 + self.lateral**2))
-        inverse = inverse_square(axial, self.depth, self.lateral)
-        return ON_END[load](inverse, axial, self.depth, self.lateral, self.poisson)
+        return load_on_end(load, axial, self.depth, self.lateral, self.poisson)
 
     def source(self, load: Load, spectrum: ComplexArray) -> FloatArray:
         """Face loads that free the ends from a top load of weighted `spectrum` (wavenumber, ...) in H alone."""
@@ -230,8 +193,5 @@ class EquationSet:
         """Face loads at complex `depth` wavenumbers from modes and from their conjugate: arrays (depth, wavenumber)."""
         # Half the sum over both half-planes: at complex depth the second is not the first's conjugate.
         axial = self.modes.wavenumbers
-        upper, lower = (
-            0.5 * ON_END[load](inverse_square(k, depth, self.lateral), k, depth, self.lateral, self.poisson)
-            for k in (axial, axial.conj())
-        )
+        upper, lower = (0.5 * load_on_end(load, k, depth, self.lateral, self.poisson) for k in (axial, axial.conj()))
         return upper, lower

@@ -40,6 +40,7 @@ class Harmonics:
     even_in_y: list[int]  # components that under a pressure even in y are even or odd
     odd_in_y: list[int]
     odd_along_x: list[int]  # components that change sign from one end to the other
+    grows_under: tuple[int, ...]  # signs of mirror images with which the field between two ends grows far along y
 
     @property
     def count(self) -> int:
@@ -112,11 +113,9 @@ class _Folded:
         """Copy or add a sum to a result at the same positions, beyond mid-length with the `signs` of its components."""
         beyond = np.where(signs == 0, 1, signs)[:, None, None]
         for row, (number, far) in enumerate(zip(self.where.tolist(), self.beyond.tolist(), strict=True)):
-            values = field[:, :, number]
+            values = beyond * field[:, :, number] if far else field[:, :, number]
             if added:
-                result[:, :, row] += beyond * values if far else values
-            elif far:
-                np.multiply(beyond, values, out=result[:, :, row])
+                result[:, :, row] += values
             else:
                 result[:, :, row] = values
 
@@ -145,48 +144,40 @@ class _Folded:
         return np.asarray(self.interpolation @ spread)
 
 
-@dataclass(frozen=True, eq=False)
-class _Task:
-    """Problem, harmonics and positions of a field."""
-
-    problem: EndProblem
-    harmonics: Harmonics
-    places: list[_Folded]
-    reference: float | None
-
-    @property
-    def y(self) -> FloatArray:
-        """Positions along y of all tensor products, one after another."""
-        return np.concatenate([points.y for points in self.places])
-
-
 def end_fields(
-    problem: EndProblem, harmonics: Harmonics, places: Sequence[Points], *, reference: float | None = None
+    problem: EndProblem, harmonics: Harmonics, places: Sequence[Points], reference: float = np.inf
 ) -> list[dict[Load, FloatArray]]:
-    """Field of the free ends beside the half-space with all mirrored loads: array (component, x, y, z)."""
+    """Field of the free ends beside the half-space with all mirrored loads: arrays (component, x, y, z)."""
+    # A field that grows with distance is relative to ``|y| = reference`` if that is finite.
     fields: list[dict[Load, FloatArray]] = [{} for _ in places]
     with one_blas_thread():
         for alike in problem.alike():
             folded = [_Folded.of(alike, points) for points in places]
-            cells = alike.columns[1]
+            cells = alike.cells[alike.cell_of_column]
             parts = {0: cells} if np.isinf(alike.length) else parity_parts(cells, alike.sign_x)
-            sums = _sum_over_wavenumbers(_Task(alike, harmonics, folded, reference), parts)
+            sums = _sum_over_wavenumbers(alike, harmonics, folded, reference, parts)
             for by_load, points, parities in zip(fields, folded, sums, strict=True):
                 by_load |= dict(zip(alike.loads, points.unfolded(parities, harmonics.odd_along_x), strict=True))
     return fields
 
 
-def _sum_over_wavenumbers(task: _Task, parts: Mapping[int, FloatArray]) -> list[dict[int, FloatArray]]:
+def _sum_over_wavenumbers(
+    problem: EndProblem,
+    harmonics: Harmonics,
+    places: list[_Folded],
+    reference: float,
+    parts: Mapping[int, FloatArray],
+) -> list[dict[int, FloatArray]]:
     """Field (load, component, x, z, y) by parity: the integral over the wavenumber along y."""
-    problem, harmonics, places = task.problem, task.harmonics, task.places
     counts = (len(problem.loads), harmonics.count)
     result = [
         {parity: np.zeros((*counts, points.x.size, points.z.size, points.y.size)) for parity in parts}
         for points in places
     ]
     ends = np.cumsum([points.y.size for points in places])
+    y = np.concatenate([points.y for points in places])
     for _, columns, indices, amplitudes in _panel_amplitudes(
-        task, lambda panel: lateral_columns(panel, parts, problem.grid, task.y)
+        problem, harmonics, places, reference, lambda panel: lateral_columns(panel, parts, problem.grid, y)
     ):
         for parity in parts:
             for i, load in enumerate(problem.loads):
@@ -214,14 +205,19 @@ class _PanelAmplitudes(NamedTuple):
 
 
 def _panel_amplitudes(
-    task: _Task, columns_of: Callable[[LateralPanel], LateralColumns | None]
+    problem: EndProblem,
+    harmonics: Harmonics,
+    places: list[_Folded],
+    reference: float,
+    columns_of: Callable[[LateralPanel], LateralColumns | None],
 ) -> Iterator[_PanelAmplitudes]:
     """Amplitudes of the columns of each panel."""
-    problem, places = task.problem, task.places
     distances = [points.distance for points in places]
     nearest = min(float(distance.min()) for distance in distances)
     shortest = problem.smallest_scale(nearest)
-    for panel in problem.panels(task.y, shortest, task.reference):
+    grows = np.isfinite(reference) and problem.sign_x in harmonics.grows_under
+    y = np.concatenate([points.y for points in places])
+    for panel in problem.panels(y, shortest, reference if grows else None):
         if panel.nodes[0] * nearest >= DECAY_LENGTHS:
             break
         columns = columns_of(panel)
@@ -235,7 +231,7 @@ def _panel_amplitudes(
         if not any(rows.size for rows, _ in indices):
             break
         axes = [(points.x[rows], points.z[depths]) for points, (rows, depths) in zip(places, indices, strict=True)]
-        amplitudes = _amplitudes(problem, task.harmonics, axes, columns, shortest)
+        amplitudes = _amplitudes(problem, harmonics, axes, columns, shortest)
         yield _PanelAmplitudes(panel, columns, indices, amplitudes)
 
 
@@ -248,23 +244,19 @@ class UnitFields(NamedTuple):
     filters: FloatArray  # (component, node, cell_y, y): from a load along y to the part of each node at the positions y
 
 
-def unit_fields(
-    problem: EndProblem, harmonics: Harmonics, points: Points, *, reference: float | None = None
-) -> Iterator[UnitFields]:
+def unit_fields(problem: EndProblem, harmonics: Harmonics, points: Points, reference: float) -> Iterator[UnitFields]:
     """Yield the field of the free ends under unit loads in the direction of a problem, panel by panel."""
     (load,) = problem.loads
-    task = _Task(problem, harmonics, [_Folded.of(problem, points)], reference)
+    folded = _Folded.of(problem, points)
     cells = np.eye(problem.grid.cells_x)[problem.cell_of_column]
-    signs = (0,) if np.isinf(problem.length) else (1, -1)
-    parts = [0.5 * (cells + problem.sign_x * parity * cells[::-1]) if parity else cells for parity in signs]
-    parities = np.repeat(signs, problem.grid.cells_x)
-    (folded,) = task.places
+    parts = {0: cells} if np.isinf(problem.length) else parity_parts(cells, problem.sign_x)
+    parities, unit_loads = np.repeat(list(parts), problem.grid.cells_x), np.concatenate(list(parts.values()), axis=1)
     for panel, _, ((rows, depths),), (near_points,) in _panel_amplitudes(
-        task, lambda panel: LateralColumns.unit(panel, np.concatenate(parts, axis=1), parities)
+        problem, harmonics, [folded], reference, lambda panel: LateralColumns.unit(panel, unit_loads, parities)
     ):
         shape = (1, harmonics.count, folded.x.size, folded.z.size, panel.nodes.size, problem.grid.cells_x)
         fields = {}
-        for parity in signs:
+        for parity in parts:
             field = np.zeros(shape)
             field[(slice(None), slice(None), *_block(rows, depths))] = near_points[..., parities == parity]
             fields[parity] = field.reshape(*shape[:4], -1)
@@ -301,8 +293,10 @@ def _amplitudes(
     for view in make_views(problem, columns, np.concatenate([x for x, _ in points]), shortest):
         view_rows = [np.flatnonzero((view.rows >= low) & (view.rows < high)) for low, high in pairwise(starts)]
         together = view.x.size * depths.size <= JOINT_POINTS
-        for number, lateral in enumerate(columns.nodes):
-            system, loads = problem.auxiliary_loads(view, float(lateral), number, shortest)
+        for number, lateral in enumerate(columns.nodes.tolist()):
+            system = problem.equation_set(view.modes, lateral, shortest)
+            spectrum = view.spectra[:, number if view.spectra.shape[1] > 1 else 0]
+            loads = system.auxiliary_loads(spectrum, problem.loads, shortest=shortest, resolution=problem.resolution)
             fields = _evaluate(harmonics, system, loads, view, slice(None), z=depths) if together else None
             for amplitude, (_, z), start, stop, selected in zip(
                 amplitudes, points, starts, stops, view_rows, strict=False

@@ -2,29 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from contactstudy.arrays.points import Points
 from contactstudy.checks import ComplexArray, FloatArray
-from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet, real_product
-from contactstudy.overlapping.field import Harmonics, end_fields
-from contactstudy.overlapping.problem import EndProblem
-
-
-def end_stress(
-    problem: EndProblem, places: Sequence[Points], reference: float = np.inf
-) -> list[dict[Load, FloatArray]]:
-    """Stresses of the free ends beside the half-space with all mirrored loads: array (6, x, y, z)."""
-    fields: list[dict[Load, FloatArray]] = [{} for _ in places]
-    for alike in problem.alike():
-        grows = alike.sign_x < 0 and np.isfinite(reference)
-        parts = end_fields(alike, STRESS, places, reference=reference if grows else None)
-        for by_load, part in zip(fields, parts, strict=True):
-            by_load |= part
-    return fields
+from contactstudy.overlapping.field import Harmonics
 
 
 def _stress_of_equivalent_load(
@@ -62,10 +44,7 @@ def _stress_of_face_load(
     # distance from the end and ``Phi = 1 - 2 nu - tau - X`` each adds its amplitude and ``exp(-X)`` times the terms
     # below.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa = np.sqrt(depth**2 + lateral**2)
-    amplitude, tau = modes.face_amplitude(kappa)
-    waves = np.exp(1j * np.outer(depth, z))
-    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    kappa, tau, right = _face_waves(system, depth, face_load, z)
     # Sums over both ends of exp(-X), and of (tau + X) exp(-X) for even and odd components.
     decay, ramp = _from_end(x, kappa, tau)
     alike = reversed_ = ramp
@@ -91,6 +70,16 @@ def _stress_of_face_load(
     return result
 
 
+def _face_waves(
+    system: EquationSet, depth: ComplexArray, face_load: ComplexArray, z: FloatArray
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """``kappa`` and ``tau`` of depth wavenumbers, and the waves (depth, z, column) of V from either face."""
+    kappa = np.sqrt(depth**2 + system.lateral**2)
+    amplitude, tau = system.modes.face_amplitude(kappa)
+    waves = np.exp(1j * np.outer(depth, z))
+    return kappa, tau, waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+
+
 def _from_end(distance: FloatArray, kappa: ComplexArray, tau: ComplexArray) -> tuple[ComplexArray, ComplexArray]:
     """Return ``exp(-X)`` and ``(tau + X) exp(-X)`` at distances from an end: arrays (distance, depth)."""
     scaled = np.outer(distance, kappa)
@@ -106,13 +95,8 @@ STRESS = Harmonics(  # components xx, yy, zz, xy, xz, yz
     even_in_y=[0, 1, 2, 4],
     odd_in_y=[3, 5],
     odd_along_x=[3, 4],
+    grows_under=(-1,),  # bending
 )
-
-
-def end_displacement(problem: EndProblem, points: Points, *, reference: float) -> dict[Load, FloatArray]:
-    """Displacements (3, x, y, z), times ``2 G``, of the free ends beside the half-space with all mirrored loads."""
-    (field,) = end_fields(problem, DISPLACEMENT, [points], reference=reference if np.isfinite(reference) else None)
-    return field
 
 
 def _displacement_of_equivalent_load(
@@ -143,10 +127,7 @@ def _displacement_of_face_load(
     """``2 G u`` of V under the face loads on its two ends: array (3, x, z, column)."""
     # With the potential ``psi = -exp(-X) / kappa`` of either end: ``2 G u = -grad(Phi) + 4 (1 - nu) psi e_x``.
     nu, lateral, modes = system.poisson, system.lateral, system.modes
-    kappa = np.sqrt(depth**2 + lateral**2)
-    amplitude, tau = modes.face_amplitude(kappa)
-    waves = np.exp(1j * np.outer(depth, z))
-    right = waves[..., None] * (amplitude[:, None] * face_load)[:, None, :]
+    kappa, tau, right = _face_waves(system, depth, face_load, z)
     along_x: ComplexArray = np.zeros((3, x.size, depth.size), np.complex128)
     ends = [(x, 1, 1)]
     if modes.parity:
@@ -161,10 +142,11 @@ def _displacement_of_face_load(
     return np.concatenate([real_product(along_x[:2], right), real_product(-1j * along_x[2:], right)])
 
 
-DISPLACEMENT = Harmonics(  # components along x, y, z
+DISPLACEMENT = Harmonics(  # components along x, y, z, times ``2 G``
     of_equivalent_load=_displacement_of_equivalent_load,
     of_face_load=_displacement_of_face_load,
     even_in_y=[0, 2],
     odd_in_y=[1],
     odd_along_x=[0],
+    grows_under=(1, -1),
 )

@@ -16,9 +16,10 @@ from itertools import pairwise
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.peaks import lagrange
 from contactstudy.checks import FloatArray, IntArray
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.quadrature import Resolution, lagrange, panel_nodes
+from contactstudy.overlapping.quadrature import Resolution, panel_nodes
 
 NEGLIGIBLE = 1e-11  # neglected part of a load: rounding of narrow columns. Fields of loads add up to this accuracy.
 

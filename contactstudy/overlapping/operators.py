@@ -18,6 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.sparse.linalg import LinearOperator
 
+from contactstudy.arrays.points import Points
 from contactstudy.checks import FloatArray
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.equations import EquationSet
@@ -26,23 +27,13 @@ from contactstudy.overlapping.problem import EndProblem, View, make_views
 from contactstudy.threads import one_blas_thread
 
 
-class Positions(NamedTuple):
-    """Positions of equivalent loads, metres: `x` and `y` on the top, `y` and depths `z` on the ends."""
-
-    x: FloatArray
-    y: FloatArray
-    z: FloatArray
-
-
 @dataclass(frozen=True, eq=False)
 class Band:
     """One equation set."""
 
     system: EquationSet  # equation set at the node
     view: View  # unit loads on the cells along x, and the positions, in the axial modes
-    filters: dict[int, FloatArray]
-    """(cell_y, y): from a load along y to the part of the node at positions y, for loads even (1) or odd (-1) along
-    y."""
+    filters: dict[int, FloatArray]  # (cell_y, y): from loads even (1) or odd (-1) along y to the part of the node at y
 
 
 def paired(columns: Any) -> FloatArray:
@@ -58,7 +49,7 @@ def real_part(rows: Any) -> FloatArray:
 class BandOperator(LinearOperator):  # type: ignore[misc]
     """Block diagonal operator: per band a real matrix (row, column) times an array (column, y) of `count` positions."""
 
-    def __init__(self, matrices: Sequence[FloatArray], count: int) -> None:
+    def __init__(self, matrices: Sequence[Any], count: int) -> None:
         self.matrices, self.count = matrices, count
         super().__init__(np.float64, tuple(count * sum(matrix.shape[axis] for matrix in matrices) for axis in (0, 1)))
 
@@ -71,72 +62,55 @@ class BandOperator(LinearOperator):  # type: ignore[misc]
         return np.concatenate([(matrix.T @ part).ravel() for matrix, part in zip(self.matrices, parts, strict=True)])
 
 
-class SolutionOperator(LinearOperator):  # type: ignore[misc]
-    """Solution of the equation sets of all bands for the faces, from the stress of the loads alone on the ends."""
+def solution_matrix(system: EquationSet) -> LinearOperator:
+    """Matrix of the solution of an equation set for the faces, from the stress of the load alone on the ends."""
+    scale = system.scale[:, None]
 
-    def __init__(self, systems: Sequence[EquationSet], count: int) -> None:
-        self.systems, self.count = systems, count
-        size = count * sum(system.depth.size for system in systems)
-        super().__init__(np.float64, (size, size))
+    def solve(source: FloatArray) -> FloatArray:
+        return system.solve(source) / scale  # eq. (27)
 
-    def _solution(self, vector: FloatArray, *, transposed: bool) -> FloatArray:
-        solutions = []
-        parts = _split(vector, [system.depth.size for system in self.systems], self.count)
-        for system, part in zip(self.systems, parts, strict=True):
-            scale = system.scale[:, None]
-            if transposed:
-                solutions.append(system.factorisation.solve_transposed(part / scale).ravel())
-            else:
-                solutions.append((system.solve(part) / scale).ravel())  # eq. (27)
-        return np.concatenate(solutions)
+    def solve_transposed(faces: FloatArray) -> FloatArray:
+        return system.factorisation.solve_transposed(faces / scale)
 
-    def _matvec(self, vector: FloatArray) -> FloatArray:
-        return self._solution(vector, transposed=False)
-
-    def _rmatvec(self, vector: FloatArray) -> FloatArray:
-        return self._solution(vector, transposed=True)
+    return LinearOperator(
+        (scale.size, scale.size),
+        matvec=solve,
+        rmatvec=solve_transposed,
+        matmat=solve,
+        rmatmat=solve_transposed,
+        dtype=np.float64,
+    )
 
 
-class PositionOperator(LinearOperator):  # type: ignore[misc]
-    """Values at (position, y), or (y, position): the sum over the bands of a real matrix times an array (row, y)."""
+class SumOperator(LinearOperator):  # type: ignore[misc]
+    """Values (position, y): the sum over the bands of a real matrix times an array (row, y), with filters along y."""
 
-    def __init__(self, matrices: Sequence[FloatArray], count: int, *, y_first: bool = False) -> None:
+    def __init__(
+        self,
+        matrices: Sequence[FloatArray],
+        count: int,
+        *,
+        filters: Sequence[FloatArray] | None = None,
+        y_first: bool = False,
+    ) -> None:
+        # Without filters the values have the positions y of the arrays; with `y_first` they are (y, position).
         self.matrices, self.count, self._y_first = matrices, count, y_first
+        self.filters = [None] * len(matrices) if filters is None else filters
+        self._values_y = count if filters is None else filters[0].shape[1]
         columns = sum(matrix.shape[1] for matrix in matrices)
-        super().__init__(np.float64, (count * matrices[0].shape[0], count * columns))
+        super().__init__(np.float64, (self._values_y * matrices[0].shape[0], count * columns))
 
     def _matvec(self, vector: FloatArray) -> FloatArray:
         parts = _split(vector, [matrix.shape[1] for matrix in self.matrices], self.count)
-        total = np.zeros((self.matrices[0].shape[0], self.count))
-        for matrix, part in zip(self.matrices, parts, strict=True):
-            total += matrix @ part
+        total = np.zeros((self.matrices[0].shape[0], self._values_y))
+        for matrix, lateral, part in zip(self.matrices, self.filters, parts, strict=True):
+            total += matrix @ part if lateral is None else (matrix @ part) @ lateral
         return np.asarray((total.T if self._y_first else total).ravel())
 
     def _rmatvec(self, vector: FloatArray) -> FloatArray:
-        total = vector.reshape(self.count, -1).T if self._y_first else vector.reshape(-1, self.count)
-        return np.concatenate([(matrix.T @ total).ravel() for matrix in self.matrices])
-
-
-class SpectrumOperator(LinearOperator):  # type: ignore[misc]
-    """Modes of a load on the cells: per band a real matrix (row, cell_x) and a filter (cell_y, y)."""
-
-    def __init__(self, matrices: Sequence[FloatArray], filters: Sequence[FloatArray]) -> None:
-        self.matrices, self.filters = matrices, filters
-        cells_y, count = filters[0].shape
-        rows = sum(matrix.shape[0] for matrix in matrices)
-        super().__init__(np.float64, (count * rows, matrices[0].shape[1] * cells_y))
-
-    def _matvec(self, vector: FloatArray) -> FloatArray:
-        cells = vector.reshape(self.matrices[0].shape[1], -1)
-        pairs = zip(self.matrices, self.filters, strict=True)
-        return np.concatenate([(matrix @ (cells @ lateral)).ravel() for matrix, lateral in pairs])
-
-    def _rmatvec(self, vector: FloatArray) -> FloatArray:
-        total = np.zeros((self.matrices[0].shape[1], self.filters[0].shape[0]))
-        parts = _split(vector, [matrix.shape[0] for matrix in self.matrices], self.filters[0].shape[1])
-        for matrix, lateral, part in zip(self.matrices, self.filters, parts, strict=True):
-            total += (matrix.T @ part) @ lateral.T
-        return total.ravel()
+        total = vector.reshape(self._values_y, -1).T if self._y_first else vector.reshape(-1, self._values_y)
+        filtered = (total if lateral is None else total @ lateral.T for lateral in self.filters)
+        return np.concatenate([(matrix.T @ part).ravel() for matrix, part in zip(self.matrices, filtered, strict=True)])
 
 
 def _split(vector: FloatArray, rows: Sequence[int], count: int) -> list[FloatArray]:
@@ -160,11 +134,11 @@ class OverlappingOperators:
     # tilt H and V against each other are relative to a reference.
 
     problem: EndProblem  # body, directions of the loads, grid and quadratures; the load of the problem does not matter
-    positions: Positions  # positions of the equivalent loads
+    positions: Points  # positions of the equivalent loads: `x` and `y` on the top, `y` and depths `z` on the ends
     bands: list[Band]  # the equation sets
 
     @classmethod
-    def of(cls, problem: EndProblem, positions: Positions, *, reference: float | None) -> OverlappingOperators:
+    def of(cls, problem: EndProblem, positions: Points, *, reference: float | None) -> OverlappingOperators:
         """Operators of a problem; `reference` is the distance along y at which loads without stress are zero."""
         offset, length = problem.corner_offset, problem.length
         x, y, z = positions
@@ -182,21 +156,23 @@ class OverlappingOperators:
                     for number, lateral in enumerate(panel.nodes.tolist()):
                         system = problem.equation_set(view.modes, lateral, shortest)
                         bands.append(Band(system, view, {1: even[number], -1: odd[number]}))
-        return cls(problem, Positions(x, y, z), bands)
+        return cls(problem, Points(x, y, z), bands)
 
     @cached_property
     def _shortest(self) -> float:
         return float(min(self.problem.from_end(self.positions.x).min(), self.positions.z.min()))
 
-    def _band_operator(self, matrix: Callable[[Band], FloatArray]) -> BandOperator:
+    def _band_operator(self, matrix: Callable[[Band], Any]) -> BandOperator:
         return BandOperator([matrix(band) for band in self.bands], self.positions.y.size)
 
     def modes(self, load: Load) -> LinearOperator:
         """Return the operator from a load on the cells to modes, eqs. (6) and (7)."""
         matrices = {id(view): paired(view.spectra[:, 0]) for view in {id(b.view): b.view for b in self.bands}.values()}
-        return SpectrumOperator(
-            [matrices[id(band.view)] for band in self.bands], [band.filters[load.sign_y] for band in self.bands]
-        )
+        return SumOperator(
+            [matrices[id(band.view)].T for band in self.bands],
+            self.positions.y.size,
+            filters=[band.filters[load.sign_y].T for band in self.bands],
+        ).T
 
     def to_faces(self, load: Load) -> LinearOperator:
         """Return the operator from modes of a load on H to the normal stress that it leaves on the ends, reversed."""
@@ -213,7 +189,7 @@ class OverlappingOperators:
     @cached_property
     def solution(self) -> LinearOperator:
         """Operator from the stress of the loads alone on the ends to the faces: the sum of all rounds of iteration."""
-        return SolutionOperator([band.system for band in self.bands], self.positions.y.size)
+        return self._band_operator(lambda band: solution_matrix(band.system))
 
     @cached_property
     def top_values(self) -> LinearOperator:
@@ -224,12 +200,12 @@ class OverlappingOperators:
             values[band.view.rows] = np.real(band.view.cosine.T @ band.system.top) * band.system.scale
             return values
 
-        return PositionOperator([matrix(band) for band in self.bands], self.positions.y.size)
+        return SumOperator([matrix(band) for band in self.bands], self.positions.y.size)
 
     def face_values(self, load: Load, end: int) -> LinearOperator:
         """Return the operator from modes of a load to the equivalent load on the face of end I (0) or II, (y, z)."""
         matrices = [self._face_matrix(band, load, end) for band in self.bands]
-        return PositionOperator(matrices, self.positions.y.size, y_first=True)
+        return SumOperator(matrices, self.positions.y.size, y_first=True)
 
     def _face_matrix(self, band: Band, load: Load, end: int) -> FloatArray:
         """Matrix from the modes of a band to the equivalent load on one face at the depths."""

@@ -14,7 +14,7 @@ from contactstudy.checks import ComplexArray, FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
 from contactstudy.overlapping.axial import AxialModes, modes_between_ends
-from contactstudy.overlapping.equations import AuxiliaryLoads, EquationSet
+from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.lateral import (
     ALONE,
     BENDING_POLES,
@@ -69,11 +69,6 @@ class EndProblem:
             )
 
     @cached_property
-    def columns(self) -> tuple[FloatArray, FloatArray]:
-        """Edges along x, metres, and the load between them; symmetric about mid-length where there are two ends."""
-        return self.column_edges, self.cells[self.cell_of_column]
-
-    @cached_property
     def column_edges(self) -> FloatArray:
         """Edges of the columns, metres: those of the cells and, between two ends, their mirror images."""
         edges = self.grid.x_edges
@@ -103,10 +98,6 @@ class EndProblem:
             if loads:
                 yield replace(self, loads=loads, resolution=self.resolution.for_loads(loads))
 
-    def axial_modes(self, lateral: float, shortest: float) -> list[AxialModes]:
-        """Axial modes for wavenumbers along y from `lateral` on (`modes_between_ends`)."""
-        return modes_between_ends(self.length, lateral, shortest, self.resolution, mirrored_once=self.mirrored_once)
-
     @property
     def corner_offset(self) -> float:
         """Distance from the corner below which nothing is evaluated, metres."""
@@ -120,7 +111,7 @@ class EndProblem:
     def smallest_scale(self, nearest: float) -> float:
         """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
         # The field of a load near a corner depends on its steps there, at distant positions as well.
-        edges, load = self.columns
+        edges, load = self.column_edges, self.cells[self.cell_of_column]
         steps = np.diff(load, axis=0).any(axis=1) if load.any() else np.ones(edges.size - 2, bool)
         inner = edges[1:-1][steps]
         return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
@@ -141,16 +132,8 @@ class EndProblem:
         return lateral_panels(first, reach, last, self.resolution, reference, poles=poles)
 
     def equation_set(self, modes: AxialModes, lateral: float, shortest: float) -> EquationSet:
-        """Equation set of some axial modes at the wavenumber `lateral`; the cache holds it."""
+        """Equation set of some axial modes at the wavenumber `lateral`, cached."""
         return _equation_set(modes, lateral, self.poisson, shortest, self.resolution)
-
-    def auxiliary_loads(
-        self, view: View, lateral: float, number: int, shortest: float
-    ) -> tuple[EquationSet, AuxiliaryLoads]:
-        """Equation set and its solution at wavenumber `lateral`, the `number`-th of the view's."""
-        system = self.equation_set(view.modes, lateral, shortest)
-        spectrum = view.spectra[:, number if view.spectra.shape[1] > 1 else 0]
-        return system, system.auxiliary_loads(spectrum, self.loads, shortest=shortest, resolution=self.resolution)
 
 
 def finest_cell(grid: Grid) -> float:
@@ -188,7 +171,9 @@ def make_views(problem: EndProblem, load: LateralColumns, x: FloatArray, shortes
     length, edges = problem.length, problem.column_edges
     split = bool(load.parities.all())
     views = []
-    for modes in problem.axial_modes(float(load.nodes[0]), shortest):
+    for modes in modes_between_ends(
+        length, float(load.nodes[0]), shortest, problem.resolution, mirrored_once=problem.mirrored_once
+    ):
         columns = np.flatnonzero((load.parities == modes.parity) | (load.parities == 0) | (modes.parity == 0))
         if not columns.size:
             continue

@@ -3,11 +3,7 @@
 Integrands along axial and depth wavenumbers are smooth over their logarithm ``u``: the nearest poles lie at the angle
 `Resolution.angle` from the path. The trapezoidal rule of step h over u has the error ``exp(-2 pi angle / h)``, with
 half the nodes of Gauss's on growing panels (L. N. Trefethen and J. A. C. Weideman, SIAM Review 56 (2014) 385).
-
-
-Displacements of the free ends vary on the scale of the distance from the end. On panels that double away from the end,
-with a few Gauss points each, interpolation is accurate for every grid, and the operator of a long roller costs little
-more than for a short roller.
+Displacements of the free ends vary on the scale of the distance from the end: panels double away from the end.
 """
 
 from __future__ import annotations
@@ -19,6 +15,7 @@ from functools import lru_cache
 import numpy as np
 
 from contactstudy import checks
+from contactstudy.arrays.peaks import lagrange
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.kernels.load import Load
@@ -37,21 +34,6 @@ def panel_nodes(edges: FloatArray, order: int) -> tuple[FloatArray, FloatArray]:
     half = 0.5 * np.diff(edges)[:, None]
     middle = 0.5 * (edges[1:] + edges[:-1])[:, None]
     return (middle + half * nodes).ravel(), (half * weights).ravel()
-
-
-def lagrange(nodes: FloatArray, points: FloatArray) -> FloatArray:
-    """Matrix (point, node) that interpolates from `nodes` to `points` by one polynomial."""
-    matrix = np.empty((points.size, nodes.size))
-    for i, node in enumerate(nodes):
-        poles = np.delete(nodes, i)
-        matrix[:, i] = np.prod((points[:, None] - poles) / (node - poles), axis=1)
-    return matrix
-
-
-def growing_edges(first: float, last: float, ratio: float = 2.0) -> FloatArray:
-    """Panel edges ``0, first, ratio first, ratio**2 first, ...`` up to at least `last`."""
-    panels = max(1, int(np.ceil(np.log(last / first) / np.log(ratio))) + 1)
-    return np.concatenate([[0.0], first * ratio ** np.arange(panels)])
 
 
 AXIAL_STEP, AXIAL_REACH = 0.16, 1000.0
@@ -149,7 +131,7 @@ POSITIONS_PER_PANEL = 8  # Gauss positions per panel along x. Accuracy.
 def graded_positions(reach: float, finest: float, order: int) -> tuple[FloatArray, FloatArray]:
     """Edges of panels from 0 to `reach` that double from `finest`, and `order` Gauss positions in each."""
     panels = max(1, int(np.ceil(np.log2(reach / finest) - 1e-9)))
-    edges = growing_edges(reach / 2.0**panels, reach)[: panels + 2]
+    edges = np.append(0.0, reach / 2.0**panels * 2.0 ** np.arange(panels + 1))
     return edges, panel_nodes(edges, order)[0]
 
 

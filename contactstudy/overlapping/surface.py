@@ -1,21 +1,11 @@
 """Displacements of the top from the free ends, between positions graded towards the ends.
 
 The normal displacement of the top of V is zero: the body has the displacement of H under ``P_h = p + R``. The part of
-``p`` is the mirrored half-space; the part of ``R`` is, for each wavenumber along y and each parity,
-
-    u(x) = C p,   C(x, x') = c at(x)^T (1 / scale - N)^-1 at(x'),   at(x; k_z) = (4/pi) sum M cosine(x) / k
-
-(equations.py): a symmetric operator, smooth except at the ends. The same holds for all nine pairs of displacements and
-loads. Let the mirrored half-space under load i have the normal stress ``s_i`` on the ends, without shear or
-displacement along x. By reciprocity with the state that removes ``s_j``, the work of load i on the displacement of the
-top from removing ``s_j`` is ``s_i^T G s_j``, with the symmetric compliance G of the ends: the same
-``c (1 / scale - N)^-1``, between the sources of load i and load j.
-
-C is sampled at positions graded towards the ends and transformed along y to the wavenumbers of the zero-padded grid,
-once per body and window. Far along y a finite-length body is a plate in plane stress, so C grows like ``1 / k_y``: the
-displacement is stated relative to the top far away, at ``|y| = reference``. A force along x bends that plate, and the
-displacement along x grows like ``1 / k_y**3``: its curvature is zero there as well.
-
+``p`` is the mirrored half-space; the part of ``R`` follows from the equation set by reciprocity, eqs. (28) to (29b) of
+docs/explanation/theory.md: a symmetric operator, smooth except at the ends. It is sampled at positions graded towards
+the ends and transformed along y to the wavenumbers of the zero-padded grid, once per body and window. Far along y a
+finite-length body is a plate in plane stress, eqs. (30) and (30a): displacements are stated relative to the top far
+away, at ``|y| = reference``; the curvature under a force along x is zero there as well.
 """
 
 from __future__ import annotations
@@ -33,6 +23,7 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.cache import cached
 from contactstudy.checks import ComplexArray, FloatArray
+from contactstudy.kernels.convolution import spectrum_matrices
 from contactstudy.kernels.load import Load, Response
 from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes, modes_between_ends
 from contactstudy.overlapping.equations import EquationSet
@@ -44,9 +35,7 @@ MORE_NODES = 2
 
 STEEPER = 1.25  # angle of the axial ray, and step along it, over those for a field: no ray of depths limits it. Speed.
 
-FINER = 8
-"""Cells along y over the finest resolved distance from an end, if cells along x are narrow at the end.
-Accuracy."""
+FINER = 8  # cells along y over the finest resolved distance from an end, if cells along x are narrow there. Accuracy.
 
 
 class EndRequest(NamedTuple):
@@ -79,7 +68,7 @@ class EndRequest(NamedTuple):
             end_width = min(grid.widths[0], grid.widths[-1]) if np.isfinite(freed.length) else grid.widths[0]
             finest = grid.dy / FINER if end_width <= 2 * grid.dy else grid.dy
         resolution = resolution.for_loads(chain.from_iterable(responses))
-        resolution = replace(
+        finer = replace(
             resolution,
             angle=STEEPER * resolution.angle,
             step=STEEPER * resolution.step,
@@ -94,7 +83,7 @@ class EndRequest(NamedTuple):
             finest=finest,
             responses=responses,
             reference=reference,
-            resolution=resolution,
+            resolution=finer,
         )
 
     @property
@@ -107,12 +96,10 @@ class EndRequest(NamedTuple):
 class EndKernel:
     """The ends' part of the displacement between graded positions."""
 
-    request: EndRequest  # the request
+    request: EndRequest
     edges: FloatArray  # panels along x, from end I to mid-length (or over the span), and Gauss positions in them
     positions: FloatArray
-    samples: Mapping[Response, list[FloatArray]]
-    """(wavenumber, position, position): per parity, displacement at the positions from a load there, without the
-    factor i of kernels odd along y."""
+    samples: Mapping[Response, list[FloatArray]]  # (wavenumber, position, position) per parity, as in `EndCorrection`
 
     def add_to(self, kernel: FloatArray, response: Response, cell_edges: FloatArray) -> None:
         """Add the displacement averaged over cells from forces on cells to an array (wavenumber, cell, cell)."""
@@ -146,19 +133,15 @@ def sum_of_ends(sides: list[FloatArray], sign: int) -> FloatArray:
 class Waves:
     """Positions in axial modes: shared by all wavenumbers along y of these modes."""
 
-    modes: AxialModes  # the modes
+    modes: AxialModes
     positions: FloatArray  # positions within their reach, metres
     by_load: Mapping[Load, ComplexArray]  # (mode, position): weighted spectra of unit loads at the positions
 
     @classmethod
     def of(cls, modes: AxialModes, positions: FloatArray, responses: Sequence[Response]) -> Waves:
         """Waves for all directions of some responses."""
-        within = positions[positions <= modes.reach]
-        directions = dict.fromkeys(
-            chain.from_iterable((response.load, response.displacement) for response in responses)
-        )
-        weights = modes.load_weights[:, None]
-        by_load = {load: weights * modes.wave(load, within) for load in directions}
+        within, weights = positions[positions <= modes.reach], modes.load_weights[:, None]
+        by_load = {load: weights * modes.wave(load, within) for load in dict.fromkeys(chain.from_iterable(responses))}
         return cls(modes, within, by_load)
 
 
@@ -182,13 +165,10 @@ def sampled_kernel(waves: Waves, wavenumber: float, request: EndRequest, shortes
             # Reciprocity up to rounding, which two ends amplify.
             reverse = kernel if displacement is load else sources[load].T @ face_loads[displacement]
             kernel = 0.5 * (kernel + reverse.T)
-        kernels.append(factor * _phase(Response(displacement, load)) * kernel)
+        # Without the factor i of an odd kernel: the conjugate of ``i s`` does the work.
+        sign = -1 if displacement.sign_y < 0 < load.sign_y else 1
+        kernels.append(factor * sign * kernel)
     return kernels
-
-
-def _phase(response: Response) -> int:
-    """Sign of a kernel without its factor i: the conjugate of ``i s`` does the work."""
-    return -1 if response.displacement.sign_y < 0 < response.load.sign_y else 1
 
 
 @cached("end kernels", lambda kernel: kernel.nbytes)
@@ -261,11 +241,9 @@ def _lateral_transforms(
 ) -> Iterator[tuple[LateralPanel, FloatArray, FloatArray]]:
     """Each panel, with matrices (grid wavenumber, sample) for even and odd kernels to the padded grid's transform."""
     offsets: FloatArray = dy * np.arange(cells_y + 1.0)
-    phase = np.pi * np.outer(np.arange(cells_y + 1), np.arange(cells_y + 1)) / cells_y
-    ends = np.full(cells_y + 1, 2.0)
-    ends[0] = ends[-1] = 1.0
-    # An odd kernel -sin(k y) has the transform 2i sum sin sin; with its factor i taken outside, +2 sum sin sin.
-    transforms = np.cos(phase) * ends, np.sin(phase) * np.where(ends == 1.0, 0.0, 2.0)
+    even_matrix, odd_matrix = spectrum_matrices(cells_y)
+    # An odd kernel is -sin(k y).
+    transforms = np.ascontiguousarray(even_matrix.T), np.ascontiguousarray(-odd_matrix.T)
     for panel in panels:
         averaged = dy * np.sinc(panel.fine * dy / (2 * np.pi))
         even, odd = (

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from contactstudy.arrays.peaks import interpolate_about, local_polynomial, peak_width, section_maxima
+from contactstudy.arrays.peaks import interpolate_about, lagrange, local_polynomial, peak_width, section_maxima
 
 
 @given(offset=st.floats(-0.5, 0.5), cells=st.integers(8, 40))
@@ -39,3 +39,8 @@ def test_width_of_a_crest() -> None:
     x = np.linspace(-1.0, 1.0, 201)
     crest = np.sqrt(np.maximum(1 - (x / 0.5) ** 2, 0))[:, None] * np.ones(20)
     assert peak_width(crest, x, 0.1, 100) == pytest.approx(0.5, abs=0.05)
+
+
+def test_interpolation_is_exact_for_polynomials() -> None:
+    nodes, points = np.array([1.0, 1.3, 1.9, 2.2, 2.6, 3.0]), np.linspace(1.0, 3.0, 11)
+    assert lagrange(nodes, points) @ nodes**5 == pytest.approx(points**5, rel=1e-12)

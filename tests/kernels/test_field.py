@@ -11,19 +11,16 @@ from contactstudy.checks import FloatArray
 from contactstudy.kernels import field
 from contactstudy.kernels.convolution import centred_field
 from contactstudy.kernels.field import (
-    STRESS_PARITIES,
     displacement_influence,
     half_space_field,
     half_space_influence,
     stress_influence,
 )
 from contactstudy.kernels.fine_cells import REACH
-from contactstudy.kernels.images import Influence
 from contactstudy.kernels.load import Load
-from contactstudy.kernels.patch import STRESS_CORNERS
 
 EDGES = {"uniform": np.linspace(0.0, 4.0, 41), "graded": np.cumsum([0.0, *np.geomspace(0.04, 0.4, 23)])}
-INFLUENCE = Influence.of(STRESS_CORNERS[Load.NORMAL], 0.3, Load.NORMAL, STRESS_PARITIES)
+INFLUENCE = stress_influence(Load.NORMAL, 0.3)
 
 
 def test_unaligned_positions_have_the_field_of_each_alone() -> None:
@@ -85,7 +82,7 @@ Z = np.array([0.0, 0.05, 0.4])
 
 def stresses(load: np.ndarray, x: np.ndarray, y: np.ndarray, extent: tuple[float, float]) -> np.ndarray:
     """Stresses under steps of a load in each direction."""
-    influences = [Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES) for each in Load]
+    influences = [stress_influence(each, 0.3) for each in Load]
     return np.stack([half_space_field(load, each, GRID, Points(x, y, Z), extent=extent) for each in influences])
 
 
@@ -147,7 +144,7 @@ def test_a_load_symmetric_about_mid_length_is_the_sum_of_its_halves(
     half = np.random.default_rng(0).random(grid.shape)
     half[(cells_x + 1) // 2 :] = 0.0
     x = np.atleast_1d(grid.x[rows])
-    influence = Influence.of(STRESS_CORNERS[each], 0.3, each, STRESS_PARITIES)
+    influence = stress_influence(each, 0.3)
     parts = (half, other_half * half[::-1], half + other_half * half[::-1])
     one, other, both = (
         half_space_field(cells, influence, grid, Points(x, grid.y, Z), extent=(0.0, 2.0)) for cells in parts

@@ -194,6 +194,6 @@ def test_neither_unit_nor_place_decides_anything(load: Load, name: str, *, smoot
 
 def test_unit_traction_on_the_top() -> None:
     edge = np.array([-1.0, 1.0])
-    for corner, component in ((patch.tangential_corner, 5), (patch.axial_corner, 4)):
+    for corner, component in ((patch.STRESS_CORNERS[Load.ALONG_Y], 5), (patch.STRESS_CORNERS[Load.ALONG_X], 4)):
         values = corner(edge[:, None], edge[None, :], 0.0, 0.3)
         assert np.diff(np.diff(values, axis=1), axis=2)[component, 0, 0] == pytest.approx(-1.0)

@@ -13,8 +13,9 @@ from contactstudy.arrays.points import Points
 from contactstudy.bodies.models import FreedEnds
 from contactstudy.kernels.load import NORMAL_RESPONSE, Load
 from contactstudy.overlapping.axial import SingleMirrorModes, axial_modes, modes_between_ends
-from contactstudy.overlapping.equations import ON_END, EquationSet, inverse_square
-from contactstudy.overlapping.harmonics import end_stress
+from contactstudy.overlapping.equations import EquationSet, load_on_end
+from contactstudy.overlapping.field import end_fields
+from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.overlapping.surface import EndRequest, end_kernel
@@ -53,8 +54,9 @@ def test_no_internal_setting_matters() -> None:
 
     def stress(resolution: Resolution) -> np.ndarray:
         both = (Load.NORMAL, Load.ALONG_Y)
-        fields = end_stress(
+        fields = end_fields(
             EndProblem(length=8.0, poisson=0.3, cells=pressure, loads=both, grid=grid, resolution=resolution),
+            STRESS,
             [Points(*points)],
         )[0]
         return np.stack([fields[load] for load in both])
@@ -87,7 +89,7 @@ def test_face_loads_are_the_cosine_transform_of_the_stress_reversed(load: Load) 
     nu, lateral = 0.3, 0.7
     axial, depth = np.array([0.0, 0.4, 2.0]), np.array([0.2, 1.5])
     waves = axial.astype(complex)
-    found = ON_END[load](inverse_square(waves, depth, lateral), waves, depth, lateral, nu)
+    found = load_on_end(load, waves, depth, lateral, nu)
     for i, j in np.ndindex(found.shape):
         k = np.hypot(axial[j], lateral)
 

@@ -9,7 +9,7 @@ from contactstudy import Grid
 from contactstudy.arrays.points import Points
 from contactstudy.kernels.field import half_space_field, stress_influence
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.operators import OverlappingOperators, Positions
+from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -18,7 +18,7 @@ GRID = Grid(x_range=(0.0, 2.4), y_range=(-1.0, 1.0), cells_x=8, cells_y=8)
 
 def pressed(problem: EndProblem, x: np.ndarray, y: np.ndarray, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Load added on the top (x, y) and loads on the faces (end, y, z) under the pressure of a problem."""
-    operators = OverlappingOperators.of(problem, Positions(x, y, z), reference=24.0).equivalent(Load.NORMAL)
+    operators = OverlappingOperators.of(problem, Points(x, y, z), reference=24.0).equivalent(Load.NORMAL)
     cells = problem.cells.ravel()
     return (operators.added @ cells).reshape(x.size, y.size), np.array(
         [(face @ cells).reshape(y.size, z.size) for face in operators.faces]

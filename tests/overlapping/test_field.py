@@ -14,7 +14,7 @@ from contactstudy.kernels.load import Load
 from contactstudy.overlapping import field
 from contactstudy.overlapping.equations import EquationSet
 from contactstudy.overlapping.field import end_fields
-from contactstudy.overlapping.harmonics import STRESS, end_displacement, end_stress
+from contactstudy.overlapping.harmonics import DISPLACEMENT, STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -41,9 +41,9 @@ def test_a_place_has_the_same_field_alone_and_among_others(
         resolution=Resolution(),
     )
     places = PLACES if np.isfinite(length) else PLACES[:1] + PLACES[2:]
-    alone = [end_stress(problem, [place])[0] for place in places]
+    alone = [end_fields(problem, STRESS, [place])[0] for place in places]
     monkeypatch.setattr(field, "JOINT_POINTS", points)
-    for found, expected in zip(end_stress(problem, places), alone, strict=True):
+    for found, expected in zip(end_fields(problem, STRESS, places), alone, strict=True):
         for load in problem.loads:
             # Panels along y are those for the points that are farthest and nearest of all.
             assert np.abs(found[load] - expected[load]).max() < 2e-5, load
@@ -94,8 +94,8 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
 
     def fields(cells: FloatArray) -> list[FloatArray]:
         problem = EndProblem(length=length, poisson=0.3, cells=cells, loads=loads, grid=grid, resolution=Resolution())
-        (stress,) = end_stress(problem, [place], 80.0)
-        displacement = end_displacement(problem, Points(*place), reference=10 * length)
+        (stress,) = end_fields(problem, STRESS, [place], 80.0)
+        (displacement,) = end_fields(problem, DISPLACEMENT, [place], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
     parts = [fields(cells) for cells in (hertz, tilted, rough, spot)]

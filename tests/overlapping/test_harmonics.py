@@ -10,7 +10,7 @@ import pytest
 from contactstudy.checks import ComplexArray, FloatArray
 from contactstudy.overlapping import harmonics
 from contactstudy.overlapping.axial import AxialModes, SingleMirrorModes
-from contactstudy.overlapping.equations import EquationSet, coupling_core, inverse_square
+from contactstudy.overlapping.equations import EquationSet, coupling_core
 from contactstudy.overlapping.quadrature import Resolution
 
 LATERAL, POISSON, LENGTH = 0.7, 0.3, 2.3
@@ -146,8 +146,7 @@ def test_what_v_leaves_on_the_top_is_its_normal_stress_there(name: str) -> None:
     kappa = np.sqrt(depth**2 + LATERAL**2)
     system = system_of(modes)
     factor = np.real(modes.face_factor(kappa))
-    inverse = inverse_square(modes.wavenumbers, depth, LATERAL)
-    core = coupling_core(inverse, modes.wavenumbers, depth, LATERAL, POISSON)
+    core = coupling_core(modes.wavenumbers, depth, LATERAL, POISSON)
     found = modes.load_on_top(core, depth, LATERAL, POISSON)
     for number in range(2):
         one, own = np.ones((1, 1), np.complex128), depth[number : number + 1] + 0j

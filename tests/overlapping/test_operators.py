@@ -7,8 +7,9 @@ import pytest
 from scipy.sparse.linalg import LinearOperator, gmres
 
 from contactstudy import Grid
+from contactstudy.arrays.points import Points
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.operators import OverlappingOperators, Positions
+from contactstudy.overlapping.operators import OverlappingOperators
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 
@@ -29,7 +30,7 @@ def overlapping(grid: Grid, length: float, load: Load, *, mirrored_once: bool = 
         mirrored_once=mirrored_once,
     )
     reference = 10 * length if np.isfinite(length) else None
-    return OverlappingOperators.of(problem, Positions(grid.x, grid.y, DEPTHS), reference=reference)
+    return OverlappingOperators.of(problem, Points(grid.x, grid.y, DEPTHS), reference=reference)
 
 
 def check_transpose(operator: LinearOperator) -> None:

@@ -65,7 +65,7 @@ def test_points_beside_a_short_body_are_what_the_first_wavenumber_is_of() -> Non
 def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
     for unit in (1.0, UNIT, 2.0**-40):
         own = asked(unit=unit)
-        edges, cells = own.columns
+        edges, cells = own.column_edges, own.cells[own.cell_of_column]
         assert edges + edges[::-1] == pytest.approx(edges[-1])
         assert (edges[0], edges[-1]) == (0.0, own.length)
         # 0.2, 0.5, 1.0, 1.7, 2.1 and their images 0.3, 0.7, 1.4, 1.9, 2.2
@@ -74,11 +74,11 @@ def test_columns_between_two_ends_are_symmetric_and_carry_the_same() -> None:
         assert np.array_equal(cells, own.cells[np.searchsorted(EDGES, middles) - 1])
     # Edges whose images differ by rounding only are one.
     nearly = np.array([0.0, 0.7, 1.2 + 1e-14, 1.7 + 3e-14, 2.0, 2.2, 2.4])
-    edges, cells = asked(edges=nearly).columns
+    own = asked(edges=nearly)
+    edges = own.column_edges
     assert edges == pytest.approx(np.array([0, 0.2, 0.4, 0.7, 1.2, 1.7, 2.0, 2.2, 2.4]))
-    assert cells.shape[0] == edges.size - 1
-    whole, _ = asked(edges=EDGES, length=np.inf).columns
-    assert np.array_equal(whole, EDGES)
+    assert own.cell_of_column.size == edges.size - 1
+    assert np.array_equal(asked(edges=EDGES, length=np.inf).column_edges, EDGES)
 
 
 @pytest.mark.parametrize("sign_x", [1, -1])

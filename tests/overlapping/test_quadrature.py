@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from contactstudy import InvalidInputError
-from contactstudy.overlapping.quadrature import Resolution, growing_edges, lagrange, panel_nodes, scale_nodes
+from contactstudy.overlapping.quadrature import Resolution, scale_nodes
 
 
 @pytest.mark.parametrize(
@@ -29,21 +29,6 @@ from contactstudy.overlapping.quadrature import Resolution, growing_edges, lagra
 def test_settings_too_coarse_for_anything_are_refused(name: str, value: float):
     with pytest.raises(InvalidInputError, match=name):
         Resolution(**{name: value})
-
-
-def test_interpolation_is_exact_for_polynomials():
-    nodes = panel_nodes(np.array([1.0, 3.0]), 6)[0]
-    points = np.linspace(1.0, 3.0, 11)
-    np.testing.assert_allclose(lagrange(nodes, points) @ nodes**5, points**5, rtol=1e-12)
-
-
-@pytest.mark.parametrize("ratio", [1.3, 2.0, 6.0])
-def test_edges_grow_by_the_ratio_until_the_last_is_reached(ratio: float):
-    edges = growing_edges(0.3, 700.0, ratio)
-    assert edges[:2].tolist() == [0.0, 0.3]
-    np.testing.assert_allclose(edges[2:] / edges[1:-1], ratio)
-    assert edges[-2] < 700.0 <= edges[-1]
-    assert growing_edges(3.0, 1.0, ratio).tolist() == [0.0, 3.0]
 
 
 def test_scale_nodes_integrate_an_algebraic_decay() -> None:

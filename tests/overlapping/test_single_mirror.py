@@ -24,7 +24,8 @@ from contactstudy.arrays.variables import STRESSES
 from contactstudy.fields.loads import sliding
 from contactstudy.fields.stress import end_traction_residual, stresses_at
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.harmonics import end_stress
+from contactstudy.overlapping.field import end_fields
+from contactstudy.overlapping.harmonics import STRESS
 from contactstudy.overlapping.problem import EndProblem
 from contactstudy.overlapping.quadrature import Resolution
 from contactstudy.verification.problems import LINE_LOAD
@@ -70,7 +71,9 @@ def test_top_carries_the_load_and_nothing_else(eccentric: xr.DataArray) -> None:
         resolution=Resolution(),
         mirrored_once=True,
     )
-    fields = end_stress(problem, [Points(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[0]
+    fields = end_fields(problem, STRESS, [Points(np.array([0.05, 0.5, 1.7, 3.5]), np.array([0.0, 0.9]), np.zeros(1))])[
+        0
+    ]
     added = np.stack([fields[load] for load in both])
     assert np.abs(added[:, [2, 4, 5]]).max() < 3e-6
     assert np.abs(added[:, 0]).max() > 0.03

@@ -10,6 +10,7 @@ import numpy as np
 
 from contactstudy import checks
 from contactstudy.arrays.grid import Grid
+from contactstudy.arrays.peaks import lagrange
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.cache import cached
@@ -19,7 +20,7 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.fields.displacement import normal_influence
 from contactstudy.kernels.images import polynomial_count
 from contactstudy.kernels.load import Load
-from contactstudy.overlapping.quadrature import cell_moments, lagrange, panel_nodes
+from contactstudy.overlapping.quadrature import cell_moments, panel_nodes
 
 
 class Prescribed(NamedTuple):
