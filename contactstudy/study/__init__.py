@@ -23,8 +23,8 @@ report                lines of the command line
 ====================  ==================================================================
 """
 
+from contactstudy.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.opened import collect, load_case, open_study
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.run import RunReport, rerun_study, run_study

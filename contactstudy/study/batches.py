@@ -28,7 +28,7 @@ import xarray as xr
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
 from contactstudy.checks import FloatArray
-from contactstudy.study.errors import StoreError
+from contactstudy.errors import StoreError
 from contactstudy.study.files import PART, is_regular, netcdf_access, write_atomically
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code

@@ -20,8 +20,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import html_table
 from contactstudy.checks import factor_to
-from contactstudy.errors import InvalidInputError
-from contactstudy.study.errors import StudyFileError
+from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
 from contactstudy.study.plan import LEVELS, Axis, Plan, label, listed, value_text
 from contactstudy.study.profile_tables import resolve_files

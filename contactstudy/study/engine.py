@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks
 from contactstudy.arrays.variables import package_version
-from contactstudy.errors import InvalidInputError
-from contactstudy.study.errors import StudyFileError
+from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.plan import Plan
 from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import user_profiles

@@ -31,7 +31,7 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.errors import InvalidInputError
+from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
@@ -47,7 +47,6 @@ from contactstudy.study.batches import (
     write_batch,
 )
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.files import PART, UNFINISHED, is_regular, write_text
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS, Plan

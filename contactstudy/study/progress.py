@@ -12,7 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import IO, Any
 
-from contactstudy.study.errors import StoreError
+from contactstudy.errors import StoreError
 from contactstudy.study.worker import Outcome
 
 LOGGER = logging.getLogger(__name__)

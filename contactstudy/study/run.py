@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.errors import InvalidInputError, Terminated
+from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, Terminated
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
 from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
-from contactstudy.study.errors import StoreError, StudyFileError
 from contactstudy.study.folder import Entry, Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress

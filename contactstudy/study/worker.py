@@ -22,10 +22,9 @@ from contactstudy.analysis.summary import Number, case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
-from contactstudy.errors import ContactStudyError, MagnitudeWarning
+from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
 from contactstudy.study.batches import STATUSES, Batch, case_batch, join, with_arrays, write_batch
-from contactstudy.study.errors import StoreError
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
