@@ -16,7 +16,6 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -425,31 +424,6 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
     single = replace(batch, arrays={}).take(np.array([row]))
     arrays = {name: Ragged(batch.arrays[name].dims, part) for name, (part,) in values.items()}
     return replace(single, arrays=arrays).case(0)
-
-
-def case_batch(
-    *,
-    identity: str,
-    parameters: Mapping[str, Any],
-    status: str,
-    message: str = "",
-    warnings: Sequence[str] = (),
-    run: int = 0,
-    circumstances: dict[str, Any] | None = None,
-) -> Batch:
-    """Batch of one case without results."""
-    return Batch(
-        ids=np.array([identity.encode()], dtype=f"S{IDENTITY_LENGTH}"),
-        status=np.array([STATUSES.index(status)], dtype=np.int8),
-        runs=np.array([run], dtype=np.int64),
-        texts={
-            "parameters": [json.dumps(parameters)],
-            "message": [message],
-            "warnings": [json.dumps(list(warnings)) if warnings else ""],
-            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
-        },
-        circumstances=circumstances or {},
-    )
 
 
 def with_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:

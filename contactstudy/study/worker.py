@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import socket
 import subprocess
 import time
@@ -10,6 +11,7 @@ import uuid
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
 from functools import cache, partial
 from itertools import groupby
 from pathlib import Path
@@ -24,7 +26,7 @@ from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
 from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
-from contactstudy.study.batches import STATUSES, Batch, case_batch, join, with_arrays, write_batch
+from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, join, with_arrays, write_batch
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
@@ -200,13 +202,17 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
 
 def without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
     """Batch of one case without numbers."""
-    return case_batch(
-        identity=job.id,
-        parameters=job.parameters,
-        status=status,
-        message=message,
-        warnings=sorted(set(caught)),
-        run=task.run,
+    messages = sorted(set(caught))
+    return Batch(
+        ids=np.array([job.id.encode()], dtype=f"S{IDENTITY_LENGTH}"),
+        status=np.array([STATUSES.index(status)], dtype=np.int8),
+        runs=np.array([task.run], dtype=np.int64),
+        texts={
+            "parameters": [json.dumps(job.parameters)],
+            "message": [message],
+            "warnings": [json.dumps(messages) if messages else ""],
+            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
+        },
         circumstances={**circumstances(), "study": task.study, "level": task.level},
     )
 
