@@ -189,7 +189,7 @@ def plane_image(
     first, last = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
     position = 0.0 if normal == "y" else first + fraction * (last - first)
     axis = "xyz".index(normal)
-    values = interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis)
+    values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
     spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
     if horizontal == "x":
         spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))

@@ -122,7 +122,7 @@ def _write_mesh(
     """Write the cells between points (x, y, z), with values on the points or in the cells."""
     kind, corners = _cells([axis.size for axis in axes])
     nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
-    sections = {
+    sections: dict[str, dict[str, Array]] = {
         "PointData": {name: values.reshape(len(nodes), -1) for name, values in (on_points or {}).items()},
         "CellData": {name: values.ravel() for name, values in (in_cells or {}).items()},
         "Points": {"Points": nodes},

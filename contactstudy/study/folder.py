@@ -31,12 +31,12 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
+from contactstudy.checks import IntArray
 from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
     Batch,
-    IntArray,
     batch_paths,
     cases_of,
     common_attributes,

@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
@@ -296,11 +297,9 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
 def _pieces(operators: list[int], longest: int) -> list[int]:
     """Return the number of each group's piece: consecutive groups with one operator, at most so many."""
     pieces: list[int] = []
-    length = 0
-    for index, operator in enumerate(operators):
-        new = index > 0 and (operator != operators[index - 1] or length == longest)
-        pieces.append((pieces[-1] if pieces else 0) + new)
-        length = 1 if new else length + 1
+    for _, members in groupby(operators):
+        first = pieces[-1] + 1 if pieces else 0
+        pieces += [first + number // longest for number, _ in enumerate(members)]
     return pieces
 
 

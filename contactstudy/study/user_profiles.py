@@ -156,13 +156,9 @@ def _copied(profile: Profile, name: str, content: str) -> Profile:
 
     try:
         copy: Profile = pickle.loads(cloudpickle.dumps(profile))
+        reason = "" if _digest([name, _values(copy), _behaviour(copy)]) == content else "its copy is another profile"
     except Exception as error:  # a user's class may raise anything
-        raise _unpicklable(name, f"{type(error).__name__}: {error}") from error
-    if _digest([name, _values(copy), _behaviour(copy)]) != content:
-        raise _unpicklable(name, "its copy is another profile")
+        reason = f"{type(error).__name__}: {error}"
+    if reason:
+        raise InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)
     return copy
-
-
-def _unpicklable(name: str, reason: str) -> InvalidInputError:
-    """Error of a profile that cannot be sent to workers."""
-    return InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)
