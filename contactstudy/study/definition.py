@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import re
@@ -380,12 +379,10 @@ def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dic
     """Yield the varying parameters of every case, in the order of the table's dimensions."""
     varying = {name: array for name, array in columns.items() if array.dims}
     dims = [dim for dim in table.sizes if any(dim in array.dims for array in varying.values())]
-    for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
-        entry = dict(zip(dims, steps, strict=True))
-        row = {
-            name: _plain(array[{dim: entry[dim] for dim in array.dims}].values[()]) for name, array in varying.items()
-        }
-        yield {name: value for name, value in row.items() if value is not None}
+    frame = xr.Dataset(varying).to_dataframe(dims).reset_index()
+    for row in frame[list(varying)].to_dict("records"):
+        plain = {str(name): _plain(value) for name, value in row.items()}
+        yield {name: value for name, value in plain.items() if value is not None}
 
 
 def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

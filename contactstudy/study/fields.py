@@ -186,17 +186,17 @@ class Fields:
         name = f"{dims[0]}_over_a"
         sources = {dim: self._sources(dim) for dim in dims}
         axis, borders = self._joint(sources)
-        axes = {}
+        axes, maps = {}, {}
         for dim in dims:
             of_points = dim not in CELLS
-            remains = _equal(sources[dim], axis if of_points else borders)
             outside = 0.0 if dim == "y" else np.nan
-            maps = [
+            maps[dim] = [
                 Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
                 for source in sources[dim]
             ]
-            axes[dim] = StudyAxis(name, axis.size, None if remains else maps)
-        return axes, self._common_coordinates(dims, sources, axis, borders)
+            remains = _equal(sources[dim], axis if of_points else borders)
+            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
+        return axes, self._common_coordinates(maps, axis, borders)
 
     def _sources(self, dim: str) -> list[FloatArray]:
         """Edges of the cells, or points, of all cases over the half-width."""
@@ -223,27 +223,22 @@ class Fields:
         return centres(borders), borders
 
     def _common_coordinates(
-        self, dims: list[str], sources: dict[str, list[FloatArray]], axis: FloatArray, borders: FloatArray
+        self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
         """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
-        dim, positions = dims[0], self._positions[dims[0]]
-        over_a = f"{dim}_over_a"
-        widths = dim == "x" and (
-            positions.has_widths or not _equal(sources[dim], borders) or np.ptp(np.diff(borders)) > 0
-        )
-        rows = []
-        for number, scale in enumerate(positions.scales):
-            source = sources[dim][number]
-            remains = _equal([source], axis if dim not in CELLS else borders)
-            rows.append(scale * (axis if remains else _within(axis, source)))
-        coordinates = {over_a: (over_a, axis), dim: self._swept(over_a, rows, positions.which, axis.size)}
-        if widths:
+        first = next(iter(maps))
+        over_a = f"{first}_over_a"
+        coordinates: dict[str, Any] = {over_a: (over_a, axis)}
+        for dim, resamplings in maps.items():
+            positions = self._positions[dim]
+            scaled = zip(resamplings, positions.scales, strict=True)
+            rows = [scale * np.where(resampling.beyond, np.nan, axis) for resampling, scale in scaled]
+            coordinates[dim] = self._swept(over_a, rows, positions.which, axis.size)
+        positions, sources = self._positions[first], [resampling.source for resampling in maps[first]]
+        uniform = not positions.has_widths and _equal(sources, borders) and np.ptp(np.diff(borders)) == 0
+        if first == "x" and not uniform:
             rows = [np.diff(borders) * scale for scale in positions.scales]
             coordinates["x_width"] = self._swept(over_a, rows, positions.which, axis.size)
-        if len(dims) > 1:
-            stress = self._positions["x_field"]
-            rows = [_within(axis, row) * scale for row, scale in zip(sources["x_field"], stress.scales, strict=True)]
-            coordinates["x_field"] = self._swept(over_a, rows, stress.which, axis.size)
         return coordinates
 
     def _swept(
@@ -255,12 +250,6 @@ class Fields:
         for number, row in enumerate(rows):
             padded[number, : row.size] = row
         return (*plan.cube.dims, name), plan.spread(padded[which], np.nan)
-
-
-def _within(axis: FloatArray, source: FloatArray) -> FloatArray:
-    """Positions of an axis between the first and last edge or point of a case; NaN beyond."""
-    slack = 1e-9 * float(np.ptp(axis))
-    return np.where((axis < source.min() - slack) | (axis > source.max() + slack), np.nan, axis)
 
 
 class CaseArray(BackendArray):

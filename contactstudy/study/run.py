@@ -20,7 +20,7 @@ from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, T
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
 from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
-from contactstudy.study.folder import Entry, Folder, Share, States
+from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
@@ -77,10 +77,6 @@ class RunReport:
     def failures(self) -> list[tuple[PlannedCase, str]]:
         """Failed cases, each with its reason."""
         return [(self.plan[index], self.states.reasons[index]) for index in self.states.indices("failed")]
-
-    def entry(self, index: int) -> Entry:
-        """State of one case with its numbers."""
-        return self.states.entry(index)
 
     @property
     def files(self) -> list[Path]:
