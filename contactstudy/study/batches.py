@@ -143,14 +143,6 @@ def join(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal circumstances whose arrays have an equal structure, or none."""
     first = max(batches, key=lambda batch: len(batch.arrays))
 
-    def column(name: str, kind: str) -> npt.NDArray[Any]:
-        parts = []
-        for batch in batches:
-            present = getattr(batch, kind).get(name)
-            fill = np.nan if kind == "numbers" else 0
-            parts.append(np.full(len(batch), fill) if present is None else present)
-        return np.concatenate(parts)
-
     names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
@@ -162,8 +154,14 @@ def join(batches: Sequence[Batch]) -> Batch:
         status=np.concatenate([batch.status for batch in batches]),
         runs=np.concatenate([batch.runs for batch in batches]),
         texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXTS},
-        numbers={name: column(name, "numbers") for name in names},
-        sizes={name: column(name, "sizes").astype(np.int64) for name in first.sizes},
+        numbers={
+            name: np.concatenate([batch.numbers.get(name, np.full(len(batch), np.nan)) for batch in batches])
+            for name in names
+        },
+        sizes={
+            name: np.concatenate([batch.sizes.get(name, np.zeros(len(batch), dtype=np.int64)) for batch in batches])
+            for name in first.sizes
+        },
         arrays={
             name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches if batch.arrays]))
             for name, array in first.arrays.items()

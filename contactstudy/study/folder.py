@@ -18,7 +18,7 @@ import socket
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -225,11 +225,8 @@ class States:
 
     def attributes(self, name: str) -> dict[str, Any]:
         """Attributes that a number or array has in all batches."""
-        entries = [batch.attributes[name] for batch in self.results.batches if name in batch.attributes]
-        result = dict(entries[0]) if entries else {}
-        for entry in entries[1:]:
-            result = common_attributes(name, result, entry)
-        return result
+        entries = [dict(batch.attributes[name]) for batch in self.results.batches if name in batch.attributes]
+        return reduce(partial(common_attributes, name), entries) if entries else {}
 
     def entry(self, index: int) -> Entry:
         """State of one case with its numbers."""

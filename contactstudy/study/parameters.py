@@ -25,7 +25,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.profile_tables import number, profile_table, rounded
+from contactstudy.study.profile_tables import number, profile_table
 
 MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
@@ -50,25 +50,9 @@ def one_of(words: Iterable[str]) -> Check:
     return word
 
 
-def profile(name: str, value: object) -> dict[str, Any]:
-    """Return a profile's table with all its numbers rounded."""
-    return dict(_rounded_within(profile_table(value)))
-
-
 def positive(name: str, value: object) -> float:
     """Return a positive number."""
     return checks.positive(name, number(name, value))
-
-
-def _rounded_within(entry: Any) -> Any:
-    """Return an entry of a profile's table with all its numbers rounded."""
-    if isinstance(entry, float):
-        return rounded(entry)
-    if isinstance(entry, list):
-        return [_rounded_within(part) for part in entry]
-    if isinstance(entry, dict):
-        return {key: _rounded_within(part) for key, part in entry.items()}
-    return entry
 
 
 def points(name: str, value: object) -> list[float]:
@@ -196,7 +180,7 @@ _ENTRIES = (
     ),
     Parameter(
         name="profile",
-        check=profile,
+        check=lambda _, value: profile_table(value),
         meaning="roller profile",
         fallback={"kind": "cylinder"},
     ),

@@ -123,7 +123,7 @@ def _checked_value(key: str, value: object, depth: int) -> Any:
     if len(points) > MOST_POINTS:
         thin = "thin the points out: cells of the contact are micrometres wide"
         raise InvalidInputError("profile", f"{len(points)} points", f"at most {MOST_POINTS} points", thin)
-    return points
+    return [rounded(point) for point in points]
 
 
 def _nested_table(value: object, depth: int) -> Table:

@@ -111,7 +111,7 @@ def _json_value(name: str, value: object) -> Any:
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
-        return float(f"{value:.12g}") if np.isfinite(value) else repr(value)
+        return float(f"{value:.12g}") + 0.0 if np.isfinite(value) else repr(value)
     if isinstance(value, (list, tuple)):
         return [_json_value(name, entry) for entry in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):

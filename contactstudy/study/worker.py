@@ -12,7 +12,7 @@ import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
-from functools import cache, partial
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -217,27 +217,24 @@ def without_result(task: Task, job: Job, status: str, message: str = "", caught:
     )
 
 
-def _solve_on(solver: Solver | None, setup: Setup, film: xr.Dataset | None, grid: Grid | None) -> xr.Dataset:
-    """Solve a case on one of its grids, or for its film, from that of another speed."""
-    # Planning and opening a study need no solver.
-    from contactstudy.film.solve import solve_film
-    from contactstudy.solution import solve
-
-    if setup.case.lubricant is not None:
-        return (solver or solve_film)(setup.case, start=film, **setup.options)
-    return (solver or solve)(setup.case, grid, **setup.options)
-
-
 def _solve_case(
     task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
 ) -> tuple[Batch, xr.Dataset | None]:
-    """Solve one case; the result is None if it fails."""
+    """Solve one case, a film from that of another speed; the result is None if it fails."""
+    # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
+    from contactstudy.film.solve import solve_film
+    from contactstudy.solution import solve
+
+    def solve_on(grid: Grid | None) -> xr.Dataset:
+        if setup.case.lubricant is not None:
+            return (solver or solve_film)(setup.case, start=film, **setup.options)
+        return (solver or solve)(setup.case, grid, **setup.options)
 
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            dataset = first_sufficient(setup.grids, partial(_solve_on, solver, setup, film))
+            dataset = first_sufficient(setup.grids, solve_on)
             numbers = case_numbers(dataset)
             for name, entry in shakedown_summary(dataset).data_vars.items():
                 numbers[str(name)] = Number(float(entry), dict(entry.attrs))
