@@ -36,7 +36,10 @@ from .errors import ContactStudyError as ContactStudyError
 from .errors import ConvergenceWarning as ConvergenceWarning
 from .errors import FilmError as FilmError
 from .errors import InvalidInputError as InvalidInputError
+from .errors import LockedError as LockedError
 from .errors import MagnitudeWarning as MagnitudeWarning
+from .errors import StoreError as StoreError
+from .errors import StudyFileError as StudyFileError
 from .errors import TemperatureWarning as TemperatureWarning
 from .errors import WindowError as WindowError
 from .fields.displacement import displacement_field as displacement_field
@@ -47,9 +50,6 @@ from .film.solve import solve_film as solve_film
 from .solution import roller_stress as roller_stress
 from .solution import solve as solve
 from .study.definition import Study as Study
-from .study.errors import LockedError as LockedError
-from .study.errors import StoreError as StoreError
-from .study.errors import StudyFileError as StudyFileError
 from .study.opened import open_study as open_study
 from .study.run import run_study as run_study
 from .versions import show_versions as show_versions

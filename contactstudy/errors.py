@@ -73,6 +73,18 @@ def _format_value(value: Any) -> str:
     return text if len(text) <= 120 else text[:117] + "..."
 
 
+class StudyFileError(ContactStudyError):
+    """A study file cannot be read, or nothing in the study can be solved."""
+
+
+class StoreError(ContactStudyError):
+    """A result cannot be written or read: a full disk, a missing permission, a damaged file; ends a run."""
+
+
+class LockedError(ContactStudyError):
+    """Another process is running a study in the same folder."""
+
+
 class WindowError(ContactStudyError):
     """The contact reaches the edge of the window in y, so the window is too narrow for the load."""
 

@@ -17,6 +17,7 @@ from contactstudy.arrays.engineering import quantity
 from contactstudy.arrays.variables import STRESSES, require, variable_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.explorer.images import CaseFields
+from contactstudy.explorer.server import study_title
 from contactstudy.study import collect
 from contactstudy.study.folder import Folder
 
@@ -137,7 +138,7 @@ def _cases_of_folder(folder: Path) -> Cases:
         identity = str(scalars["case_id"].values[index])
         return CaseFields(results.case(identity, FIELDS), lambda: results.case(identity, STRESSES))
 
-    return Cases(scalars, load, _title(scalars, folder.name))
+    return Cases(scalars, load, study_title(attribute(scalars, STUDY_ATTRIBUTE), folder.name))
 
 
 def _case_of_result(result: xr.Dataset) -> Cases:
@@ -168,14 +169,7 @@ def _cases_of_study(study: xr.Dataset) -> Cases:
 
         return CaseFields(part(FIELDS), lambda: part(STRESSES))
 
-    return Cases(scalars.load(), load, _title(study, "study"))
-
-
-def _title(dataset: xr.Dataset, name: str) -> str:
-    """Name and description of a study."""
-    study = attribute(dataset, STUDY_ATTRIBUTE)
-    title = str(study.get("name", name))
-    return f"{title}: {study['description']}" if study.get("description") else title
+    return Cases(scalars.load(), load, study_title(attribute(study, STUDY_ATTRIBUTE), "study"))
 
 
 def numbers_by_subject(scalars: xr.Dataset) -> dict[str, dict[str, str]]:

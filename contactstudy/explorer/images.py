@@ -188,7 +188,8 @@ def plane_image(
         return None
     first, last = limits if normal == "x" else (float(points[normal][0]), float(points[normal][-1]))
     position = 0.0 if normal == "y" else first + fraction * (last - first)
-    values = interpolate_plane(case.stress(name), points[normal], position, "xyz".index(normal))
+    axis = "xyz".index(normal)
+    values = np.asarray(interpolate_along(axis, case.stress(name), points[normal], np.array([position])).take(0, axis))
     spans = [(float(points[axis][0]), float(points[axis][-1])) for axis in (horizontal, vertical)]
     if horizontal == "x":
         spans[0] = (max(spans[0][0], limits[0]), min(spans[0][1], limits[1]))
@@ -237,26 +238,17 @@ def _largest(
 def to_pixels(
     values: FloatArray, axes: tuple[FloatArray, FloatArray], spans: tuple[Span, Span], shape: tuple[int, int]
 ) -> FloatArray:
-    """Return values (horizontal, vertical) at the centres of pixels (vertical, horizontal): linear, constant beyond."""
-    for axis, (points, span, count) in enumerate(zip(axes, spans, shape, strict=True)):
-        if points.size == 1:
-            values = np.repeat(values, count, axis=axis)
-            continue
-        centres = span[0] + (np.arange(count) + 0.5) * (span[1] - span[0]) / count
-        lower = np.clip(np.searchsorted(points, centres) - 1, 0, points.size - 2)
-        weight = np.clip((centres - points[lower]) / (points[lower + 1] - points[lower]), 0.0, 1.0)
-        weight = weight[:, None] if axis == 0 else weight
-        values = (1 - weight) * values.take(lower, axis) + weight * values.take(lower + 1, axis)
+    """Return values (horizontal, vertical) at the centres of pixels (vertical, horizontal)."""
+    for axis, (points, (start, stop), count) in enumerate(zip(axes, spans, shape, strict=True)):
+        values = interpolate_along(axis, values, points, start + (np.arange(count) + 0.5) * (stop - start) / count)
     return np.ascontiguousarray(values.T)
 
 
-def interpolate_plane(values: FloatArray, points: FloatArray, position: float, axis: int) -> FloatArray:
-    """Return values in a plane across an axis: linear between points, constant beyond the outermost."""
-    lower = int(np.clip(np.searchsorted(points, position) - 1, 0, max(points.size - 2, 0)))
-    upper = min(lower + 1, points.size - 1)
-    step = points[upper] - points[lower]
-    weight = float(np.clip((position - points[lower]) / step, 0.0, 1.0)) if upper > lower else 0.0
-    first, last = (np.asarray(values.take(number, axis)) for number in (lower, upper))
-    if weight in (0.0, 1.0):  # a plane of points without the NaN of its neighbour
-        return last if weight else first
-    return (1 - weight) * first + weight * last
+def interpolate_along(axis: int, values: FloatArray, points: FloatArray, positions: FloatArray) -> FloatArray:
+    """Return values at positions along an axis: linear between points, constant beyond the outermost."""
+    lower = np.clip(np.searchsorted(points, positions) - 1, 0, max(points.size - 2, 0))
+    steps = np.diff(points, append=np.inf)[lower]
+    weights = np.clip((positions - points[lower]) / steps, 0.0, 1.0).reshape(-1, *(1,) * (values.ndim - axis - 1))
+    first, last = values.take(lower, axis), values.take(np.minimum(lower + 1, points.size - 1), axis)
+    # A point itself has its value without the NaN of a neighbour.
+    return np.where(weights == 0, first, np.where(weights == 1, last, (1 - weights) * first + weights * last))

@@ -33,6 +33,7 @@ from contactstudy.plots.study_lines import ESTIMATED_PREFIXES
 from contactstudy.report.assessment import assess_case
 from contactstudy.report.summary_table import NOT_ESTIMATED, OPEN_END, Summary, summary
 
+NAMES, COLORS = ("case", "second case"), (FIRST, SECOND)  # Names and colours of the two cases
 LONGEST_SLIDER = 60  # Number of values of a swept parameter up to which a slider replaces a list
 
 MEASURES = {
@@ -142,10 +143,7 @@ class Page:
         """Show the numbers of the cases side by side, and remarks on missing figures."""
         columns = [self._column(cases[side], side) for side in sides]
         names = list(dict.fromkeys(name for column in columns for name in column))
-        head = "".join(
-            f"<th style='color:{color}'>{'case' if side == 0 else 'second case'}</th>"
-            for side, color in zip(sides, (FIRST, SECOND), strict=False)
-        )
+        head = "".join(f"<th style='color:{COLORS[side]}'>{NAMES[side]}</th>" for side in sides)
         body = ""
         for name in names:
             cells = "".join(f"<td class=n>{column.get(name, '')}</td>" for column in columns)
@@ -205,7 +203,7 @@ class Page:
                 max((image.vertical[1] for image in present), default=1.0),
             )
             for side, (case, image, figure) in enumerate(zip(cases, images, figures, strict=False)):
-                name = ("case: " if side == 0 else "second case: ") if self.compare.value else ""
+                name = f"{NAMES[side]}: " if self.compare.value else ""
                 singular = case is not None and case.has_pressure and case.singular_ends
                 # Two lines: the title of a narrow window is not wider than the window.
                 title = f"{name}{quantity}{unit}"
@@ -234,7 +232,7 @@ class Page:
                 text = f"The stresses {reason}."
             else:
                 continue
-            name = f"<b>{'case' if side == 0 else 'second case'}:</b> " if self.compare.value else ""
+            name = f"<b>{NAMES[side]}:</b> " if self.compare.value else ""
             remarks.append(f"<p class=why>{name}{html.escape(text)}</p>")
         if self.cases.dims and not self.panes[5].visible:
             remarks.append("<p class=why>No case at these values of the other parameters has this number.</p>")
@@ -263,8 +261,7 @@ class Page:
         x, label, ticks = self._parameter_axis(parameter)
         axis = dims.index(parameter)
         marked = [
-            Marked(self.index(side)[axis], float(numbers[self.index(side)]) / factor, color)
-            for side, color in zip(sides, (FIRST, SECOND), strict=False)
+            Marked(self.index(side)[axis], float(numbers[self.index(side)]) / factor, COLORS[side]) for side in sides
         ]
         number_label = f"{specification.long_name} ({unit})" if unit else specification.long_name
         self._set_visible(5, not np.isnan(values).all())

@@ -9,7 +9,7 @@ import secrets
 import socket
 import sys
 from asyncio import wrap_future
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future
 from importlib import import_module
 from importlib.util import find_spec
@@ -210,7 +210,7 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
         from contactstudy.explorer.cases import open_cases
 
         open_cases(path)  # raises the reason
-    port = _free_port() if port is None else _checked_port(port)
+    port = _choose_port(port)
     # Before the thread that reads the study: the server's packages look in `sys.modules` for a complete pandas.
     import pandas  # noqa: F401
     import panel as pn
@@ -244,10 +244,15 @@ def serve(folder: str | Path, *, port: int | None = None, hosts: Sequence[str] =
 def _title(path: Path) -> str:
     """Name of the study for the browser's tab; of its folder if the study is unreadable."""
     try:
-        study = json.loads((path / "study.json").read_text(encoding="utf-8"))
-        return f"{study['name']}: {study['description']}" if study.get("description") else str(study["name"])
-    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return study_title(json.loads((path / "study.json").read_text(encoding="utf-8")), path.resolve().name)
+    except (OSError, ValueError, TypeError, AttributeError):
         return path.resolve().name
+
+
+def study_title(study: Mapping[str, Any], name: str) -> str:
+    """Return name and description of a study; `name` is the default."""
+    title = str(study.get("name", name))
+    return f"{title}: {study['description']}" if study.get("description") else title
 
 
 def _is_free(port: int) -> bool:
@@ -261,17 +266,11 @@ def _is_free(port: int) -> bool:
     return True
 
 
-def _free_port() -> int:
-    """Return the first free port."""
-    for port in range(PORT, PORT + PORTS):
-        if _is_free(port):
-            return port
-    raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORTS - 1} are taken")
-
-
-def _checked_port(port: object) -> int:
-    """Return a free port, or raise."""
-    number = checks.count("port", port)
-    if number > 65535 or not _is_free(number):
-        raise InvalidInputError("port", number, "a free port, at most 65535", "leave it out to take the next free one")
-    return number
+def _choose_port(port: int | None) -> int:
+    """Return the port if it is free, or the first free one without it, or raise."""
+    for number in range(PORT, PORT + PORTS) if port is None else (checks.count("port", port),):
+        if number <= 65535 and _is_free(number):
+            return number
+    if port is None:
+        raise InvalidInputError("port", None, f"given: all from {PORT} to {PORT + PORTS - 1} are taken")
+    raise InvalidInputError("port", port, "a free port, at most 65535", "leave it out to take the next free one")

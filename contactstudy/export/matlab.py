@@ -11,10 +11,10 @@ import numpy as np
 import xarray as xr
 
 from contactstudy import checks
-from contactstudy.analysis import measure
 from contactstudy.arrays.variables import require, variable_of
 from contactstudy.checks import Array
 from contactstudy.errors import InvalidInputError
+from contactstudy.export.table import named_arrays
 
 SUFFIX = ".mat"
 NAME = re.compile(r"[A-Za-z]\w{0,62}", re.ASCII)  # Valid name in MATLAB
@@ -84,11 +84,7 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
 
 def _arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
     """Return the arrays of the file by name, the coordinates last."""
-    if variables is None:
-        arrays = {str(name): array for name, array in dataset.data_vars.items()}
-    else:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        arrays = {name: measure(dataset, name) for name in names}
+    arrays = named_arrays(dataset, variables)
     for array in list(arrays.values()):
         arrays |= {str(name): coordinate for name, coordinate in array.coords.items()}
     for name in arrays:

@@ -33,13 +33,18 @@ def headings(dataset: xr.Dataset, names: Sequence[str]) -> dict[str, str]:
     return texts
 
 
+def named_arrays(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> dict[str, xr.DataArray]:
+    """Return variables or measures by name; default: all variables."""
+    if variables is None:
+        return {str(name): array for name, array in dataset.data_vars.items()}
+    return {name: measure(dataset, name) for name in ([variables] if isinstance(variables, str) else variables)}
+
+
 def _fields_on_same_points(dataset: xr.Dataset, variables: str | Sequence[str] | None) -> xr.Dataset:
     """Variables of the table; by default all but scalars."""
+    arrays = named_arrays(dataset, variables)
     if variables is None:
-        arrays = {str(name): array for name, array in dataset.data_vars.items() if array.ndim}
-    else:
-        names = [variables] if isinstance(variables, str) else list(variables)
-        arrays = {name: measure(dataset, name) for name in names}
+        arrays = {name: array for name, array in arrays.items() if array.ndim}
     shapes = [array.dims for array in arrays.values()]
     if len({frozenset(dims) for dims in shapes}) != 1 or not all(shapes):
         raise InvalidInputError("variables", variables or "all", "variables on the same points", points_hint(arrays))

@@ -21,6 +21,7 @@ from contactstudy.errors import InvalidInputError
 
 SUFFIXES = (".vtr", ".vtu")  # Rectilinear grid, and unstructured mesh for more programs
 TENSOR = (0, 3, 4, 3, 1, 5, 4, 5, 2)  # Indices of xx, xy, xz, yx, ... among the six components of a result
+TYPES = {"f": "Float64", "i": "Int64", "u": "UInt8"}  # VTK's types of arrays
 QUADRILATERAL, HEXAHEDRON = 9, 12  # VTK's numbers of kinds of cells
 CORNERS = ((0, 0), (1, 0), (1, 1), (0, 1))  # Corners of a cell in VTK's order, along its first two axes
 
@@ -99,14 +100,16 @@ def _on_points(fields: dict[str, xr.DataArray]) -> tuple[list[FloatArray], dict[
     return [points[axis][order[axis]] for axis in AXES], data
 
 
-def _write_rectilinear(target: Path, axes: list[FloatArray], data: dict[str, FloatArray]) -> None:
+def _write_rectilinear(path: Path, axes: list[FloatArray], data: Mapping[str, FloatArray]) -> None:
     """Write point data on a rectilinear grid."""
-    from uvw import DataArray, RectilinearGrid
-
-    # Without compression: uvw 0.7 corrupts compressed arrays of a multiple of 32 KiB, and stresses compress little.
-    with checks.writing(target) as part, RectilinearGrid(str(part), tuple(axes)) as grid:
-        for name, values in data.items():
-            grid.addPointData(DataArray(values, range(3), name))
+    extent = " ".join(f"0 {axis.size - 1}" for axis in axes)
+    # The points of the format have x fastest.
+    points = {name: np.moveaxis(values, (0, 1, 2), (2, 1, 0)) for name, values in data.items()}
+    sections = {
+        "PointData": {name: values.reshape(-1, *values.shape[3:]) for name, values in points.items()},
+        "Coordinates": dict(zip(AXES, axes, strict=True)),
+    }
+    _write(path, "RectilinearGrid", {"WholeExtent": extent}, {"Extent": extent}, sections)
 
 
 def _write_mesh(
@@ -116,41 +119,39 @@ def _write_mesh(
     on_points: Mapping[str, FloatArray] | None = None,
     in_cells: Mapping[str, FloatArray] | None = None,
 ) -> None:
-    """Write the cells between points (x, y, z) in XML, with values on the points or in the cells."""
+    """Write the cells between points (x, y, z), with values on the points or in the cells."""
     kind, corners = _cells([axis.size for axis in axes])
     nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
-    root = ET.Element(
-        "VTKFile", type="UnstructuredGrid", version="1.0", byte_order="LittleEndian", header_type="UInt64"
-    )
-    piece = ET.SubElement(
-        ET.SubElement(root, "UnstructuredGrid"),
-        "Piece",
-        NumberOfPoints=str(len(nodes)),
-        NumberOfCells=str(len(corners)),
-    )
-    for section, fields, count in (
-        ("PointData", on_points or {}, len(nodes)),
-        ("CellData", in_cells or {}, len(corners)),
-        ("Points", {"Points": nodes}, len(nodes)),
-    ):
-        data = ET.SubElement(piece, section)
-        for name, values in fields.items():
-            _array(data, name, np.asarray(values, dtype="<f8").reshape(count, -1))
-    cells = ET.SubElement(piece, "Cells")
-    _array(cells, "connectivity", corners.reshape(-1, 1))
-    _array(cells, "offsets", corners.shape[1] * np.arange(1, len(corners) + 1).reshape(-1, 1))
-    _array(cells, "types", np.full((len(corners), 1), kind, dtype="u1"))
+    sections: dict[str, dict[str, Array]] = {
+        "PointData": {name: values.reshape(len(nodes), -1) for name, values in (on_points or {}).items()},
+        "CellData": {name: values.ravel() for name, values in (in_cells or {}).items()},
+        "Points": {"Points": nodes},
+        "Cells": {
+            "connectivity": corners.ravel(),
+            "offsets": corners.shape[1] * np.arange(1, len(corners) + 1),
+            "types": np.full(len(corners), kind, dtype="u1"),
+        },
+    }
+    counts = {"NumberOfPoints": str(len(nodes)), "NumberOfCells": str(len(corners))}
+    _write(path, "UnstructuredGrid", {}, counts, sections)
+
+
+def _write(
+    path: Path, kind: str, grid: dict[str, str], piece: dict[str, str], sections: Mapping[str, Mapping[str, Array]]
+) -> None:
+    """Write the arrays of a grid in XML: of each, in base64, the number of bytes and the bytes."""
+    root = ET.Element("VTKFile", type=kind, version="1.0", byte_order="LittleEndian", header_type="UInt64")
+    parent = ET.SubElement(ET.SubElement(root, kind, grid), "Piece", piece)
+    for section, arrays in sections.items():
+        entries = ET.SubElement(parent, section)
+        for name, rows in arrays.items():
+            element = ET.SubElement(entries, "DataArray", type=TYPES[rows.dtype.kind], Name=name, format="binary")
+            if rows.size > len(rows):
+                element.set("NumberOfComponents", str(rows.size // len(rows)))
+            content = rows.astype(rows.dtype.newbyteorder("<"), copy=False).tobytes()
+            element.text = base64.b64encode(np.uint64(rows.nbytes).tobytes() + content).decode()
     with checks.writing(path) as part:
         ET.ElementTree(root).write(part, encoding="utf-8", xml_declaration=True)
-
-
-def _array(parent: ET.Element, name: str, rows: Array) -> None:
-    """Add an array in base64: the number of bytes, then the bytes."""
-    kinds = {"f": "Float64", "i": "Int64", "u": "UInt8"}
-    element = ET.SubElement(parent, "DataArray", type=kinds[rows.dtype.kind], Name=name, format="binary")
-    if rows.shape[1] > 1:
-        element.set("NumberOfComponents", str(rows.shape[1]))
-    element.text = base64.b64encode(np.uint64(rows.nbytes).tobytes() + np.ascontiguousarray(rows).tobytes()).decode()
 
 
 def _cells(counts: list[int]) -> tuple[int, IntArray]:

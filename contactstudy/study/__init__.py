@@ -6,25 +6,10 @@ study's file alone. A *task* contains consecutive groups with a common operator,
 *batch* is a netCDF file of finished cases, which a worker writes and the run joins with others. A *share* is one of
 several independent parts of the groups, for job arrays. The numbers of a case follow from the contact of its group and
 from its friction alone, so results depend on neither workers, tasks, shares nor finished cases, to the last bit.
-
-====================  ==================================================================
-parameters            values of a case, their checks, and the identity
-profile_tables        numbers and profiles as tables; user_profiles: profiles of a user's class
-setup                 from parameters to the case that is solved
-definition, plan      a study, and the list of its cases with identities and groups
-settings              times and sizes of a run
-worker                solution of a task
-engine                tasks on processes and clusters
-files, batches        netCDF files that appear whole or not at all
-folder                locks, states of cases, joining of batches
-run, progress         a run from the plan to the batches; its log
-opened, fields        the Dataset of a study; common_cells: its common axes
-report                lines of the command line
-====================  ==================================================================
 """
 
+from contactstudy.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.opened import collect, load_case, open_study
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.run import RunReport, rerun_study, run_study

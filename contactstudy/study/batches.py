@@ -16,7 +16,6 @@ import json
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from datetime import UTC, datetime
 from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -27,8 +26,8 @@ import xarray as xr
 
 from contactstudy.analysis.provenance import RUN_ATTRIBUTE
 from contactstudy.arrays.variables import describe, labels, package_version
-from contactstudy.checks import FloatArray
-from contactstudy.study.errors import StoreError
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.errors import StoreError
 from contactstudy.study.files import PART, is_regular, netcdf_access, write_atomically
 
 STATUSES = ("ok", "failed", "skipped")  # States of a case in a batch, by their code
@@ -47,8 +46,6 @@ CHUNK = 2**15  # Values of a ragged array that are compressed together. Speed of
 CASE_ATTRIBUTE = "contactstudy_case"  # Attribute of a case: its parameters as JSON
 SHARED, TABLES, COORDINATES = "contactstudy_shared", "contactstudy_tables", "contactstudy_coordinates"
 """Attributes: parameters of all cases, tables that parameters refer to by number, names of coordinates."""
-
-IntArray = npt.NDArray[np.int64]
 
 
 class Ragged(NamedTuple):
@@ -145,30 +142,26 @@ def offsets(sizes: Mapping[str, IntArray], dims: Sequence[str], cases: int) -> I
 def join(batches: Sequence[Batch]) -> Batch:
     """Join batches of equal circumstances whose arrays have an equal structure, or none."""
     first = max(batches, key=lambda batch: len(batch.arrays))
-    total = sum(map(len, batches))
-
-    def column(name: str, kind: str) -> npt.NDArray[Any]:
-        parts = []
-        for batch in batches:
-            present = getattr(batch, kind).get(name)
-            fill = np.nan if kind == "numbers" else 0
-            parts.append(np.full(len(batch), fill) if present is None else present)
-        return np.concatenate(parts)
 
     names = list(dict.fromkeys(name for batch in batches for name in batch.numbers))
     attributes: dict[str, dict[str, Any]] = {}
     for batch in batches:
         for name, entries in batch.attributes.items():
             attributes[name] = common_attributes(name, attributes[name], entries) if name in attributes else entries
-    assert total
     return replace(
         first,
         ids=np.concatenate([batch.ids for batch in batches]),
         status=np.concatenate([batch.status for batch in batches]),
         runs=np.concatenate([batch.runs for batch in batches]),
         texts={name: [text for batch in batches for text in batch.texts[name]] for name in TEXTS},
-        numbers={name: column(name, "numbers") for name in names},
-        sizes={name: column(name, "sizes").astype(np.int64) for name in first.sizes},
+        numbers={
+            name: np.concatenate([batch.numbers.get(name, np.full(len(batch), np.nan)) for batch in batches])
+            for name in names
+        },
+        sizes={
+            name: np.concatenate([batch.sizes.get(name, np.zeros(len(batch), dtype=np.int64)) for batch in batches])
+            for name in first.sizes
+        },
         arrays={
             name: Ragged(array.dims, np.concatenate([batch.arrays[name].values for batch in batches if batch.arrays]))
             for name, array in first.arrays.items()
@@ -356,47 +349,45 @@ def read_batch(path: Path, *, arrays: Iterable[str] | None = (), texts: Iterable
         ids = _read_text(file["case_id"])
         if ids.dtype.itemsize != IDENTITY_LENGTH:
             raise StoreError(f"cannot read {path}: it is not a batch of cases")
-        return _read(file, ids, None if arrays is None else set(arrays), set(TEXTS) if arrays is None else set(texts))
+        selected, text_names = (None, set(TEXTS)) if arrays is None else (set(arrays), set(texts))
+        numbers, sizes, ragged, attributes = {}, {}, {}, {}
+        for name, variable in file.variables.items():
+            if name in TEXTS or name in ("case_id", "status", "run"):
+                continue
+            attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
+            if "sample_dimension" in attrs:
+                sizes[name.removesuffix("_size")] = variable[:].astype(np.int64)
+            elif "array_dimensions" in attrs:
+                dims = tuple(attrs.pop("array_dimensions").split())
+                attributes[name] = attrs
+                read_values = selected is None or name in selected
+                ragged[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
+            else:
+                attributes[name], numbers[name] = attrs, variable[:]
+        read = {
+            name: [text.decode() for text in _read_text(file[name])] if name in text_names else [] for name in TEXTS
+        }
+        if "parameters" in text_names:
+            shared, tables = json.loads(file.getncattr(SHARED)), json.loads(file.getncattr(TABLES))
+            read["parameters"] = [_restored(shared, tables, text) for text in read["parameters"]]
+        return Batch(
+            ids=ids,
+            status=file["status"][:],
+            runs=file["run"][:].astype(np.int64),
+            texts=read,
+            numbers=numbers,
+            sizes=sizes,
+            arrays=ragged,
+            attributes=attributes,
+            coordinates=frozenset(json.loads(file.getncattr(COORDINATES))),
+            circumstances=json.loads(file.getncattr(RUN_ATTRIBUTE)),
+        )
 
 
 def _read_text(variable: Any) -> npt.NDArray[np.bytes_]:
     """Texts of a column as bytes."""
     characters = np.ascontiguousarray(variable[:])
     return np.asarray(characters.view(f"S{characters.shape[1]}").ravel())
-
-
-def _read(file: Any, ids: npt.NDArray[np.bytes_], selected: set[str] | None, texts: set[str]) -> Batch:
-    """Read the columns of an open file, and the selected arrays and texts."""
-    numbers, sizes, arrays, attributes = {}, {}, {}, {}
-    for name, variable in file.variables.items():
-        if name in TEXTS or name in ("case_id", "status", "run"):
-            continue
-        attrs = {key: variable.getncattr(key) for key in variable.ncattrs()}
-        if "sample_dimension" in attrs:
-            sizes[name.removesuffix("_size")] = variable[:].astype(np.int64)
-        elif "array_dimensions" in attrs:
-            dims = tuple(attrs.pop("array_dimensions").split())
-            attributes[name] = attrs
-            read_values = selected is None or name in selected
-            arrays[name] = Ragged(dims, variable[:] if read_values else np.empty(0, dtype=variable.dtype))
-        else:
-            attributes[name], numbers[name] = attrs, variable[:]
-    read = {name: [text.decode() for text in _read_text(file[name])] if name in texts else [] for name in TEXTS}
-    if "parameters" in texts:
-        shared, tables = json.loads(file.getncattr(SHARED)), json.loads(file.getncattr(TABLES))
-        read["parameters"] = [_restored(shared, tables, text) for text in read["parameters"]]
-    return Batch(
-        ids=ids,
-        status=file["status"][:],
-        runs=file["run"][:].astype(np.int64),
-        texts=read,
-        numbers=numbers,
-        sizes=sizes,
-        arrays=arrays,
-        attributes=attributes,
-        coordinates=frozenset(json.loads(file.getncattr(COORDINATES))),
-        circumstances=json.loads(file.getncattr(RUN_ATTRIBUTE)),
-    )
 
 
 def read_slices(path: Path, bounds: Mapping[str, Sequence[tuple[int, int]]]) -> dict[str, list[npt.NDArray[Any]]]:
@@ -425,31 +416,6 @@ def read_case(path: Path, row: int, names: Iterable[str] | None = None) -> xr.Da
     single = replace(batch, arrays={}).take(np.array([row]))
     arrays = {name: Ragged(batch.arrays[name].dims, part) for name, (part,) in values.items()}
     return replace(single, arrays=arrays).case(0)
-
-
-def case_batch(
-    *,
-    identity: str,
-    parameters: Mapping[str, Any],
-    status: str,
-    message: str = "",
-    warnings: Sequence[str] = (),
-    run: int = 0,
-    circumstances: dict[str, Any] | None = None,
-) -> Batch:
-    """Batch of one case without results."""
-    return Batch(
-        ids=np.array([identity.encode()], dtype=f"S{IDENTITY_LENGTH}"),
-        status=np.array([STATUSES.index(status)], dtype=np.int8),
-        runs=np.array([run], dtype=np.int64),
-        texts={
-            "parameters": [json.dumps(parameters)],
-            "message": [message],
-            "warnings": [json.dumps(list(warnings)) if warnings else ""],
-            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
-        },
-        circumstances=circumstances or {},
-    )
 
 
 def with_arrays(batch: Batch, dataset: xr.Dataset, level: str) -> Batch:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import json
 import math
 import re
@@ -19,9 +18,8 @@ import xarray as xr
 from contactstudy import checks
 from contactstudy.analysis.provenance import STUDY_ATTRIBUTE, attribute
 from contactstudy.arrays.engineering import html_table
-from contactstudy.checks import factor_to
-from contactstudy.errors import InvalidInputError
-from contactstudy.study.errors import StudyFileError
+from contactstudy.checks import IntArray, factor_to
+from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, checked, points
 from contactstudy.study.plan import LEVELS, Axis, Plan, label, listed, value_text
 from contactstudy.study.profile_tables import resolve_files
@@ -300,43 +298,35 @@ class Study:
         axes: list[Axis] = [tuple({name: value} for value in values) for name, values in self.sweep.items()]
         for group in self.zip:
             axes.append(tuple(dict(zip(group, row, strict=True)) for row in zip(*group.values(), strict=True)))
-        cases, exclude = tuple(self.cases), self.exclude
+        cases = tuple(self.cases)
         product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
-        names = {entry for rule in exclude for entry in rule}
-        defaults = {entry: PARAMETERS[entry].default for entry in names if PARAMETERS[entry].default is not None}
-        shared = {**defaults, **self.base}
-        # Labels of the parameters in the rules: along the axis with the parameter, and in every explicit case.
-        number_of = {entry: number for number, axis in enumerate(axes) for entry in axis[0]}
-        steps = {
-            entry: [label(entry, step[entry]) for step in axes[number_of[entry]]]
-            if entry in number_of
-            else [label(entry, shared.get(entry))]
-            for entry in names
-        }
-        explicit = [{entry: label(entry, {**shared, **case}.get(entry)) for entry in names} for case in cases]
-        out = np.zeros(product.shape if product.products else (0,), dtype=bool)
-        for rule in exclude if product.products else ():
-            matching = np.ones(product.shape, dtype=bool)
-            for entry, allowed in rule.items():
-                matches = np.array([value in allowed for value in steps[entry]])
-                matching &= matches.reshape(
-                    [-1 if number == number_of.get(entry) else 1 for number in range(len(axes))]
-                )
-            out |= matching
-        out_explicit = [
-            any(all(values[entry] in allowed for entry, allowed in rule.items()) for rule in exclude)
-            for values in explicit
-        ]
-        unknown = [
-            f"exclude.{entry} = {value!r}: no case has this value, so it excludes nothing"
-            for rule in exclude
-            for entry, values in rule.items()
-            for value in values
-            if value not in [*(steps[entry] if product.products else ()), *(case[entry] for case in explicit)]
-        ]
-        chosen_explicit = product.products + np.flatnonzero(~np.array(out_explicit, dtype=bool))
-        chosen = np.concatenate([np.flatnonzero(~out.ravel()), chosen_explicit]).astype(np.int64)
-        return replace(product, chosen=chosen, unknown=tuple(dict.fromkeys(unknown)))
+        number_of = {name: number for number, axis in enumerate(axes) for name in axis[0]}
+        steps = np.unravel_index(np.arange(product.products), product.shape) if axes else ()
+        # Labels of the parameters in the rules: along their axis, in every explicit case, and which of the former each
+        # combination has.
+        labels: dict[str, tuple[list[Any], list[Any], IntArray]] = {}
+        for name in {name for rule in self.exclude for name in rule}:
+            shared = self.base.get(name, PARAMETERS[name].default)
+            values = [step[name] for step in axes[number_of[name]]] if name in number_of else [shared]
+            step = steps[number_of[name]] if name in number_of else np.zeros(product.products, dtype=np.int64)
+            explicit = [label(name, case.get(name, shared)) for case in cases]
+            labels[name] = ([label(name, value) for value in values], explicit, step)
+        excluded = np.zeros(product.products + len(cases), dtype=bool)
+        unknown = []
+        for rule in self.exclude:
+            matching = np.ones(excluded.size, dtype=bool)
+            for name, allowed in rule.items():
+                along_axis, explicit, step = labels[name]
+                matching[: product.products] &= np.array([value in allowed for value in along_axis])[step]
+                matching[product.products :] &= np.array([value in allowed for value in explicit], dtype=bool)
+                present = [*(along_axis if product.products else ()), *explicit]
+                unknown += [
+                    f"exclude.{name} = {value!r}: no case has this value, so it excludes nothing"
+                    for value in allowed
+                    if value not in present
+                ]
+            excluded |= matching
+        return replace(product, chosen=np.flatnonzero(~excluded), unknown=tuple(dict.fromkeys(unknown)))
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
@@ -389,12 +379,10 @@ def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dic
     """Yield the varying parameters of every case, in the order of the table's dimensions."""
     varying = {name: array for name, array in columns.items() if array.dims}
     dims = [dim for dim in table.sizes if any(dim in array.dims for array in varying.values())]
-    for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
-        entry = dict(zip(dims, steps, strict=True))
-        row = {
-            name: _plain(array[{dim: entry[dim] for dim in array.dims}].values[()]) for name, array in varying.items()
-        }
-        yield {name: value for name, value in row.items() if value is not None}
+    frame = xr.Dataset(varying).to_dataframe(dims).reset_index()
+    for row in frame[list(varying)].to_dict("records"):
+        plain = {str(name): _plain(value) for name, value in row.items()}
+        yield {name: value for name, value in plain.items() if value is not None}
 
 
 def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

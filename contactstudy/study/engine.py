@@ -21,8 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks
 from contactstudy.arrays.variables import package_version
-from contactstudy.errors import InvalidInputError
-from contactstudy.study.errors import StudyFileError
+from contactstudy.errors import InvalidInputError, StudyFileError
 from contactstudy.study.plan import Plan
 from contactstudy.study.settings import RUN
 from contactstudy.study.user_profiles import user_profiles
@@ -260,10 +259,12 @@ class Tasks:
         if self._returned:
             task = self._returned.popleft()
         else:
-            jobs: list[Job] = []
+            plan, jobs = self._plan, list[Job]()
             limit = self._limit(workers)
             while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
-                jobs += [self._job(index) for index in self._groups.popleft()]
+                for index in self._groups.popleft():
+                    identity, group = plan.ids[index].decode(), int(plan.groups[index])
+                    jobs.append(Job(identity, plan.words(index), plan.parameters(index), group))
             profiles = user_profiles([job.parameters for job in jobs])
             task = replace(self._template, jobs=tuple(jobs), profiles=profiles)
         self.remaining -= len(task.jobs)
@@ -275,11 +276,6 @@ class Tasks:
             return 1
         cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
         return int(min(cases, self.remaining / (2 * max(workers, 1))))
-
-    def _job(self, index: int) -> Job:
-        """Job of a case."""
-        plan = self._plan
-        return Job(plan.ids[index].decode(), plan.words(index), plan.parameters(index), int(plan.groups[index]))
 
     def record(self, cases: int, seconds: float) -> None:
         """Add the time of a finished task."""

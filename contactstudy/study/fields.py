@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,8 +14,8 @@ from xarray.backends import BackendArray
 from xarray.core import indexing
 
 from contactstudy.arrays.variables import ERROR_KIND, NOT_ESTIMATED
-from contactstudy.checks import FloatArray
-from contactstudy.study.batches import IntArray, offsets, read_batch, read_slices
+from contactstudy.checks import FloatArray, IntArray
+from contactstudy.study.batches import offsets, read_batch, read_slices
 from contactstudy.study.common_cells import (
     Resampling,
     centred_cells,
@@ -73,11 +73,11 @@ def _equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
 
 
 class StudyAxis(NamedTuple):
-    """Dimension of a study for one of the cases' arrays, and the map of a case's positions onto a common axis."""
+    """Dimension of a study for one of the cases' arrays, and the maps of different positions onto a common axis."""
 
     name: str
     size: int
-    resampling: Callable[[int], Resampling] | None = None
+    resamplings: list[Resampling] | None = None
 
 
 class Fields:
@@ -137,7 +137,7 @@ class Fields:
             if not all(dim in axes for dim in dims):
                 continue
             attributes = self._states.attributes(name)
-            if any(axes[dim].resampling for dim in dims):
+            if any(axes[dim].resamplings for dim in dims):
                 attributes |= {"comment": resampling_comment(name), ERROR_KIND: NOT_ESTIMATED}
             array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
             variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
@@ -159,41 +159,26 @@ class Fields:
             if scaled and (self._common or over_a):
                 joint = self._common and dim == "x" and "x_field" in positions
                 added, coords = self._common_axis(["x", "x_field"] if joint else [dim])
-            elif entry.alike:
-                added, coords = {dim: StudyAxis(dim, entry.values[0].size)}, self._plain(dim)
             else:
-                added, coords = self._padded(dim)
+                added, coords = self._original_axis(dim)
             axes |= added
             coordinates |= coords
         return axes, coordinates
 
-    def _plain(self, dim: str) -> dict[str, Any]:
-        """Coordinates of equal positions."""
+    def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
+        """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        values = positions.values[0]
-        coordinates: dict[str, Any] = {dim: (dim, values)}
-        if positions.widths[0].size:
-            coordinates[f"{dim}_width"] = (dim, positions.widths[0])
-        if np.isfinite(positions.scales).all():
-            coordinates[f"{dim}_over_a"] = self._over_a(dim, dim, values.size)
-        return coordinates
-
-    def _over_a(self, dim: str, name: str, size: int) -> tuple[Any, ...]:
-        """Coordinate of positions over the half-width along a dimension."""
-        positions = self._positions[dim]
-        if positions.over_a[0].size == size and _equal(positions.over_a, positions.over_a[0]):
-            return (name, positions.over_a[0])
-        return self._swept(name, positions.over_a, positions.which, size)
-
-    def _padded(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis of different positions, padded with NaN to the largest case."""
-        positions, name = self._positions[dim], f"{dim}_index"
+        name = dim if positions.alike else f"{dim}_index"
         size = max(values.size for values in positions.values)
-        coordinates: dict[str, Any] = {dim: self._swept(name, positions.values, positions.which, size)}
+
+        def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:
+            return (name, rows[0]) if _equal(rows, rows[0]) else self._swept(name, rows, positions.which, size)
+
+        coordinates = {dim: coordinate(positions.values)}
         if positions.has_widths:
-            coordinates[f"{dim}_width"] = self._swept(name, positions.widths, positions.which, size)
+            coordinates[f"{dim}_width"] = coordinate(positions.widths)
         if np.isfinite(positions.scales).all():
-            coordinates[f"{dim}_over_a"] = self._over_a(dim, name, size)
+            coordinates[f"{dim}_over_a"] = coordinate(positions.over_a)
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
@@ -201,14 +186,17 @@ class Fields:
         name = f"{dims[0]}_over_a"
         sources = {dim: self._sources(dim) for dim in dims}
         axis, borders = self._joint(sources)
-        axes = {}
+        axes, maps = {}, {}
         for dim in dims:
             of_points = dim not in CELLS
-            remains = _equal(sources[dim], axis if of_points else borders)
             outside = 0.0 if dim == "y" else np.nan
-            maps = None if remains else _maps(sources[dim], axis, borders, outside, of_points)
-            axes[dim] = StudyAxis(name, axis.size, maps)
-        return axes, self._common_coordinates(dims, sources, axis, borders)
+            maps[dim] = [
+                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
+                for source in sources[dim]
+            ]
+            remains = _equal(sources[dim], axis if of_points else borders)
+            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
+        return axes, self._common_coordinates(maps, axis, borders)
 
     def _sources(self, dim: str) -> list[FloatArray]:
         """Edges of the cells, or points, of all cases over the half-width."""
@@ -235,58 +223,33 @@ class Fields:
         return centres(borders), borders
 
     def _common_coordinates(
-        self, dims: list[str], sources: dict[str, list[FloatArray]], axis: FloatArray, borders: FloatArray
+        self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray
     ) -> dict[str, Any]:
         """Coordinates of a common axis: over the half-width and, NaN beyond the case's cells and points, in metres."""
-        dim, positions = dims[0], self._positions[dims[0]]
-        over_a = f"{dim}_over_a"
-        widths = dim == "x" and (
-            positions.has_widths or not _equal(sources[dim], borders) or np.ptp(np.diff(borders)) > 0
-        )
-        rows = []
-        for number, scale in enumerate(positions.scales):
-            source = sources[dim][number]
-            remains = _equal([source], axis if dim not in CELLS else borders)
-            rows.append(scale * (axis if remains else _within(axis, source)))
-        coordinates = {over_a: (over_a, axis), dim: self._swept(over_a, rows, positions.which, axis.size)}
-        if widths:
+        first = next(iter(maps))
+        over_a = f"{first}_over_a"
+        coordinates: dict[str, Any] = {over_a: (over_a, axis)}
+        for dim, resamplings in maps.items():
+            positions = self._positions[dim]
+            scaled = zip(resamplings, positions.scales, strict=True)
+            rows = [scale * np.where(resampling.beyond, np.nan, axis) for resampling, scale in scaled]
+            coordinates[dim] = self._swept(over_a, rows, positions.which, axis.size)
+        positions, sources = self._positions[first], [resampling.source for resampling in maps[first]]
+        uniform = not positions.has_widths and _equal(sources, borders) and np.ptp(np.diff(borders)) == 0
+        if first == "x" and not uniform:
             rows = [np.diff(borders) * scale for scale in positions.scales]
             coordinates["x_width"] = self._swept(over_a, rows, positions.which, axis.size)
-        if len(dims) > 1:
-            stress = self._positions["x_field"]
-            rows = [_within(axis, row) * scale for row, scale in zip(sources["x_field"], stress.scales, strict=True)]
-            coordinates["x_field"] = self._swept(over_a, rows, stress.which, axis.size)
         return coordinates
 
     def _swept(
         self, name: str, rows: Sequence[FloatArray], which: IntArray, size: int
     ) -> tuple[tuple[str, ...], FloatArray]:
         """Dimensions and values of a coordinate of every case along the dimension `name`, padded with NaN."""
-        cube, plan = self._states.plan.cube, self._states.plan
+        plan = self._states.plan
         padded = np.full((len(rows) + 1, size), np.nan)
         for number, row in enumerate(rows):
             padded[number, : row.size] = row
-        table = np.full((int(np.prod(cube.shape)), size), np.nan)
-        table[plan.flat] = padded[which]
-        return (*cube.dims, name), table.reshape((*cube.shape, size))
-
-
-def _within(axis: FloatArray, source: FloatArray) -> FloatArray:
-    """Positions of an axis between the first and last edge or point of a case; NaN beyond."""
-    slack = 1e-9 * float(np.ptp(axis))
-    return np.where((axis < source.min() - slack) | (axis > source.max() + slack), np.nan, axis)
-
-
-def _maps(
-    sources: list[FloatArray], axis: FloatArray, borders: FloatArray, outside: float, of_points: bool
-) -> Callable[[int], Resampling]:
-    """Return the maps from the cells or points of each case to a common axis."""
-
-    @cache
-    def resampling(number: int) -> Resampling:
-        return Resampling(source=sources[number], axis=axis, borders=borders, outside=outside, of_points=of_points)
-
-    return resampling
+        return (*plan.cube.dims, name), plan.spread(padded[which], np.nan)
 
 
 class CaseArray(BackendArray):
@@ -303,15 +266,13 @@ class CaseArray(BackendArray):
         self._states, self._name, self._dims, self._axes = states, name, tuple(axes), tuple(axes.values())
         self._which = [positions[dim].which for dim in axes]
         self.shape = (*states.plan.cube.shape, *(axis.size for axis in self._axes))
-        resampling = any(axis.resampling for axis in self._axes)
+        resampling = any(axis.resamplings for axis in self._axes)
         self.dtype = np.dtype(np.float64) if resampling and dtype.kind != "f" else dtype
 
     @cached_property
     def _cases(self) -> IntArray:
         """Number in the plan of each cell of the cube; -1 for an excluded one."""
-        cases = np.full(int(np.prod(self._states.plan.cube.shape)), -1, dtype=np.int64)
-        cases[self._states.plan.flat] = np.arange(len(self._states.plan))
-        return cases.reshape(self._states.plan.cube.shape)
+        return self._states.plan.spread(np.arange(len(self._states.plan)), -1)
 
     def __getitem__(self, key: Any) -> Any:
         """Return the values at an explicit index of xarray."""
@@ -320,10 +281,7 @@ class CaseArray(BackendArray):
     def _read(self, key: tuple[Any, ...]) -> npt.NDArray[Any]:
         """Read the values at integers, slices and arrays of integers."""
         swept = len(self._states.plan.cube.shape)
-        selected = self._cases
-        for axis in range(swept - 1, -1, -1):
-            selected = selected[(slice(None),) * axis + (key[axis],)]
-        field_key = key[swept:]
+        selected, field_key = _outer(self._cases, key[:swept]), key[swept:]
         shape = tuple(axis.size for axis in self._axes)
         fill = np.nan if self.dtype.kind == "f" else 0
         empty = _outer(np.full(shape, fill, dtype=self.dtype), field_key)
@@ -354,7 +312,7 @@ class CaseArray(BackendArray):
     def _on_axes(self, values: npt.NDArray[Any], case: int) -> npt.NDArray[Any]:
         """Values of one case on the study's axes."""
         maps = [
-            axis.resampling(int(which[case])) if axis.resampling else None
+            axis.resamplings[which[case]] if axis.resamplings else None
             for axis, which in zip(self._axes, self._which, strict=True)
         ]
         return resampled(self._name, values, maps) if any(maps) else values

@@ -15,8 +15,7 @@ from threading import RLock
 
 import xarray as xr
 
-from contactstudy.errors import InvalidInputError
-from contactstudy.study.errors import StoreError
+from contactstudy.errors import InvalidInputError, StoreError
 
 NETCDF_LOCK = RLock()  # One netCDF operation at a time in this process
 PART = ".part"  # Suffix of an unfinished file

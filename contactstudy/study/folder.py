@@ -18,7 +18,7 @@ import socket
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from functools import cached_property
+from functools import cached_property, partial, reduce
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -31,12 +31,12 @@ from contactstudy import checks
 from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE
 from contactstudy.arrays.variables import package_version
 from contactstudy.case.serialization import to_dict
-from contactstudy.errors import InvalidInputError
+from contactstudy.checks import IntArray
+from contactstudy.errors import InvalidInputError, LockedError, StoreError, StudyFileError
 from contactstudy.study.batches import (
     CASE_ATTRIBUTE,
     STATUSES,
     Batch,
-    IntArray,
     batch_paths,
     cases_of,
     common_attributes,
@@ -47,7 +47,6 @@ from contactstudy.study.batches import (
     write_batch,
 )
 from contactstudy.study.definition import Study
-from contactstudy.study.errors import LockedError, StoreError, StudyFileError
 from contactstudy.study.files import PART, UNFINISHED, is_regular, write_text
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.plan import LEVELS, Plan
@@ -226,11 +225,8 @@ class States:
 
     def attributes(self, name: str) -> dict[str, Any]:
         """Attributes that a number or array has in all batches."""
-        entries = [batch.attributes[name] for batch in self.results.batches if name in batch.attributes]
-        result = dict(entries[0]) if entries else {}
-        for entry in entries[1:]:
-            result = common_attributes(name, result, entry)
-        return result
+        entries = [dict(batch.attributes[name]) for batch in self.results.batches if name in batch.attributes]
+        return reduce(partial(common_attributes, name), entries) if entries else {}
 
     def entry(self, index: int) -> Entry:
         """State of one case with its numbers."""

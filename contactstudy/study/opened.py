@@ -138,21 +138,16 @@ def numbers_dataset(states: States) -> xr.Dataset:
         name: _label_coordinate(name, dim, values) for name, (dim, values) in cube.labels.items()
     }
 
-    def spread(values: npt.NDArray[Any], fill: Any) -> npt.NDArray[Any]:
-        table = np.full(int(np.prod(cube.shape)), fill, dtype=values.dtype)
-        table[plan.flat] = values
-        return table.reshape(cube.shape)
-
     names = np.array(STATES, dtype=np.str_)
     reasons = [states.reasons.get(index, "") for index in range(len(plan))] if states.reasons else [""] * len(plan)
     variables: dict[str, Any] = {
-        "status": (cube.dims, names[spread(states.status, STATES.index("excluded"))]),
-        "message": (cube.dims, spread(np.array(reasons, dtype=np.str_), "")),
-        "case_id": (cube.dims, spread(plan.ids.astype(np.str_), "")),
+        "status": (cube.dims, names[plan.spread(states.status, STATES.index("excluded"))]),
+        "message": (cube.dims, plan.spread(np.array(reasons, dtype=np.str_), "")),
+        "case_id": (cube.dims, plan.spread(plan.ids.astype(np.str_), "")),
     }
     for name in sorted({name for batch in states.results.batches for name in batch.numbers}):
         if name not in coordinates:
-            array = spread(states.numbers(name), np.nan)
+            array = plan.spread(states.numbers(name), np.nan)
             if name in ("e_over_a", "gamma"):
                 if np.isfinite(array).any():
                     dims, array = _reduced(cube.dims, array)

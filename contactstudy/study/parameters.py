@@ -25,7 +25,7 @@ from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, choose_grid, solver_settings
 from contactstudy.case.motion import MODELS as ROLLING_MODELS
 from contactstudy.errors import InvalidInputError
-from contactstudy.study.profile_tables import number, profile_table, rounded
+from contactstudy.study.profile_tables import number, profile_table
 
 MOST_POINTS = 100_000  # Largest number of points of a table {start, stop, count}
 SCHEMA = 1  # Number of the meaning of the parameters; raised only if a parameter changes its meaning
@@ -50,25 +50,9 @@ def one_of(words: Iterable[str]) -> Check:
     return word
 
 
-def profile(name: str, value: object) -> dict[str, Any]:
-    """Return a profile's table with all its numbers rounded."""
-    return dict(_rounded_within(profile_table(value)))
-
-
 def positive(name: str, value: object) -> float:
     """Return a positive number."""
     return checks.positive(name, number(name, value))
-
-
-def _rounded_within(entry: Any) -> Any:
-    """Return an entry of a profile's table with all its numbers rounded."""
-    if isinstance(entry, float):
-        return rounded(entry)
-    if isinstance(entry, list):
-        return [_rounded_within(part) for part in entry]
-    if isinstance(entry, dict):
-        return {key: _rounded_within(part) for key, part in entry.items()}
-    return entry
 
 
 def points(name: str, value: object) -> list[float]:
@@ -101,12 +85,13 @@ class Parameter:
     fallback: Any = None  # default without a taker; None: required or optional
     absent: str = ""  # meaning of a missing parameter without a default, for the documentation
     note: str = ""  # addition to the meaning, for the documentation
-    label: str = ""  # long name of the coordinate, short enough for an axis; default: the name
+    label: str = ""  # long name of the coordinate, short enough for an axis; default: that of a result, or the name
 
     @property
     def attrs(self) -> dict[str, str]:
         """Attributes of the coordinate in a Dataset."""
-        texts = {"units": self.units, "long_name": self.label or self.name.replace("_", " "), "comment": self.meaning}
+        plain = COORDINATES[self.name].long_name if self.name in COORDINATES else self.name.replace("_", " ")
+        texts = {"units": self.units, "long_name": self.label or plain, "comment": self.meaning}
         return {name: text for name, text in texts.items() if text}
 
     def checked(self, value: object) -> Any:
@@ -130,7 +115,7 @@ BODIES = ("finite-length", "quarter-space", "half-space")
 # Ends of the roller by the name of its body; None for a rigid one.
 ROLLER_BODIES: dict[str, str | None] = {"rigid": None, "finite-length": "free", "half-space": "none"}
 
-_WITH_CASE = (
+_ENTRIES = (
     Parameter(
         name="body",
         check=one_of(BODIES),
@@ -159,14 +144,12 @@ _WITH_CASE = (
         units="1",
         meaning="body length over roller radius; the roller is shorter by 2 e",
         absent="or `roller_length`",
-        label=COORDINATES["gamma"].long_name,
     ),
     Parameter(
         name="e_over_a",
         units="1",
         meaning=COORDINATES["e_over_a"].comment,
         absent="or `end_distance`",
-        label=COORDINATES["e_over_a"].long_name,
         note="negative: the roller overhangs",
     ),
     Parameter(name="end_distance", units="m", meaning="distance e of roller end and free end", absent="or `e_over_a`"),
@@ -194,14 +177,12 @@ _WITH_CASE = (
         units="1",
         meaning="coefficient of friction",
         taker=Case,
-        label=COORDINATES["friction"].long_name,
     ),
     Parameter(
         name="profile",
-        check=profile,
+        check=lambda _, value: profile_table(value),
         meaning="roller profile",
         fallback={"kind": "cylinder"},
-        label=COORDINATES["profile"].long_name,
     ),
     Parameter(
         name="roller_body",
@@ -331,8 +312,6 @@ _WITH_CASE = (
     ),
     Parameter(name="slide_roll_ratio", units="1", meaning="difference of the speeds over their mean", absent="0"),
     Parameter(name="roughness_rms", check=positive, units="m", meaning="composite rms roughness", absent="smooth"),
-)
-_WITH_SOLVER = (
     Parameter(
         name="accuracy",
         units="1",
@@ -379,7 +358,7 @@ _WITH_SOLVER = (
         absent="about 23 depths to 5 a",
     ),
 )
-PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in (*_WITH_CASE, *_WITH_SOLVER)}
+PARAMETERS: dict[str, Parameter] = {entry.name: entry for entry in _ENTRIES}
 """Every parameter that a case of a study can have."""
 
 REQUIRED = (

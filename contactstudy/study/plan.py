@@ -19,6 +19,7 @@ import numpy.typing as npt
 
 from contactstudy.arrays.engineering import quantity
 from contactstudy.case.magnitudes import doubts, friction_doubt
+from contactstudy.checks import IntArray
 from contactstudy.errors import ContactStudyError
 from contactstudy.study.parameters import PARAMETERS, completed, fragment, hash_of, without_defaults
 from contactstudy.study.profile_tables import describe_profile, profile_label
@@ -36,7 +37,6 @@ LOCAL = frozenset(
 )
 """Parameters that do not change the operator of the surface. Speed."""
 
-IntArray = npt.NDArray[np.int64]
 Axis = tuple[dict[str, Any], ...]
 """One factor of a product: the parameters that each step of a swept one, or of several zipped ones, sets."""
 
@@ -193,6 +193,12 @@ class Plan(Sequence[PlannedCase]):
         """Number of each case in the flattened cube."""
         return self._layout[1]
 
+    def spread(self, values: npt.NDArray[Any], fill: Any) -> npt.NDArray[Any]:
+        """Values (case, ...) at the positions of the cases in the cube, with `fill` where it has none."""
+        table = np.full((math.prod(self.cube.shape), *values.shape[1:]), fill, dtype=values.dtype)
+        table[self.flat] = values
+        return table.reshape((*self.cube.shape, *values.shape[1:]))
+
     def _fragments(self) -> Iterator[tuple[str, ...]]:
         """Parts of each case's canonical JSON, sorted by name; empty for defaults."""
         product = self.chosen[self.chosen < self.products]
@@ -223,16 +229,17 @@ class Plan(Sequence[PlannedCase]):
     @cached_property
     def groups(self) -> IntArray:
         """Group of each case, numbered as they appear: equal up to friction in full sliding, and a film's speed."""
-        return _numbered(map(_group_key, self._fragments()), len(self))
+        rubbing, local = ('"motion":', '"coupled":'), ('"friction":', '"entrainment_speed":')
+        keys = (
+            _key(parts, () if any(part.startswith(rubbing) for part in parts) else local) for parts in self._fragments()
+        )
+        return _numbered(keys, len(self))
 
     @cached_property
     def operators(self) -> IntArray:
         """Number of the operator of each case: equal for cases that share body, load and cells."""
         local = tuple(f'"{name}":' for name in LOCAL)
-        keys = (
-            hash(tuple(part for part in parts if part and not part.startswith(local))) for parts in self._fragments()
-        )
-        return _numbered(keys, len(self))
+        return _numbered((_key(parts, local) for parts in self._fragments()), len(self))
 
     @cached_property
     def review(self) -> Review:
@@ -300,11 +307,8 @@ class Plan(Sequence[PlannedCase]):
         return size * len(self.unique)
 
 
-def _group_key(fragments: tuple[str, ...]) -> int:
-    """Key of a case's group."""
-    if any(part.startswith(('"motion":', '"coupled":')) for part in fragments):
-        return hash(fragments)
-    local = ('"friction":', '"entrainment_speed":')
+def _key(fragments: tuple[str, ...], local: tuple[str, ...]) -> int:
+    """Key of a case without the fragments that start with one of `local`."""
     return hash(tuple(part for part in fragments if part and not part.startswith(local)))
 
 

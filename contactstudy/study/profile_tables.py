@@ -11,7 +11,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from contactstudy import checks, profiles
 from contactstudy.arrays.engineering import quantity
@@ -20,6 +20,9 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.profiles import Profile
 from contactstudy.profiles.base import UNITS
 from contactstudy.study import user_profiles
+
+if TYPE_CHECKING:
+    from contactstudy.study.setup import Dimensions
 
 Table = dict[str, Any]
 DEEPEST = 16  # Largest depth of profiles within profiles
@@ -32,7 +35,7 @@ NESTED = ("left", "right", "profile")  # Fields that contain a profile
 FILE_FLAGS = ("remove_tilt", "remove_offset")
 FILE_OPTIONS = ("file", *FILE_FLAGS, "turn")  # Keys of a measured profile that is read from a file
 DIGITS = 12  # Significant digits of a number in a study, beyond rounding
-SMALLEST, LARGEST = 1 / checks.LARGEST, checks.LARGEST
+SMALLEST = 1 / checks.LARGEST
 
 
 def rounded(value: float) -> float:
@@ -43,18 +46,9 @@ def rounded(value: float) -> float:
 def number(name: str, value: object) -> float:
     """Return a finite number of limited size, rounded."""
     finite = checks.finite(name, value)
-    if finite and not SMALLEST <= abs(finite) <= LARGEST:
-        raise InvalidInputError(name, value, f"0, or of a size from {SMALLEST:g} to {LARGEST:g}", "units are SI")
+    if 0 < abs(finite) < SMALLEST:
+        raise InvalidInputError(name, value, f"0, or of a size from {SMALLEST:g} on", "units are SI")
     return rounded(finite)
-
-
-@dataclass(frozen=True, kw_only=True)
-class Surroundings:
-    """Quantities of a case that a profile may follow: the roller's radius and length, metres, and the modulus, Pa."""
-
-    radius: float
-    modulus: float
-    length: float
 
 
 @dataclass(frozen=True)
@@ -88,22 +82,22 @@ class ProfileKind:
     def _required(self) -> list[str]:
         return [name for name, default in self.defaults.items() if default is MISSING]
 
-    def build(self, table: Mapping[str, Any], around: Surroundings) -> Profile:
+    def build(self, table: Mapping[str, Any], sizes: Dimensions) -> Profile:
         """Profile of the values that :meth:`read` returns."""
         design = {name: table[name] for name in DESIGN if name in table}
-        values = {name: _built_value(value, around) for name, value in table.items() if name not in design}
+        values = {name: _built_value(value, sizes) for name, value in table.items() if name not in design}
         if self.designed and len(design) + any(name in values for name in self.designed) != 1:
             choice = f"exactly one of {' with '.join(self.designed)}, {' and '.join(DESIGN)}"
             raise InvalidInputError("profile", dict(table), f"given with {choice}")
         if not design:
             _require(values, *self._required)
-            radii = {name: factor * around.radius for name, factor in self.of_radius.items()}
+            radii = {name: factor * sizes.radius for name, factor in self.of_radius.items()}
             profile: Profile = self.made(**(radii | values))
             return profile
         _require(values, *(name for name in self._required if name not in self.designed))
-        values |= {"radius": around.radius, "modulus": around.modulus}
+        values |= {"radius": sizes.radius, "modulus": sizes.modulus}
         if "design_load" in design:
-            profile = self.made.for_load(design["design_load"], length=around.length, **values)
+            profile = self.made.for_load(design["design_load"], length=sizes.roller_length, **values)
         else:
             profile = self.made.for_pressure(design["design_pressure"], **values)
         return profile
@@ -129,7 +123,7 @@ def _checked_value(key: str, value: object, depth: int) -> Any:
     if len(points) > MOST_POINTS:
         thin = "thin the points out: cells of the contact are micrometres wide"
         raise InvalidInputError("profile", f"{len(points)} points", f"at most {MOST_POINTS} points", thin)
-    return points
+    return [rounded(point) for point in points]
 
 
 def _nested_table(value: object, depth: int) -> Table:
@@ -137,12 +131,12 @@ def _nested_table(value: object, depth: int) -> Table:
     return {key: entry for key, entry in profile_table(value, depth + 1).items() if key != "name"}
 
 
-def _built_value(value: Any, around: Surroundings) -> Any:
+def _built_value(value: Any, sizes: Dimensions) -> Any:
     """Argument of a profile's class."""
     if isinstance(value, Mapping):
-        return build_profile(value, around)
+        return build_profile(value, sizes)
     if isinstance(value, list) and value and isinstance(value[0], Mapping):
-        return tuple(build_profile(term, around) for term in value)
+        return tuple(build_profile(term, sizes) for term in value)
     return value
 
 
@@ -216,12 +210,12 @@ def profile_table(value: object, depth: int = 0) -> Table:
     return table | PROFILES[kind].read(content, depth)
 
 
-def build_profile(table: Mapping[str, Any], around: Surroundings) -> Profile:
+def build_profile(table: Mapping[str, Any], sizes: Dimensions) -> Profile:
     """Profile of a table from :func:`profile_table`."""
     if table["kind"] == user_profiles.KIND:
         return user_profiles.registered(table)
     values = {key: value for key, value in table.items() if key not in ("kind", "name")}
-    return PROFILES[table["kind"]].build(values, around)
+    return PROFILES[table["kind"]].build(values, sizes)
 
 
 def resolve_files(content: Any, folder: Path) -> Any:

@@ -9,10 +9,9 @@ import sys
 import time
 from datetime import UTC, datetime
 from pathlib import Path
-from types import TracebackType
 from typing import IO, Any
 
-from contactstudy.study.errors import StoreError
+from contactstudy.errors import StoreError
 from contactstudy.study.worker import Outcome
 
 LOGGER = logging.getLogger(__name__)
@@ -47,9 +46,7 @@ class Progress:
             raise StoreError(f"cannot write {self._path}: {error.strerror or error}") from error
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """Close bar and log."""
         if self._bar is not None:
             self._bar.close()

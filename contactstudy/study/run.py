@@ -8,6 +8,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
@@ -15,12 +16,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from contactstudy import checks
-from contactstudy.errors import InvalidInputError, Terminated
+from contactstudy.errors import InvalidInputError, StoreError, StudyFileError, Terminated
 from contactstudy.study.batches import write_batch
 from contactstudy.study.definition import Study
 from contactstudy.study.engine import WAIT_SECONDS, Engine, Results, Tasks, execute, refuse_in_a_worker
-from contactstudy.study.errors import StoreError, StudyFileError
-from contactstudy.study.folder import Entry, Folder, Share, States
+from contactstudy.study.folder import Folder, Share, States
 from contactstudy.study.plan import Plan, PlannedCase
 from contactstudy.study.progress import Progress
 from contactstudy.study.settings import RUN
@@ -77,10 +77,6 @@ class RunReport:
     def failures(self) -> list[tuple[PlannedCase, str]]:
         """Failed cases, each with its reason."""
         return [(self.plan[index], self.states.reasons[index]) for index in self.states.indices("failed")]
-
-    def entry(self, index: int) -> Entry:
-        """State of one case with its numbers."""
-        return self.states.entry(index)
 
     @property
     def files(self) -> list[Path]:
@@ -297,11 +293,9 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
 def _pieces(operators: list[int], longest: int) -> list[int]:
     """Return the number of each group's piece: consecutive groups with one operator, at most so many."""
     pieces: list[int] = []
-    length = 0
-    for index, operator in enumerate(operators):
-        new = index > 0 and (operator != operators[index - 1] or length == longest)
-        pieces.append((pieces[-1] if pieces else 0) + new)
-        length = 1 if new else length + 1
+    for _, members in groupby(operators):
+        first = pieces[-1] + 1 if pieces else 0
+        pieces += [first + number // longest for number, _ in enumerate(members)]
     return pieces
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,7 @@ from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.film.asperities import Asperities
 from contactstudy.study.parameters import PARAMETERS, REQUIRED, ROLLER_BODIES, UNIFORM, checked, taken_by, with_defaults
-from contactstudy.study.profile_tables import Surroundings, build_profile
+from contactstudy.study.profile_tables import build_profile
 
 OVER_HALF_WIDTH = ("field_x_over_a", "field_y_over_a", "field_z_over_a")
 """Parameters that are positions over the half-width."""
@@ -33,19 +34,12 @@ LUBRICANTS = {"lubricant": "temperature", "viscosity": "pressure_viscosity"}
 FILM = ("entrainment_speed", "slide_roll_ratio", "roughness_rms")
 """Further parameters of a film."""
 
-MOTION_ARGUMENTS = {
-    "sliding": {"entrainment_speed": "entrainment_speed", "slide_roll_ratio": "slide_roll_ratio"},
-    "shift": {"shift_x": "x", "shift_y": "y", "force_x": "force_x", "force_y": "force_y"},
-    "rolling": {
-        "longitudinal_creepage": "longitudinal_creepage",
-        "lateral_creepage": "lateral_creepage",
-        "spin": "spin",
-        "force_x": "force_x",
-        "force_y": "force_y",
-        "moment_z": "moment_z",
-    },
+MOTION_PARAMETERS = {
+    "sliding": ("entrainment_speed", "slide_roll_ratio"),
+    "shift": ("shift_x", "shift_y", "force_x", "force_y"),
+    "rolling": ("longitudinal_creepage", "lateral_creepage", "spin", "force_x", "force_y", "moment_z"),
 }
-"""Parameters of each motion, with the argument of its class."""
+"""Parameters of each motion: arguments of its class, but for the start of those of a shift."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -199,14 +193,14 @@ def _roller_material(values: Mapping[str, Any]) -> Material | None:
 def motion_of(values: Mapping[str, Any]) -> Motion:
     """Motion of a case, from checked parameters with their defaults."""
     kind = values["motion"]
-    parameters = MOTION_ARGUMENTS[kind]
-    for name in dict.fromkeys(name for arguments in MOTION_ARGUMENTS.values() for name in arguments):
+    parameters = MOTION_PARAMETERS[kind]
+    for name in chain(*MOTION_PARAMETERS.values()):
         if name in values and name not in parameters:
-            motions = " or ".join(repr(motion) for motion, arguments in MOTION_ARGUMENTS.items() if name in arguments)
+            motions = " or ".join(repr(motion) for motion, names in MOTION_PARAMETERS.items() if name in names)
             raise InvalidInputError(name, values[name], f"left out for motion = {kind!r}", f"it belongs to {motions}")
     if kind != "rolling" and values["rolling_model"] != "exact":
         raise InvalidInputError("rolling_model", values["rolling_model"], f"left out for motion = {kind!r}")
-    arguments = {argument: values[name] for name, argument in parameters.items() if name in values}
+    arguments = {name.removeprefix("shift_"): values[name] for name in parameters if name in values}
     if kind == "rolling":
         return Rolling(**arguments, model=values["rolling_model"])
     if kind == "shift":
@@ -268,14 +262,13 @@ def build_setup(parameters: Mapping[str, Any]) -> Setup:
     _check_choices(values)
     material, roller_material = Material(values["young"], values["poisson"]), _roller_material(values)
     sizes = Dimensions.of(values, contact_modulus(material, roller_material))
-    around = Surroundings(radius=sizes.radius, modulus=sizes.modulus, length=sizes.roller_length)
     middle = sizes.end_distance + 0.5 * sizes.roller_length
     case = Case(
         body=_body(values, material, sizes.body_length),
         roller=Roller(
             radius=sizes.radius,
             length=sizes.roller_length,
-            profile=build_profile(values["profile"], around),
+            profile=build_profile(values["profile"], sizes),
             material=roller_material,
             ends=ROLLER_BODIES[values["roller_body"]] or "free",
             reference_depth=values.get("roller_reference_depth") if roller_material else None,

@@ -111,7 +111,7 @@ def _json_value(name: str, value: object) -> Any:
     if value is None or isinstance(value, (bool, str, int)):
         return value
     if isinstance(value, float):
-        return float(f"{value:.12g}") if np.isfinite(value) else repr(value)
+        return float(f"{value:.12g}") + 0.0 if np.isfinite(value) else repr(value)
     if isinstance(value, (list, tuple)):
         return [_json_value(name, entry) for entry in value]
     if isinstance(value, Mapping) and all(isinstance(key, str) for key in value):
@@ -156,13 +156,9 @@ def _copied(profile: Profile, name: str, content: str) -> Profile:
 
     try:
         copy: Profile = pickle.loads(cloudpickle.dumps(profile))
+        reason = "" if _digest([name, _values(copy), _behaviour(copy)]) == content else "its copy is another profile"
     except Exception as error:  # a user's class may raise anything
-        raise _unpicklable(name, f"{type(error).__name__}: {error}") from error
-    if _digest([name, _values(copy), _behaviour(copy)]) != content:
-        raise _unpicklable(name, "its copy is another profile")
+        reason = f"{type(error).__name__}: {error}"
+    if reason:
+        raise InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)
     return copy
-
-
-def _unpicklable(name: str, reason: str) -> InvalidInputError:
-    """Error of a profile that cannot be sent to workers."""
-    return InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import socket
 import subprocess
 import time
@@ -10,7 +11,8 @@ import uuid
 import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cache, partial
+from datetime import UTC, datetime
+from functools import cache
 from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -22,10 +24,9 @@ from contactstudy.analysis.summary import Number, case_numbers
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import DERIVED
 from contactstudy.case.gridding import first_sufficient
-from contactstudy.errors import ContactStudyError, MagnitudeWarning
+from contactstudy.errors import ContactStudyError, MagnitudeWarning, StoreError
 from contactstudy.profiles import Profile
-from contactstudy.study.batches import STATUSES, Batch, case_batch, join, with_arrays, write_batch
-from contactstudy.study.errors import StoreError
+from contactstudy.study.batches import IDENTITY_LENGTH, STATUSES, Batch, join, with_arrays, write_batch
 from contactstudy.study.parameters import PARAMETERS
 from contactstudy.study.settings import RUN
 from contactstudy.study.setup import Setup, build_setup
@@ -201,38 +202,39 @@ def _solve_group(task: Task, jobs: list[Job], solver: Solver | None) -> Iterator
 
 def without_result(task: Task, job: Job, status: str, message: str = "", caught: Iterable[str] = ()) -> Batch:
     """Batch of one case without numbers."""
-    return case_batch(
-        identity=job.id,
-        parameters=job.parameters,
-        status=status,
-        message=message,
-        warnings=sorted(set(caught)),
-        run=task.run,
+    messages = sorted(set(caught))
+    return Batch(
+        ids=np.array([job.id.encode()], dtype=f"S{IDENTITY_LENGTH}"),
+        status=np.array([STATUSES.index(status)], dtype=np.int8),
+        runs=np.array([task.run], dtype=np.int64),
+        texts={
+            "parameters": [json.dumps(job.parameters)],
+            "message": [message],
+            "warnings": [json.dumps(messages) if messages else ""],
+            "time": [datetime.now(UTC).isoformat(timespec="seconds")],
+        },
         circumstances={**circumstances(), "study": task.study, "level": task.level},
     )
-
-
-def _solve_on(solver: Solver | None, setup: Setup, film: xr.Dataset | None, grid: Grid | None) -> xr.Dataset:
-    """Solve a case on one of its grids, or for its film, from that of another speed."""
-    # Planning and opening a study need no solver.
-    from contactstudy.film.solve import solve_film
-    from contactstudy.solution import solve
-
-    if setup.case.lubricant is not None:
-        return (solver or solve_film)(setup.case, start=film, **setup.options)
-    return (solver or solve)(setup.case, grid, **setup.options)
 
 
 def _solve_case(
     task: Task, job: Job, setup: Setup, solver: Solver | None, film: xr.Dataset | None
 ) -> tuple[Batch, xr.Dataset | None]:
-    """Solve one case; the result is None if it fails."""
+    """Solve one case, a film from that of another speed; the result is None if it fails."""
+    # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
+    from contactstudy.film.solve import solve_film
+    from contactstudy.solution import solve
+
+    def solve_on(grid: Grid | None) -> xr.Dataset:
+        if setup.case.lubricant is not None:
+            return (solver or solve_film)(setup.case, start=film, **setup.options)
+        return (solver or solve)(setup.case, grid, **setup.options)
 
     try:
         with warnings.catch_warnings(record=True) as caught:
             warnings.simplefilter("always")
-            dataset = first_sufficient(setup.grids, partial(_solve_on, solver, setup, film))
+            dataset = first_sufficient(setup.grids, solve_on)
             numbers = case_numbers(dataset)
             for name, entry in shakedown_summary(dataset).data_vars.items():
                 numbers[str(name)] = Number(float(entry), dict(entry.attrs))

@@ -39,14 +39,6 @@ def test_surface_is_a_plane_at_zero(solved: xr.Dataset, tmp_path) -> None:
     assert "stress" not in data
 
 
-def test_size_of_full_blocks(tmp_path) -> None:
-    """64 x 64 numbers of 8 bytes: compressed files of the library that writes them are broken at this size."""
-    values = np.random.default_rng(0).normal(size=(64, 64))
-    surface = xr.DataArray(values, dims=("x", "y"), coords={"x": np.arange(64.0), "y": np.arange(64.0)})
-    _, data = read(export.to_vtk(xr.Dataset({"pressure": surface}), tmp_path / "top.vtr"))
-    assert np.array_equal(data["pressure"][:, :, 0, 0], values)
-
-
 def test_sorted_positions(solved: xr.Dataset, tmp_path) -> None:
     path = export.to_vtk(solved.isel(z=[2, 0, 1]), tmp_path / "case.vtr", "von_mises")
     coordinates, data = read(path)

@@ -11,33 +11,26 @@ import numpy as np
 TYPES = {"Float64": np.dtype("<f8"), "Float32": np.dtype("<f4"), "Int64": np.dtype("<i8")}
 
 
-def _decode(text: str) -> bytes:
-    """Bytes behind a header of their number, both in base64."""
-    (size,) = np.frombuffer(base64.b64decode(text[:8]), "<u4")
-    return base64.b64decode(text[8 : 8 + 4 * -(-int(size) // 3)])
-
-
 def read(path: Path) -> tuple[tuple[np.ndarray, ...], dict[str, np.ndarray]]:
     """Coordinates, and point data (x, y, z, components)."""
     root = ET.parse(path).getroot()
     assert root.attrib["type"] == "RectilinearGrid"
     assert root.attrib["byte_order"] == "LittleEndian"
+    assert root.attrib["header_type"] == "UInt64"
     grid = root.find("RectilinearGrid")
     piece = grid.find("Piece")
     extent = [int(number) for number in grid.attrib["WholeExtent"].split()]
     shape = tuple(last - first + 1 for first, last in zip(extent[::2], extent[1::2], strict=True))
 
-    # Arrays stand in their element, or behind the underscore that begins the appended data.
-    appended = root.find("AppendedData").text.strip()[1:]
-
     def array(node: ET.Element) -> np.ndarray:
-        text = node.text.strip() if node.attrib["format"] == "binary" else appended[int(node.attrib["offset"]) :]
-        return np.frombuffer(_decode(text), TYPES[node.attrib["type"]])
+        content = base64.b64decode(node.text)
+        assert int(np.frombuffer(content[:8], "<u8")[0]) == len(content) - 8
+        return np.frombuffer(content[8:], TYPES[node.attrib["type"]])
 
     coordinates = tuple(array(node) for node in piece.find("Coordinates"))
     data = {}
     for node in piece.find("PointData"):
-        components = int(node.attrib["NumberOfComponents"])
+        components = int(node.attrib.get("NumberOfComponents", 1))
         # Points in the order x, y, z, x fastest; the components of a point together.
         data[node.attrib["Name"]] = array(node).reshape(*shape[::-1], components).transpose(2, 1, 0, 3)
     return coordinates, data

@@ -10,10 +10,11 @@ import pytest
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, load_case, open_study, run_study
 from contactstudy.study import folder as module
-from contactstudy.study.batches import batch_paths, case_batch, damage, join, read_batch, write_batch
+from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
 from contactstudy.study.files import PART, write_atomically, write_text
 from contactstudy.study.folder import Folder, Share, latest
 from contactstudy.study.settings import RunSettings
+from contactstudy.study.worker import Job, Task, without_result
 from tests.small_study import identity, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
@@ -23,10 +24,15 @@ def run(study, folder, **options):
     return run_study(study, folder, **({"workers": 0, "solver": solve_fake, "progress": False} | options))
 
 
-def rows(count, run=1, **changes):
+def failed(number, parameters, *, run=1, message="WindowError: narrow", warnings=()):
+    """Batch of a case without results."""
+    job = Job(f"{number:064x}", "", parameters, number)
+    return without_result(Task(jobs=(), folder="", run=run), job, "failed", message, warnings)
+
+
+def rows(count, **options):
     """Batch of cases without results."""
-    options = {"parameters": {"friction": 0.1}, "status": "failed", "message": "WindowError: narrow", "run": run}
-    return join([case_batch(identity=f"{number:064x}", **(options | changes)) for number in range(count)])
+    return join([failed(number, {"friction": 0.1}, **options) for number in range(count)])
 
 
 def test_a_second_holder_is_refused_with_the_first_named(tmp_path):
@@ -82,9 +88,7 @@ def test_a_batch_is_read_as_it_was_written(tmp_path):
 def test_tables_of_parameters_are_stored_once(tmp_path):
     profiles = [{"kind": "measured", "drops": [1e-6] * 1000}, {"kind": "cylinder"}]
     parameters = [{"young": 1.0, "profile": profiles[number % 2], "friction": 0.1 * number} for number in range(40)]
-    batch = join(
-        [case_batch(identity=f"{n:064x}", parameters=entry, status="failed") for n, entry in enumerate(parameters)]
-    )
+    batch = join([failed(number, entry) for number, entry in enumerate(parameters)])
     path = write_batch(tmp_path, "a", batch)
     assert read_batch(path, arrays=None).texts["parameters"] == batch.texts["parameters"]
     assert path.stat().st_size < 60_000
@@ -101,7 +105,7 @@ def test_small_batches_are_joined(tmp_path):
     folder = Folder(tmp_path)
     folder.create()
     for number in range(20):
-        write_batch(folder.batches, f"a{number}", case_batch(identity=f"{number:064x}", parameters={}, status="failed"))
+        write_batch(folder.batches, f"a{number}", failed(number, {}))
         folder.compact(Share())
     assert len(batch_paths(folder.batches)) < 10
     folder.compact(Share(), at_end=True)
