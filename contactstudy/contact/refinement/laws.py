@@ -12,6 +12,7 @@ smaller than d0.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -282,7 +283,7 @@ Pair = tuple[float, float]
 Laws = tuple[EndLaw | None, EndLaw | None]
 
 
-def read_ends(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
+def read_ends(edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]) -> tuple[Pair, Pair, float]:
     """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
     top = section_maxima(pressure)
     along_y = float(top.max() / pressure.max()) - 1

@@ -22,7 +22,7 @@ from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_
 from contactstudy.contact.normal.prescribed import Prescribed
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.columns import AxialShape
-from contactstudy.contact.refinement.laws import RIGID, CornerLaw, corner_law, elastic_exponent
+from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
     POLISHED,
     ColumnPressure,
@@ -30,7 +30,6 @@ from contactstudy.contact.refinement.refinement import (
     refine_columns,
     replace_pressure,
     rough_columns,
-    with_data_error,
 )
 from contactstudy.errors import WindowError
 from contactstudy.kernels.load import Load
@@ -54,6 +53,8 @@ CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
 CORNER_SHARE = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
 pressure at the corner grows by 3 % with each halving of its width."""
+
+DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
 
 BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
 """Part of the peak between its cells along y times the square of their number across the contact, and the share of the
@@ -158,15 +159,21 @@ def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axia
     if other is None:
         return refined
     solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other)))
-    refined = with_data_error(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
-    corners = case.slope_jumps
-    errors = list(refined.peak_errors)
-    for x, jump in zip(*corners, strict=True):
+    moved = replace_pressure(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
+    errors = {
+        name: [
+            error + DATA_ERROR * (abs(value - other) if np.isfinite(value) else 0.0)
+            for error, value, other in zip(errors, refined.values[name], moved.values[name], strict=True)
+        ]
+        for name, errors in refined.errors.items()
+    }
+    for x, jump in zip(*case.slope_jumps, strict=True):
         column = int(np.clip(np.searchsorted(refined.edges, x) - 1, 0, refined.edges.size - 2))
         side = int(x > 0.5 * (shape.start + shape.stop))
-        if jump * case.modulus > CORNER_SHARE * refined.peaks[side] and refined.pressure[column].any():
-            errors[side] = np.inf
-    return replace(refined, peak_errors=(errors[0], errors[1]))
+        peak = refined.values["peak_pressure"][side]
+        if jump * case.modulus > CORNER_SHARE * peak and refined.pressure[column].any():
+            errors["peak_pressure"][side] = np.inf
+    return replace(refined, errors=errors)
 
 
 def _cell_number_y(part: float, accuracy: float) -> int:
@@ -177,49 +184,24 @@ def _cell_number_y(part: float, accuracy: float) -> int:
 
 def refined_values(settled: RefinedContact) -> xr.Dataset:
     """Labelled values with their errors; at a singular end the law instead of the pressure."""
-    refined = settled.refined
-    values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
+    refined, corner = settled.refined, settled.corner
+    values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = settled.contact.shape.grid.dy
-    for name, side in (("first", 0), ("last", 1)):
-        law = refined.laws[side]
-        values |= {
-            f"peak_pressure_{name}": refined.peaks[side],
-            f"peak_pressure_{name}_error": refined.peak_errors[side],
-            f"end_pressure_{name}": refined.ends[side],
-            f"end_pressure_{name}_error": refined.end_errors[side],
-            f"end_load_{name}": dy * refined.loads[side],
-            f"end_load_{name}_error": dy * refined.load_errors[side],
-        }
-        if law is not None:
-            values |= {
-                f"end_exponent_{name}": law.exponent,
-                f"end_intensity_{name}": law.intensity,
-                f"end_intensity_{name}_error": law.intensity_error,
-            }
+    for side, end in enumerate(("first", "last")):
+        for name, pair in refined.values.items():
+            unit = dy if name == "end_load" else 1.0
+            values[f"{name}_{end}"] = unit * pair[side]
+            values[f"{name}_{end}_error"] = unit * refined.errors[name][side]
+        values |= _law_values(refined.laws[side], f"_{end}")
     sharper = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
-    if sharper is not None:
-        values |= {
-            "end_exponent": sharper.exponent,
-            "end_intensity": sharper.intensity,
-            "end_intensity_error": sharper.intensity_error,
-        }
-    if settled.corner is not None:
-        corner = settled.corner
-        values |= {
-            "corner_x": corner.x,
-            "corner_slope": corner.slope,
-            "corner_intensity": corner.intensity,
-        }
+    values |= _law_values(sharper)
+    if corner is not None:
+        values |= {"corner_x": corner.x, "corner_slope": corner.slope, "corner_intensity": corner.intensity}
         if corner.end is None:
             values |= {"corner_distance": corner.distance, "corner_distance_error": corner.distance_error}
-        else:
-            values |= {
-                "end_exponent": corner.end.exponent,
-                "end_intensity": corner.end.intensity,
-                "end_intensity_error": corner.end.intensity_error,
-            }
+        values |= _law_values(corner.end)
     result = xr.Dataset(values)
-    if settled.corner is not None and settled.corner.slope > SMALL_SLOPE:
+    if corner is not None and corner.slope > SMALL_SLOPE:
         result["corner_intensity"].attrs["comment"] = f"a slope above {SMALL_SLOPE} is beyond small strains"
     if any(law and law.fitted for law in refined.laws):
         result = without_error(result, *(str(name) for name in result if str(name).startswith("end_exponent")))
@@ -230,6 +212,14 @@ def refined_values(settled: RefinedContact) -> xr.Dataset:
     if not refined.settled:
         result["peak_pressure_error"].attrs["comment"] = "more than the accuracy: the most columns were reached"
     return describe(result)
+
+
+def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
+    """Exponent and intensity of a law by their names in results, for an `end` or the sharper one."""
+    if law is None:
+        return {}
+    intensity = f"end_intensity{end}"
+    return {f"end_exponent{end}": law.exponent, intensity: law.intensity, f"{intensity}_error": law.intensity_error}
 
 
 def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None) -> Shape:

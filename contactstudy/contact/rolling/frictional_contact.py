@@ -32,7 +32,7 @@ LEAST_ACCURACY = 1e-5
 
 
 AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
-    True: {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"},
+    True: Rolling.AMPLITUDES,
     False: {"x": "shift_x", "y": "shift_y"},
 }
 
@@ -91,7 +91,8 @@ class FrictionalContact:
         rolling = "spin" in tractions.rigid
         names, unit = AMPLITUDES[rolling], "1" if rolling else "m"
         scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
-        for name in ("force_x", "force_y", "moment_z", "bound_error", "slip_error", "force_error"):
+        scalars |= tractions.resultants
+        for name in ("bound_error", "slip_error", "force_error"):
             scalars[name] = getattr(tractions, name)
         areas, pressed = shape.grid.weights, self.contact.pressure > 0
         scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * pressed).sum())

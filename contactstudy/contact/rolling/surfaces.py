@@ -10,7 +10,7 @@ import numpy as np
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
 from contactstudy.contact.normal.pair import ScaledOperator
 from contactstudy.errors import InvalidInputError
@@ -82,9 +82,7 @@ class Tractions:
     stick."""
     sticks: BoolArray  # (x, y): sticking cells of the contact
     rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
-    force_x: float  # resultants on the body, N and N m
-    force_y: float
-    moment_z: float
+    resultants: Mapping[str, float]  # forces and moment on the body, N and N m, by their names in results
     work: float  # frictional work: per distance rolled, J/m, or of the shift, J
     bound_error: float = 0.0
     """Certificate, recomputed: traction above the bound, over the largest bound; slip where cells stick, and slip
@@ -96,56 +94,35 @@ class Tractions:
     converged: bool = True  # whether the tolerance was reached
     leading: Leading | None = None  # origin of the places of the slip in rolling
 
-
-def motion_names(motion: Shift | Rolling) -> tuple[str, ...]:
-    """Names of the rigid motions."""
-    return ("x", "y", "spin") if isinstance(motion, Rolling) else ("x", "y")
-
-
-def prescribed_amplitude(motion: Shift | Rolling, name: str) -> float:
-    """Prescribed amplitude of a rigid motion; 0 where its force is prescribed."""
-    names = {"x": "x", "y": "y"}
-    if isinstance(motion, Rolling):
-        names = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
-    return getattr(motion, names[name]) or 0.0
-
-
-def prescribed_resultant(motion: Shift | Rolling, name: str) -> float:
-    """Prescribed force or moment."""
-    return float(getattr(motion, {"x": "force_x", "y": "force_y", "spin": "moment_z"}[name]))
-
-
-def zero_tractions(motion: Shift | Rolling, surfaces: Surfaces) -> Tractions:
-    """Tractions and slip where the friction is 0 everywhere."""
-    shape = surfaces.grid.shape
-    return Tractions(
-        traction=np.zeros((2, *shape)),
-        slip=np.zeros((2, *shape)),
-        sticks=np.zeros(shape, bool),
-        rigid={name: prescribed_amplitude(motion, name) for name in motion_names(motion)},
-        force_x=0.0,
-        force_y=0.0,
-        moment_z=0.0,
-        work=0.0,
-    )
+    @classmethod
+    def of(
+        cls, surfaces: Surfaces, rigid: Mapping[str, float], traction: FloatArray, slip: FloatArray, sticks: BoolArray
+    ) -> Tractions:
+        """Tractions with their resultants and work."""
+        resultants = (surfaces.weights * traction).sum(axis=(1, 2, 3)).tolist()
+        return cls(
+            traction=traction,
+            slip=slip,
+            sticks=sticks,
+            rigid=rigid,
+            resultants=dict(zip(RESULTANTS.values(), resultants, strict=True)),
+            work=float((traction * slip * surfaces.areas).sum()),
+        )
 
 
 def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray) -> None:
     """Raise if tractions within their bound (x, y) cannot make the prescribed resultants with these `weights`."""
-    modes = motion.modes
-    resultants = np.array([prescribed_resultant(motion, name) for name in modes])
+    modes, resultants = motion.modes, np.array(list(motion.resultants.values()))
     if not modes or (bound.any() and not resultants.any()):
         return
-    names = [{"x": "force_x", "y": "force_y", "spin": "moment_z"}[name] for name in modes]
-    works = weights[[("x", "y", "spin").index(name) for name in modes]]
-    largest = _largest_multiple(resultants, bound, works)
+    names = [RESULTANTS[mode] for mode in modes]
+    largest = _largest_multiple(resultants, bound, weights[[list(RESULTANTS).index(mode) for mode in modes]])
     # At all of full sliding's force the rigid slip is undetermined.
     if largest * (1 - 1e-9) > 1:
         return
-    units = {"spin": "N m"}
     limits = ", ".join(
-        f"{name} = {largest * value:.6g} {units.get(mode, 'N')}"
-        for name, mode, value in zip(names, modes, resultants, strict=True)
+        f"{name} = {largest * value:.6g} {'N m' if name == 'moment_z' else 'N'}"
+        for name, value in zip(names, resultants, strict=True)
     )
     raise InvalidInputError(
         ", ".join(names),

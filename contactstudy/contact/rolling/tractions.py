@@ -26,7 +26,7 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.contact.normal.pair import ScaledOperator
 from contactstudy.contact.rolling.coulomb import (
@@ -44,10 +44,6 @@ from contactstudy.contact.rolling.surfaces import (
     Surfaces,
     Tractions,
     check_forces,
-    motion_names,
-    prescribed_amplitude,
-    prescribed_resultant,
-    zero_tractions,
 )
 from contactstudy.kernels.load import Load
 
@@ -208,7 +204,8 @@ def solve_tractions(
     cells = RollingCells.of(pressure, bound, shares) if rolling else _shift_cells(bound)
     check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
-        return zero_tractions(motion, surfaces)
+        zero = np.zeros((2, *grid.shape))
+        return Tractions.of(surfaces, motion.amplitudes, zero, zero, np.zeros(grid.shape, bool))
     if isinstance(motion, Rolling) and motion.model == "fastsim":
         return solve_strips(motion, surfaces, bound)
     displaced = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
@@ -261,15 +258,15 @@ def _coulomb_problem(
         on_grid = cells.on_grid(traction, grid.shape)
         return -elastic_slip(surfaces.operator.displaced(dict(zip(TANGENTIAL, on_grid, strict=True)), TANGENTIAL))
 
-    names, modes, weights = motion_names(motion), motion.modes, surfaces.weights
+    amplitudes, modes, weights = motion.amplitudes, motion.modes, surfaces.weights
     row, column = cells.unknown
     x, y = grid.x[row], grid.y[column] + cells.offset * grid.dy
-    unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in names}
+    unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
     rigid = elastic_slip(displaced) + sum(
-        (prescribed_amplitude(motion, name) * unit_slips[name] for name in names if name not in modes),
+        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes),
         np.zeros((2, 1)),
     )  # eq. (44)
-    works = np.array([cells.gather(weights[names.index(name)]) for name in modes])
+    works = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
         relief=relief,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
@@ -277,7 +274,7 @@ def _coulomb_problem(
         rigid=rigid,
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
         works=works.reshape(len(modes), *rigid.shape),
-        resultants=np.array([prescribed_resultant(motion, name) for name in modes]),
+        resultants=np.array(list(motion.resultants.values())),
         shares=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
         symmetric=not rolling,
     )
@@ -322,7 +319,7 @@ def _complete_tractions(
     surfaces: Surfaces,
 ) -> Tractions:
     """Resultants and certificate of a solution, recomputed from its tractions."""
-    modes, grid, weights = motion.modes, surfaces.grid, surfaces.weights
+    grid = surfaces.grid
     cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
     bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
@@ -332,27 +329,19 @@ def _complete_tractions(
     sticks[tuple(cells.unknown)] = solution.sticks
     for row, column, number in zip(*cells.tied, cells.to, strict=True):
         slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[number]
-    resultants = (weights * traction).sum(axis=(1, 2, 3))
-    prescribed = dict(zip(modes, problem.resultants, strict=True))
-    largest = (np.abs(weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2))
+    rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
+    tractions = Tractions.of(surfaces, rigid, traction, slip, sticks)
+    largest = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
     errors = [
-        abs(resultants[number] - prescribed[name]) / max(largest[number], 1e-300)
-        for number, name in enumerate(("x", "y", "spin"))
-        if name in prescribed
+        abs(tractions.resultants[name] - motion.resultants[mode]) / max(size, 1e-300)
+        for (mode, name), size in zip(RESULTANTS.items(), largest, strict=True)
+        if mode in motion.modes
     ]
-    unknown = dict(zip(modes, solution.amplitudes.tolist(), strict=True))
-    return Tractions(
-        traction=traction,
-        slip=slip,
-        sticks=sticks,
-        rigid={name: unknown.get(name, prescribed_amplitude(motion, name)) for name in motion_names(motion)},
-        force_x=float(resultants[0]),
-        force_y=float(resultants[1]),
-        moment_z=float(resultants[2]),
-        work=float((traction * slip * surfaces.areas).sum()),
+    return replace(
+        tractions,
         bound_error=bound_error,
         slip_error=slip_error,
-        force_error=float(max(errors, default=0.0)),
+        force_error=max(errors, default=0.0),
         steps=solution.steps,
         converged=solution.converged,
     )
