@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,31 +12,18 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
 from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.normal.pair import ScaledOperator
+from contactstudy.contact.normal.pair import PairOperator
 from contactstudy.errors import InvalidInputError
+from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
 
-TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)
-"""Directions of tractions and slip, in the order of every array of two components."""
-
-
-class RelativeOperator(Protocol):
-    """Displacements of the surfaces relative to each other."""
-
-    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
-        """Displacements (m) in `directions` under loads on the first body (Pa)."""
-        ...
-
-    @property
-    def coarse(self) -> RelativeOperator | ScaledOperator:
-        """Approximate operator on cells of twice the size; a scaled one has normal displacements only."""
-        ...
+TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)  # directions of tractions and slip, in the order of every array
 
 
 class Surfaces(NamedTuple):
     """Bodies and cells."""
 
-    operator: RelativeOperator  # displacements relative to each other
+    operator: PairOperator | SurfaceOperator  # displacements relative to each other
     grid: Grid
     materials: list[Material]  # of the elastic bodies
     middle: float  # position x about which spin and moment are counted, metres
@@ -77,19 +64,14 @@ class Tractions:
     """Tractions on the body, and the slip of the roller against it."""
 
     traction: FloatArray  # (2, x, y): along x and y, Pa
-    slip: FloatArray
-    """(2, x, y): along x and y: per distance rolled, or metres in a shift; 0 outside the contact and where cells
-    stick."""
+    slip: FloatArray  # (2, x, y): per distance rolled, or metres in a shift; 0 where cells stick or bear no pressure
     sticks: BoolArray  # (x, y): sticking cells of the contact
     rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
     resultants: Mapping[str, float]  # forces and moment on the body, N and N m, by their names in results
     work: float  # frictional work: per distance rolled, J/m, or of the shift, J
-    bound_error: float = 0.0
-    """Certificate, recomputed: traction above the bound, over the largest bound; slip where cells stick, and slip
-    across or against the traction elsewhere, over the rigid slip; error of prescribed resultants, over the
-    largest."""
-    slip_error: float = 0.0
-    force_error: float = 0.0
+    bound_error: float = 0.0  # certificate: traction above the bound, over the largest bound
+    slip_error: float = 0.0  # certificate: slip that contradicts the law, over the rigid slip
+    force_error: float = 0.0  # certificate: error of prescribed resultants, over the largest
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
     leading: Leading | None = None  # origin of the places of the slip in rolling
