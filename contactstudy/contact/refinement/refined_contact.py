@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import NamedTuple
 
@@ -15,7 +14,7 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.models import EndedBody
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.case.case import LARGEST_HALF_WIDTH, SMALLEST_HALF_WIDTH, Case
-from contactstudy.case.gridding import columns_of
+from contactstudy.case.gridding import columns_of, first_sufficient
 from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
@@ -31,7 +30,6 @@ from contactstudy.contact.refinement.refinement import (
     replace_pressure,
     rough_columns,
 )
-from contactstudy.errors import WindowError
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
@@ -42,9 +40,7 @@ ROOM, COUPLED_ROOM, MOVED_ROOM = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
 which also solve the contact on half of the cells and depend on two cells ahead. Speed."""
 
-WINDOW_STEP = 2 ** (1 / 6)
-"""Ratio of consecutive windows: similar cases share a window and the kernels of the ends. Speed."""
-
+WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 
 CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
@@ -98,11 +94,9 @@ def _is_immutable(part: object) -> bool:
 
 def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Refine in the narrowest window that contains the contact."""
-    *narrower, widest = WINDOWS
-    for window in narrower:
-        with contextlib.suppress(WindowError):
-            return _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
-    return _refine_in_window(case, widest * case.hertz_half_width, accuracy, tolerance)
+    return first_sufficient(
+        WINDOWS, lambda window: _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
+    )
 
 
 _cached_contact = cached("refined contacts", lambda refined: refined.nbytes)(_refine_contact)
@@ -132,7 +126,8 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
         refined = refine_columns(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
         refined = _with_data_error(solver, refined, shape)
-    contact = solver.contact(refined.edges, refined.pressure, tolerance)
+    full = solver.shape(refined.edges)
+    contact = contact_of(full, Settings(tolerance), ArrayKey(_padded(refined.pressure, full.grid, refined.edges)))
     if contact.shape.coupled_friction or contact.motions.total.tilt:
         refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
     return RefinedContact(contact, refined, _strongest_corner(case, refined))
@@ -260,11 +255,6 @@ class _ColumnSolver:
         """Contact to solve."""
         return contact_shape(self.case, self.grid(edges))
 
-    def contact(self, edges: FloatArray, pressure: FloatArray, tolerance: float) -> Contact:
-        """Contact relative to the reference lines, from a pressure (column, y)."""
-        shape = self.shape(edges)
-        return contact_of(shape, Settings(tolerance), ArrayKey(_padded(pressure, shape.grid, edges)))
-
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         """Contact without coupled friction, which changes the pressure by a few percent and no columns."""
         shape = self.shape(edges)._replace(coupled_friction=0.0)
@@ -304,11 +294,6 @@ def _padded(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
     return padded
 
 
-def _face_beyond(distance: float, near: float) -> float:
-    """Length of the face beyond an end; 0 at a flush or overhanging roller."""
-    return distance if distance > near else 0.0
-
-
 def _exponent(case: Case, distance: float, near: float) -> float:
     """Exponent of the pressure at an end, at a distance from the end of the face; NaN without a theory."""
     body, roller = case.body, case.roller.body
@@ -329,6 +314,7 @@ def _axial_shape(case: Case) -> AxialShape:
     half_width = case.hertz_half_width
     near = 1e-9 * (stop - start)
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
+    room = [distance if distance > near else 0.0 for distance in distances]
     corners = case.slope_jumps
     resolved = as_shape(case.roller.profile).second_interpolation() is None
     return AxialShape(
@@ -337,7 +323,7 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width=half_width,
         depth=half_width**2 / (2 * case.roller.radius),
         height=case.lowest,
-        room=(_face_beyond(distances[0], near), _face_beyond(distances[1], near)),
+        room=(room[0], room[1]),
         exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
         # The factor of the body's image is not that of the roller's.
         corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),
@@ -356,13 +342,10 @@ and the largest number of corrections of the load. Speed."""
 
 ABOVE = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
 
-ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4
-"""Accuracy and tolerance of contacts that determine a load, or how a load turns the reference lines. Speed."""
-
+ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 ROOMIER = 1.5  # factor on the window for half as many cells along y, which reach farther beyond the contact. Speed.
 
-SLICES, WIDTH_PART = 200, 0.3
-"""Slices of the first guess of a load, and their half-width over the half-width of the undeformed overlap. Speed."""
+SLICES, WIDTH_PART = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
 
 
 class ApproachContact(NamedTuple):
