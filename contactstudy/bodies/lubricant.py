@@ -80,7 +80,6 @@ class Lubricant:
             if value is not None or name in ("viscosity", "pressure_viscosity"):
                 checks.store(self, **{name: checks.positive(name, value, unit)})
         for name, laws in (("viscosity_law", VISCOSITY_LAWS), ("density_law", DENSITY_LAWS)):
-            checks.instance(name, getattr(self, name), str, "a name")
             checks.known_name(name, getattr(self, name), laws)
         if self.viscosity_law == "roelands" and self.viscosity <= ROELANDS_VISCOSITY:
             raise InvalidInputError(
@@ -205,7 +204,6 @@ class Lubricant:
         >>> Lubricant.preset("heavy machine oil", 60.0)
         Lubricant(eta0 = 0.034 Pa s, alpha = 20.5 1/GPa, roelands, dowson-higginson density)
         """
-        checks.instance("name", name, str, "a name")
         oil = OILS[checks.known_name("name", name, OILS)]
         theta = checks.finite("temperature", temperature, "degrees Celsius")
         first, last = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]

@@ -143,7 +143,6 @@ class EndedBody(Body):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
 
     @property

@@ -197,7 +197,6 @@ class Rolling(StickSlip):
     UNITS: ClassVar[Mapping[str, str]] = {"x": "", "y": "", "spin": "rad/m"}
 
     def __post_init__(self) -> None:
-        checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
         if self.speed is not None:
             checks.store(self, speed=checks.positive("speed", self.speed, "m/s"))

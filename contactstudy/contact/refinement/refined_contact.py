@@ -217,22 +217,17 @@ def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
     return {f"end_exponent{end}": law.exponent, intensity: law.intensity, f"{intensity}_error": law.intensity_error}
 
 
-def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None) -> Shape:
-    """Contact of a case to solve on cells; default: the load or approach of the case."""
-    gap = case.gap(grid)
-    prescribed = (prescribed or prescribed_load(case)).checked(gap, grid)
+def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None, gap: FloatArray | None = None) -> Shape:
+    """Contact of a case to solve on cells; default: the load or approach, and the gap, of the case."""
+    gap = case.gap(grid) if gap is None else gap
+    if prescribed is None and case.approach is not None:
+        prescribed = Prescribed(approach=case.approach)
+    prescribed = (prescribed or Prescribed(case.normal_load, case.load_position)).checked(gap, grid)
     return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
 
 
-def prescribed_load(case: Case) -> Prescribed:
-    """Load or approach that a case prescribes."""
-    if case.approach is not None:
-        return Prescribed(approach=case.approach)
-    return Prescribed(case.normal_load, case.load_position)
-
-
 def replace_contact(settled: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
-    """RefinedColumns contact with another pressure on the same columns, from friction or finer cells along y."""
+    """Refined contact with another pressure on the same columns, from friction or finer cells along y."""
     refined = settled.refined
     pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
     refined = replace_pressure(refined, pressure, _axial_shape(case))
