@@ -142,6 +142,7 @@ def instance(name: str, value: object, kind: type | tuple[type, ...], allowed: s
 
 def known_name(name: str, value: str, names: Iterable[str]) -> str:
     """Return `value` if it is one of `names`, or raise with the nearest names; up to twenty are listed all."""
+    instance(name, value, str, "a name")
     names = sorted(names)
     if value in names:
         return value

@@ -20,6 +20,9 @@ ROELANDS_VISCOSITY = 6.31e-5
 DENSITY_PRESSURE, DENSITY_GAIN = 5.9e8, 1.34  # Constants of Dowson and Higginson's density, Pa and 1
 KELVIN = 273.15  # 0 degrees Celsius in kelvin
 
+UNITS = {"viscosity": "Pa s", "pressure_viscosity": "1/Pa", "roelands_exponent": "", "density": "kg/m3"}
+UNITS |= {"temperature_viscosity": "1/K", "conductivity": "W/(m K)", "eyring_stress": "Pa", "limiting_shear": ""}
+
 
 @dataclass(frozen=True, kw_only=True)
 class Lubricant:
@@ -72,22 +75,11 @@ class Lubricant:
     limiting_shear: float | None = None
 
     def __post_init__(self) -> None:
-        units = {
-            "viscosity": "Pa s",
-            "pressure_viscosity": "1/Pa",
-            "roelands_exponent": "",
-            "density": "kg/m3",
-            "temperature_viscosity": "1/K",
-            "conductivity": "W/(m K)",
-            "eyring_stress": "Pa",
-            "limiting_shear": "",
-        }
-        for name, unit in units.items():
+        for name, unit in UNITS.items():
             value = getattr(self, name)
             if value is not None or name in ("viscosity", "pressure_viscosity"):
                 checks.store(self, **{name: checks.positive(name, value, unit)})
         for name, laws in (("viscosity_law", VISCOSITY_LAWS), ("density_law", DENSITY_LAWS)):
-            checks.instance(name, getattr(self, name), str, "a name")
             checks.known_name(name, getattr(self, name), laws)
         if self.viscosity_law == "roelands" and self.viscosity <= ROELANDS_VISCOSITY:
             raise InvalidInputError(
@@ -186,12 +178,11 @@ class Lubricant:
         >>> round(1e6 * oil.kinematic_viscosity, 1), round(oil.temperature_viscosity, 4)
         (51.7, 0.0396)
         """
-        law = walther(viscosities)
         density = checks.positive("density", density, "kg/m3")
-        point = law.at(checks.finite("temperature", temperature, "degrees Celsius"))
-        given: dict[str, object] = {"temperature_viscosity": point.fall} | dict(properties)
+        viscosity, fall = walther(viscosities, checks.finite("temperature", temperature, "degrees Celsius"))
+        given: dict[str, object] = {"temperature_viscosity": fall} | dict(properties)
         return cls(
-            viscosity=1e-6 * point.viscosity * density,
+            viscosity=1e-6 * viscosity * density,
             density=density,
             pressure_viscosity=pressure_viscosity,
             **given,  # type: ignore[arg-type]
@@ -213,7 +204,6 @@ class Lubricant:
         >>> Lubricant.preset("heavy machine oil", 60.0)
         Lubricant(eta0 = 0.034 Pa s, alpha = 20.5 1/GPa, roelands, dowson-higginson density)
         """
-        checks.instance("name", name, str, "a name")
         oil = OILS[checks.known_name("name", name, OILS)]
         theta = checks.finite("temperature", temperature, "degrees Celsius")
         first, last = OIL_TEMPERATURES[0], OIL_TEMPERATURES[-1]
@@ -237,30 +227,9 @@ class Lubricant:
         return replace(self, **values)  # type: ignore[arg-type]
 
 
-class ViscosityPoint(NamedTuple):
-    """Kinematic viscosity, mm2/s, and the fall of its logarithm with the temperature, 1/K."""
-
-    viscosity: float
-    fall: float
-
-
-class Walther(NamedTuple):
-    """ASTM D341: ``log10 log10(nu + 0.7) = A - B log10 T``, nu in mm2/s and T in kelvin, eq. (409)."""
-
-    a: float
-    b: float
-
-    def at(self, temperature: float) -> ViscosityPoint:
-        """Kinematic viscosity at a temperature in degrees Celsius."""
-        kelvin = temperature + KELVIN
-        inner = 10 ** (self.a - self.b * np.log10(kelvin))
-        viscosity = 10**inner - 0.7
-        fall = (viscosity + 0.7) / viscosity * inner * np.log(10) * self.b / kelvin
-        return ViscosityPoint(float(viscosity), float(fall))
-
-
-def walther(viscosities: dict[float, float]) -> Walther:
-    """Return the law through two kinematic viscosities, mm2/s, by temperature in degrees Celsius."""
+def walther(viscosities: dict[float, float], temperature: float) -> tuple[float, float]:
+    """Kinematic viscosity at a temperature (C), mm2/s, and the fall of its logarithm with the temperature, 1/K."""
+    # ASTM D341, ``log10 log10(nu + 0.7) = A - B log10 T``, nu in mm2/s and T in kelvin, through two points: eq. (409).
     if not isinstance(viscosities, dict) or len(viscosities) != 2:
         raise InvalidInputError("viscosities", viscosities, "two kinematic viscosities (mm2/s) by temperature (C)")
     (first, thick), (last, thin) = sorted(
@@ -273,7 +242,10 @@ def walther(viscosities: dict[float, float]) -> Walther:
     inner = [np.log10(np.log10(each + 0.7)) for each in (thick, thin)]
     logs = [np.log10(each + KELVIN) for each in (first, last)]
     b = (inner[0] - inner[1]) / (logs[1] - logs[0])
-    return Walther(float(inner[0] + b * logs[0]), float(b))
+    kelvin = temperature + KELVIN
+    power = 10 ** (inner[0] + b * logs[0] - b * np.log10(kelvin))
+    viscosity = 10**power - 0.7
+    return float(viscosity), float((viscosity + 0.7) / viscosity * power * np.log(10) * b / kelvin)
 
 
 class Oil(NamedTuple):
@@ -285,7 +257,6 @@ class Oil(NamedTuple):
 
 OIL_TEMPERATURES = (30.0, 60.0, 100.0)  # Temperatures of `OILS`, degrees Celsius
 SOURCE = "G. W. Stachowiak, A. W. Batchelor, Engineering Tribology, table 2.3"  # Source of `OILS`
-# Some mineral oils
 OILS = {
     "heavy machine oil": Oil((0.153, 0.034, 0.0091), (23.7, 20.5, 15.8)),
     "heavier machine oil": Oil((0.250, 0.0505, 0.0126), (25.0, 21.3, 17.6)),

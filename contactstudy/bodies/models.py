@@ -108,14 +108,6 @@ class Body:
             return self.reference_depth
         return self.extent[1] - self.extent[0]
 
-    @property
-    def unbounded_row(self) -> float:
-        """Distance between the ends of a row of images without end, metres; infinite if the images are finite.
-
-        Far from such a row the displacement grows like a logarithm, without an absolute value.
-        """
-        return min(part.extent[1] - part.extent[0] for part in self.parts)
-
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class HalfSpace(Body):
@@ -137,6 +129,8 @@ class EndedBody(Body):
 
     Parameters
     ----------
+    material, reference_depth
+        As of `Body`.
     model : str
         How the ends are treated. "exact" frees them. The others are quick fixes in use, for comparison: "mirror"
         mirrors the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
@@ -149,7 +143,6 @@ class EndedBody(Body):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
 
     @property
@@ -176,14 +169,7 @@ def guilbault_factor(poisson: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class QuarterSpace(EndedBody):
-    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
-
-    Parameters
-    ----------
-    material : Material
-        Material of the body.
-    model : str
-        How the end is treated, see `EndedBody`; "exact" unless a comparison is wanted.
+    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``; parameters as of `EndedBody`.
 
     Examples
     --------
@@ -211,11 +197,7 @@ class FiniteLengthSpace(EndedBody):
     Parameters
     ----------
     length : float
-        Distance between the free ends (``L_f``), metres.
-    material : Material
-        Material of the body.
-    model : str
-        How the ends are treated, see `EndedBody`; "exact" unless a comparison is wanted.
+        Distance between the free ends (``L_f``), metres; further parameters as of `EndedBody`.
 
     Raises
     ------

@@ -34,15 +34,11 @@ from contactstudy.profiles.straight import Chamfer, Cylinder
 
 LARGEST_TILT = 0.1  # Largest tilt, radians: its height is proportional to the distance
 INCLINED_POINTS = 41  # Points along the axis that determine the mean inclination of the roller
+# Hertz half-widths over the roller's radius beyond which a unit is wrong: the first is 10 kPa on steel
 SMALLEST_HALF_WIDTH, LARGEST_HALF_WIDTH = 1e-7, 0.5
-"""Hertz half-widths over the roller's radius beyond which a unit is wrong: the first is 10 kPa on steel."""
-
-SHALLOWEST = 1e-12
-"""Depth of the approach beyond first touch, over the roller's radius, below which rounding determines the contact."""
-
+SHALLOWEST = 1e-12  # Least depth beyond first touch over the roller's radius: less is rounding
 TOUCH_POINTS = 2001  # Points along the axis among which first touch is sought
-SHORTEST, LONGEST = 1e-4, 1e7
-"""Lengths of contact and body over the Hertz half-width outside the usual range: a unit is wrong."""
+SHORTEST, LONGEST = 1e-4, 1e7  # Lengths of contact and body over the Hertz half-width beyond which a unit is wrong
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -125,11 +121,9 @@ class Case:
         checks.instance("body", self.body, Body, allowed)
         checks.instance("roller", self.roller, Roller, "a Roller")
         checks.instance("motion", self.motion, KINDS, MOTIONS)
-        if self.lubricant is not None:
-            checks.instance("lubricant", self.lubricant, Lubricant, "a Lubricant(...), or None")
-        if self.body_edge is not None:
-            kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
-            checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer), kinds)
+        checks.instance("lubricant", self.lubricant, (Lubricant, type(None)), "a Lubricant(...), or None")
+        kinds = "profiles.Cylinder(fillet_radius) or profiles.Chamfer(...), or None for a sharp edge"
+        checks.instance("body_edge", self.body_edge, (Cylinder, Chamfer, type(None)), kinds)
         checks.instance("coupled", self.coupled, (bool, np.bool_), "True or False")
         friction = checked_friction(self.friction)
         check_coupled(friction, self.motion, coupled=self.coupled)

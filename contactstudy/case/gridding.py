@@ -32,7 +32,7 @@ def solver_settings(*, tolerance: float = TOLERANCE, stresses: bool = True) -> N
 
 
 Result = TypeVar("Result")
-GridOrNone = TypeVar("GridOrNone")  # A grid, or None for columns that the solver refines
+Window = TypeVar("Window")  # A width, a grid, or None for columns that the solver refines
 WINDOWS = (2.0, 3.0, 5.0, 8.0)
 """Half-widths of the window over that of the Hertz contact, tried in turn where none is given: a short or a tilted
 contact is wider than the line contact of the same load. The first is the default of :func:`choose_grid`."""
@@ -129,12 +129,12 @@ def widening_grids(case: Case, *, cells_x: float = 8, cells_y: float = 16) -> It
         yield choose_grid(case, cells_x=cells_x, cells_y=cells_y, window=window, margin=2 * window)
 
 
-def first_sufficient(grids: Iterable[GridOrNone], solved: Callable[[GridOrNone], Result]) -> Result:
-    """Return ``solved(grid)`` of the first grid whose window the contact does not leave; else raise its last error."""
+def first_sufficient(windows: Iterable[Window], solved: Callable[[Window], Result]) -> Result:
+    """Return ``solved(window)`` of the first window or grid that contains the contact, or raise the last error."""
     error_of_last = WindowError("there is no grid to solve the contact on")
-    for grid in grids:
+    for window in windows:
         try:
-            return solved(grid)
+            return solved(window)
         except WindowError as error:
             error_of_last = error
     raise error_of_last

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -70,8 +71,47 @@ class Sliding:
         return SurfaceSpeeds(self.body_speed, self.roller_speed)
 
 
+RESULTANTS = {"x": "force_x", "y": "force_y", "spin": "moment_z"}
+"""Forces and moment on the body, conjugate to the rigid motions."""
+
+
+class StickSlip:
+    """Base of the motions with stick and slip: each rigid motion, or the force or moment it makes, is prescribed."""
+
+    AMPLITUDES: ClassVar[Mapping[str, str]]  # parameter of each rigid motion
+    UNITS: ClassVar[Mapping[str, str]]
+
+    def __post_init__(self) -> None:
+        """Check the values, at most one of a motion and its force; the motion is 0 without both."""
+        for mode, name in self.AMPLITUDES.items():
+            force = RESULTANTS[mode]
+            amount, resultant = getattr(self, name), getattr(self, force)
+            if amount is not None and resultant is not None:
+                allowed = "at most one of the two", "the other one follows from it"
+                raise InvalidInputError(f"{name}, {force}", (amount, resultant), *allowed)
+            if resultant is not None:
+                checks.store(self, **{force: checks.finite(force, resultant, "N m" if mode == "spin" else "N")})
+            else:
+                checks.store(self, **{name: checks.finite(name, 0.0 if amount is None else amount, self.UNITS[mode])})
+
+    @property
+    def modes(self) -> tuple[str, ...]:
+        """Rigid motions with a prescribed force or moment: "x", "y" or "spin"."""
+        return tuple(mode for mode in self.AMPLITUDES if getattr(self, RESULTANTS[mode]) is not None)
+
+    @property
+    def amplitudes(self) -> dict[str, float]:
+        """Prescribed amplitudes of the rigid motions; 0 where a force is prescribed."""
+        return {mode: getattr(self, name) or 0.0 for mode, name in self.AMPLITUDES.items()}
+
+    @property
+    def resultants(self) -> dict[str, float]:
+        """Prescribed forces and moment of the modes."""
+        return {mode: getattr(self, RESULTANTS[mode]) for mode in self.modes}
+
+
 @dataclass(frozen=True, kw_only=True)
-class Shift:
+class Shift(StickSlip):
     """One shift of the roller against the body, from rest, with Coulomb friction.
 
     Along each axis either the shift or the force that it needs is prescribed. `solve_contact` goes on from the result
@@ -100,15 +140,8 @@ class Shift:
     force_x: float | None = None
     force_y: float | None = None
 
-    def __post_init__(self) -> None:
-        """Check the values."""
-        for name in ("x", "y"):
-            _check_either(self, name, f"force_{name}", "metres", "N")
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Axes along which the force is prescribed."""
-        return tuple(name for name in ("x", "y") if getattr(self, f"force_{name}") is not None)
+    AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "x", "y": "y"}
+    UNITS: ClassVar[Mapping[str, str]] = {"x": "metres", "y": "metres"}
 
     @property
     def speeds(self) -> None:
@@ -119,7 +152,7 @@ MODELS = ("exact", "fastsim")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Rolling:
+class Rolling(StickSlip):
     """Steady rolling: the contact moves along +y over both surfaces, with Coulomb friction.
 
     A creepage is the velocity of the roller's surface relative to the body's, over the rolling speed; the spin turns
@@ -160,23 +193,16 @@ class Rolling:
     speed: float | None = None
     model: str = "exact"
 
+    AMPLITUDES: ClassVar[Mapping[str, str]] = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
+    UNITS: ClassVar[Mapping[str, str]] = {"x": "", "y": "", "spin": "rad/m"}
+
     def __post_init__(self) -> None:
-        """Check the values."""
-        checks.instance("model", self.model, str, "a name")
         checks.known_name("model", self.model, MODELS)
         if self.speed is not None:
             checks.store(self, speed=checks.positive("speed", self.speed, "m/s"))
-        _check_either(self, "longitudinal_creepage", "force_y", "", "N")
-        _check_either(self, "lateral_creepage", "force_x", "", "N")
-        _check_either(self, "spin", "moment_z", "rad/m", "N m")
+        super().__post_init__()
         if self.modes and self.model == "fastsim":
             raise InvalidInputError("model", self.model, 'a model that takes forces: "exact"', "or give the creepages")
-
-    @property
-    def modes(self) -> tuple[str, ...]:
-        """Motions with a prescribed force: "x", "y" or "spin"."""
-        forces = {"x": self.force_x, "y": self.force_y, "spin": self.moment_z}
-        return tuple(name for name, value in forces.items() if value is not None)
 
     @property
     def speeds(self) -> SurfaceSpeeds | None:
@@ -192,19 +218,6 @@ class Rolling:
 Motion = Sliding | Shift | Rolling  # Any motion
 KINDS, MOTIONS = (Sliding, Shift, Rolling), "a Sliding(), a Shift(...) or a Rolling(...)"
 """Classes of motions, and their text in messages."""
-
-
-def _check_either(motion: Shift | Rolling, moved: str, force: str, unit: str, force_unit: str) -> None:
-    """Check a motion and its force, at most one of them; the motion is 0 without both."""
-    amount, resultant = getattr(motion, moved), getattr(motion, force)
-    if amount is not None and resultant is not None:
-        raise InvalidInputError(
-            f"{moved}, {force}", (amount, resultant), "at most one of the two", "the other one follows from it"
-        )
-    if resultant is not None:
-        checks.store(motion, **{force: checks.finite(force, resultant, force_unit)})
-    else:
-        checks.store(motion, **{moved: checks.finite(moved, 0.0 if amount is None else amount, unit)})
 
 
 @dataclass(frozen=True)

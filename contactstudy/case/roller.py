@@ -89,9 +89,7 @@ class Roller:
         sizes = {name: checks.positive(name, getattr(self, name), "metres") for name in ("radius", "length")}
         checks.store(self, **sizes)
         checks.instance("profile", self.profile, Profile, "a profile from contactstudy.profiles")
-        if self.material is not None:
-            checks.instance("material", self.material, Material, "a Material, or None for a rigid roller")
-        checks.instance("ends", self.ends, str, "a name")
+        checks.instance("material", self.material, (Material, type(None)), "a Material, or None for a rigid roller")
         checks.known_name("ends", self.ends, ("free", "none"))
         if self.reference_depth is not None:
             depth = checks.positive("reference_depth", self.reference_depth, "metres")

@@ -68,7 +68,8 @@ def displacement_field(
     positions = field_positions(body, prescribed.grid, x, y, z, labels=prescribed.labels)
     displacement = displacement_under(body, prescribed.loads, prescribed.grid, positions.points, prescribed.shape)
     fields = positions.dataset({name: displacement[i] for i, name in enumerate(COMPONENTS)})
-    reference = REFERENCE_LENGTHS * body.unbounded_row
+    # Far from a row of images without end the displacement grows like a logarithm, without an absolute value.
+    reference = REFERENCE_LENGTHS * min(part.extent[1] - part.extent[0] for part in body.parts)
     if np.isfinite(reference):
         for name in COMPONENTS:
             fields[name].attrs["reference_distance"] = reference

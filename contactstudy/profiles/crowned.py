@@ -155,14 +155,13 @@ class PartialCrown(Shape):
 class Ellipsoid(Shape):
     """Parabola ``drop = x**2 / (2 R_x)``: the roller as an ellipsoid in Hertz' theory.
 
-    The roller's circle is a parabola too, so the gap is exactly Hertz' elliptical contact.
-    :class:`~contactstudy.profiles.FullCrown` is the circle.
+    The roller's circle is a parabola too, so the gap is exactly Hertz' elliptical contact. `FullCrown` is the circle.
 
     Parameters
     ----------
     crown_radius : float
-        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive. Equal to the roller's radius
-        it makes a sphere. The parabola stands for the body only where ``x`` is small against it.
+        Radius of curvature ``R_x`` in the axial plane at mid-length, metres; positive. The parabola stands for the body
+        only where ``x`` is small against it.
 
     Raises
     ------

@@ -23,17 +23,36 @@ def logarithmic_drop(amplitude: float, t: FloatArray, share: float = 1.0) -> Flo
         return np.asarray(-amplitude * np.log1p(-share * np.minimum(t**2, 1.0)))
 
 
-def lundberg_amplitude(max_pressure: float, *, radius: float, modulus: float) -> float:
-    """Amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` (m) from the Hertz pressure p0 at the design load."""
-    pressure = checks.positive("max_pressure", max_pressure, "Pa")
-    modulus = checks.positive("modulus", modulus, "Pa")
-    return checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2
-
-
 class Logarithmic(Shape):
     """Base of the profiles whose amplitude follows from a design load."""
 
     amplitude: float
+
+    @classmethod
+    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float, **parameters: float) -> Self:
+        """Profile with the amplitude ``A = R (p0 / E*)**2 = q / (pi E*)`` of a Hertz pressure at the design load.
+
+        Parameters
+        ----------
+        max_pressure : float
+            Peak pressure ``p0`` of the Hertz line contact at the design load, Pa.
+        radius : float
+            Roller radius, metres.
+        modulus : float
+            Contact modulus ``E*``, Pa.
+        **parameters
+            Further parameters of the profile.
+        """
+        kind: Any = cls
+        profile: Self = kind(**cls._design(max_pressure, radius, modulus), **parameters)
+        return profile
+
+    @classmethod
+    def _design(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+        """Parameters that follow from the design load."""
+        pressure = checks.positive("max_pressure", max_pressure, "Pa")
+        modulus = checks.positive("modulus", modulus, "Pa")
+        return {"amplitude": checks.positive("radius", radius, "metres") * (pressure / modulus) ** 2}
 
     @classmethod
     def for_load(cls, load: float, *, length: float, radius: float, modulus: float, **parameters: float) -> Self:
@@ -56,9 +75,7 @@ class Logarithmic(Shape):
         sizes = {"length": (length, "metres"), "radius": (radius, "metres"), "modulus": (modulus, "Pa")}
         length, radius, modulus = (checks.positive(name, *value) for name, value in sizes.items())
         pressure = hertz.line_max_pressure(checks.positive("load", load, "N") / length, radius, modulus)
-        kind: Any = cls
-        profile: Self = kind.for_pressure(pressure, radius=radius, modulus=modulus, **parameters)
-        return profile
+        return cls.for_pressure(pressure, radius=radius, modulus=modulus, **parameters)
 
 
 @dataclass(frozen=True, repr=False)
@@ -102,23 +119,6 @@ class Lundberg(Logarithmic):
     def __post_init__(self) -> None:
         object.__setattr__(self, "amplitude", checks.not_negative("amplitude", self.amplitude, "metres"))
         object.__setattr__(self, "delta", checks.not_negative("delta", self.delta))
-
-    @classmethod
-    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float, delta: float = 1.0) -> Lundberg:
-        """Profile whose design load gives the Hertz pressure `max_pressure` (Pa).
-
-        Parameters
-        ----------
-        max_pressure : float
-            Peak pressure of the Hertz line contact at the design load, Pa.
-        radius : float
-            Roller radius, metres.
-        modulus : float
-            Contact modulus ``E*``, Pa.
-        delta : float
-            Modification factor.
-        """
-        return cls(lundberg_amplitude(max_pressure, radius=radius, modulus=modulus), delta)
 
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length; infinite at the very ends."""
@@ -167,10 +167,10 @@ class JohnsGohar(Logarithmic):
         object.__setattr__(self, "half_width", checks.not_negative("half_width", self.half_width, "metres"))
 
     @classmethod
-    def for_pressure(cls, max_pressure: float, *, radius: float, modulus: float) -> JohnsGohar:
-        """Profile for the Hertz pressure `max_pressure`; see :func:`lundberg_amplitude` for the parameters."""
-        amplitude = lundberg_amplitude(max_pressure, radius=radius, modulus=modulus)
-        return cls(amplitude, hertz.line_half_width(max_pressure, radius, modulus))
+    def _design(cls, max_pressure: float, radius: float, modulus: float) -> dict[str, float]:
+        return super()._design(max_pressure, radius, modulus) | {
+            "half_width": hertz.line_half_width(max_pressure, radius, modulus)
+        }
 
     def _share(self, length: float) -> float:
         """Part of Lundberg's argument that is kept, ``1 - 0.3033 b / h``."""
@@ -247,13 +247,6 @@ class FujiwaraKawase(Logarithmic):
         if self.k2 > 1:
             raise InvalidInputError("k2", self.k2, "at most 1, the whole half of the roller")
 
-    @classmethod
-    def for_pressure(
-        cls, max_pressure: float, *, radius: float, modulus: float, edge_drop: float, k1: float = 1.0, k2: float = 1.0
-    ) -> FujiwaraKawase:
-        """Profile for the Hertz pressure `max_pressure`; see :func:`lundberg_amplitude` for the parameters."""
-        return cls(lundberg_amplitude(max_pressure, radius=radius, modulus=modulus), edge_drop, k1, k2)
-
     def drop(self, x: FloatArray, length: float) -> FloatArray:
         """Material removed (m) at distances `x` (m) from mid-length."""
         half = length / 2
@@ -296,9 +289,7 @@ class IsoCylindrical(Shape):
 
     Examples
     --------
-    >>> import numpy as np
-    >>> drop = IsoCylindrical(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)
-    >>> (1e6 * drop).round(3).tolist()
+    >>> (1e6 * IsoCylindrical(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)).round(3).tolist()
     [0.0, 3.576]
     """
 
@@ -335,13 +326,11 @@ class IsoTapered(Shape):
 
     References
     ----------
-    ISO/TS 16281:2008, as for :class:`IsoCylindrical`.
+    ISO/TS 16281:2008.
 
     Examples
     --------
-    >>> import numpy as np
-    >>> drop = IsoTapered(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)
-    >>> (1e6 * drop).round(3).tolist()
+    >>> (1e6 * IsoTapered(diameter=10e-3).drop(np.array([0.0, 4e-3]), length=10e-3)).round(3).tolist()
     [0.0, 4.597]
     """
 

@@ -26,10 +26,8 @@ CHUNK = 256  # Points that are filtered at once
 
 
 def gaussian_filtered(x: FloatArray, values: FloatArray, cutoff: float) -> FloatArray:
-    """Values after a low-pass filter with ISO 16610-21's weight: transmission ``2**-(cutoff / l)**2`` at wavelength l.
-
-    A weighted linear fit at each point keeps zeroth and first moments at the ends (ISO 16610-28; Brinkmann 2001).
-    """
+    """Values low-passed with ISO 16610-21's weight: transmission ``2**-(cutoff / l)**2`` at wavelength l."""
+    # A weighted linear fit at each point keeps zeroth and first moments at the ends (ISO 16610-28; Brinkmann 2001).
     width = ALPHA * cutoff
     step = (x[-1] - x[0]) / (x.size - 1)
     # Deviation from even spacing, over a step, up to which Fourier transforms filter the points

@@ -16,19 +16,18 @@ from contactstudy.analysis.peaks import label_largest_stress
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
-from contactstudy.cache import ArrayKey
 from contactstudy.case.case import Case
 from contactstudy.case.gridding import ACCURACY, TOLERANCE, check_accuracy, choose_grid
 from contactstudy.case.magnitudes import check_balanced, check_on_its_length, inclination, warn_doubtful
 from contactstudy.case.motion import Sliding
-from contactstudy.contact.normal.contact import Contact, Settings, Shape, contact_of
+from contactstudy.contact.normal.contact import Contact, Settings, contact_of
 from contactstudy.contact.refinement.refined_contact import (
     ROUGH_TOLERANCE,
     ROUGHLY,
     ApproachContact,
     approach_load_error,
     contact_at_approach,
-    prescribed_load,
+    contact_shape,
     refine_contact,
     refined_values,
 )
@@ -48,8 +47,7 @@ from contactstudy.fields.stress import contact_stresses
 from contactstudy.kernels.load import Load
 from contactstudy.roughness import heights_on
 
-Cells = Literal["refined", "chosen", "given"]
-"""Origin of the cells: refined to an accuracy, chosen for a rough surface, or given by the caller."""
+Cells = Literal["refined", "chosen", "given"]  # refined to an accuracy, chosen for a rough surface, or the caller's
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,8 +58,7 @@ class CaseContact:
     cells: Cells  # origin of the cells
     contact: Contact  # the contact
     tractions: FrictionalContact | None = None  # stick and slip; none in full sliding
-    values: xr.Dataset = field(default_factory=xr.Dataset)
-    """Values of refined columns with their errors; empty on other cells."""
+    values: xr.Dataset = field(default_factory=xr.Dataset)  # of refined columns with errors; empty on other cells
 
     @property
     def grid(self) -> Grid:
@@ -76,14 +73,17 @@ class CaseContact:
         return sliding(self.contact.pressure, self.case.friction_on(self.grid.x))
 
     def dataset(self) -> xr.Dataset:
-        """Labelled contact with its values."""
-        result = _labelled(self.case, self.contact)
+        """Labelled contact with its values; `tilt` includes the tilt of the case."""
+        case, grid = self.case, self.grid
+        result = contact_dataset(self.contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
+        result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
+        result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
         if self.tractions is not None:
             result = with_tractions(result, self.tractions)
         return result.assign(self.values.data_vars).assign(
             initial_gap=(("x", "y"), self.contact.shape.gap.values.copy()),
-            hertz_half_width=self.case.hertz_half_width,
-            hertz_max_pressure=self.case.hertz_max_pressure,
+            hertz_half_width=case.hertz_half_width,
+            hertz_max_pressure=case.hertz_max_pressure,
         )
 
 
@@ -144,16 +144,8 @@ def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: 
             "move the roller by end_distance, or take more cells along x",
         )
     gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
-    shape = Shape(
-        body=case.body,
-        grid=grid,
-        gap=ArrayKey(gap),
-        prescribed=prescribed_load(case).checked(gap, grid),
-        counterbody=case.counterbody,
-        coupled_friction=case.coupled_friction,
-    )
     try:
-        contact = contact_of(shape, Settings(checks.positive("tolerance", tolerance)))
+        contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
     except WindowError as error:
         advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
         if not case.tilt and case.load_position is None:
@@ -170,19 +162,9 @@ def _checked(case: Case, contact: Contact) -> Contact:
     return contact
 
 
-def _labelled(case: Case, contact: Contact) -> xr.Dataset:
-    """Labelled contact of a case; `tilt` includes the tilt of the case."""
-    grid = contact.shape.grid
-    result = contact_dataset(contact, case.friction_on(grid.x), x=grid.x, y=grid.y)
-    result["tilt"] = result["tilt"].copy(data=result["tilt"] + case.tilt)
-    result["tilt"].attrs["centre"] = "the roller's mid-length" if case.load_position is None else "load_position"
-    return result
-
-
 RESIDUAL_DEPTHS = (0.02, 0.05, 0.1, 0.2, 0.5, 1.0, 2.0)  # depths of `end_traction_residual`, over the Hertz half-width
 
-RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)
-"""Positions of `end_traction_residual` along y, over the Hertz half-width."""
+RESIDUAL_POSITIONS = (-1.1, -0.9, -0.5, 0.0, 0.5, 0.9, 1.1)  # along y, over the Hertz half-width
 
 RESIDUAL_COVERS = (  # comment of `end_traction_residual`
     f"the largest at depths from {RESIDUAL_DEPTHS[0]} a to {RESIDUAL_DEPTHS[-1]} a and |y| up to "

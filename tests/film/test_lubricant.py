@@ -19,11 +19,11 @@ def test_roelands_begins_with_the_coefficient_and_ends_below_barus():
 
 
 def test_walther_through_two_viscosities():
-    law = walther({40: 100.0, 100: 11.0})
-    assert law.at(40.0).viscosity == pytest.approx(100.0)
+    points = {40: 100.0, 100: 11.0}
+    assert walther(points, 40.0)[0] == pytest.approx(100.0)
     step = 1e-3
-    fall = np.log(law.at(70.0 - step).viscosity / law.at(70.0 + step).viscosity) / (2 * step)
-    assert law.at(70.0).fall == pytest.approx(fall, rel=1e-6)
+    fall = np.log(walther(points, 70.0 - step)[0] / walther(points, 70.0 + step)[0]) / (2 * step)
+    assert walther(points, 70.0)[1] == pytest.approx(fall, rel=1e-6)
 
 
 @pytest.mark.parametrize("name", OILS)
@@ -55,4 +55,4 @@ def test_bad_temperatures():
     with pytest.raises(InvalidInputError, match="temperature"):
         Lubricant.preset("spindle oil", 20.0)
     with pytest.raises(InvalidInputError, match="viscosities"):
-        walther({40: 10.0, 100: 20.0})
+        walther({40: 10.0, 100: 20.0}, 70.0)

@@ -22,12 +22,8 @@ Operator = Callable[[FloatArray], FloatArray]
 OVERLAP = 0.1  # part of the tolerated violation from which on an overlapping cell enters the contact. Speed.
 LEAST_ENTRY = 1e-12  # least pressure, over the largest, of a cell that enters the contact: it has to be in it. Speed.
 
-LEAST_RESTORED = 0.1
-"""Least factor, over the mean one, of a linear factor that restores the moment: it must not change sign. Speed."""
-
-ADDED = 0.1
-"""Pressure, over the largest, that is added everywhere if none lies on one side of where the load acts. Speed."""
-
+LEAST_RESTORED = 0.1  # least of a linear factor that restores the moment, over its mean: its sign stays. Speed.
+ADDED = 0.1  # pressure, over the largest, added everywhere if none lies on one side of the load. Speed.
 STEEPEST = 1e4  # largest slope of the exponential factor that restores the moment instead. Speed.
 
 
@@ -35,8 +31,7 @@ STEEPEST = 1e4  # largest slope of the exponential factor that restores the mome
 class Resultants:
     """Prescribed resultants of the pressure; the rigid motions are conjugate to them."""
 
-    total: float | None
-    """Sum over the cells, Pa, conjugate to the approach; None if the approach is prescribed (as part of the gap)."""
+    total: float | None  # sum over the cells, Pa, conjugate to the approach; None if the gap contains the approach
     lever: FloatArray | None = None
     """(x, 1): arm of each cell about the point where the load is to act, over the largest arm: the sum of arm times
     pressure is zero, and the shape tilts about that point."""
@@ -101,8 +96,6 @@ class ContactIterate:
     motion: tuple[float, ...]  # the free rigid motions: approach, metres, and tilt about the point of application
     applications: int  # applications of the operator
     converged: bool  # whether the tolerance was reached
-    history: tuple[float, ...] = ()
-    """Largest violation of the gap conditions over the displacement's variation, per iteration."""
 
 
 def solve_complementarity(
@@ -118,14 +111,11 @@ def solve_complementarity(
     """Pressure ``p >= 0``, gap ``g = gap + operator(p) - motion >= 0``, ``p g = 0``, and prescribed resultants."""
     state = _State(operator, preconditioner, gap, resultants, start)
     converged = False
-    history: list[float] = []
     for _ in range(max_iterations):
         opening = state.opening()
         residual = np.where(state.contact, opening, 0.0)
         violation = np.where(state.contact, np.abs(residual), np.maximum(-opening, 0.0)).max()
         scale = np.ptp(state.sunk)
-        # All cells of a coarse grid may touch and sink equally.
-        history.append(float(violation / scale) if scale > 0 else np.inf)
         step, displacement, curvature = state.search(residual)
         moved = state.pressure - step * state.direction
         change = abs(step) * float(np.abs(state.direction).sum() / state.pressure.sum())
@@ -142,9 +132,7 @@ def solve_complementarity(
             break
     pressure = resultants.restored(state.pressure)
     motion = tuple(float(amount) for amount in state.motion)
-    return ContactIterate(
-        pressure=pressure, motion=motion, applications=state.applications, converged=converged, history=tuple(history)
-    )
+    return ContactIterate(pressure=pressure, motion=motion, applications=state.applications, converged=converged)
 
 
 class _State:

@@ -32,28 +32,19 @@ from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 from contactstudy.threads import one_blas_thread
 
-CONVERGED_TOLERANCES = 10.0
-"""Largest violation of a converged contact over the tolerance of the iteration, which does not check its last step."""
-
-OPEN_TOLERANCES = 10.0
-"""Least open gap of `open_pressure_error`, over the tolerance and the variation of the displacement."""
-
-SYMMETRY_ROUNDING = 1e-10
-"""Rounding of a symmetric gap over the largest, and of symmetric edges over the window. Accuracy."""
+CONVERGED_TOLERANCES = 10.0  # largest violation of a converged contact over the tolerance: the last step is unchecked
+OPEN_TOLERANCES = 10.0  # least gap of `open_pressure_error`, over the tolerance and the displacement's variation
+SYMMETRY_ROUNDING = 1e-10  # rounding of a symmetric gap over the largest, of symmetric edges over the window. Accuracy.
 
 
 @dataclass(frozen=True)
 class Certificate:
     """Violations of the contact's conditions."""
 
-    load_error: float
-    """Resultant of the pressure minus the prescribed load, over the load; 0 where the approach is prescribed."""
-    penetration_error: float
-    """Largest gap or overlap under pressure, or overlap elsewhere, over the variation of the displacement."""
+    load_error: float  # pressure's resultant minus the load, over the load; 0 under a prescribed approach
+    penetration_error: float  # largest gap under pressure or overlap, over the variation of the displacement
     open_pressure_error: float  # largest pressure where the gap is open, over the peak pressure
-    load_position_error: float
-    """Distance of the pressure's resultant from where the load is to act, over the length of the contact; 0 where
-    the shape keeps its inclination."""
+    load_position_error: float  # distance of the resultant from `load_position`, over the length of the contact
 
     def holds(self, tolerance: float) -> bool:
         """Whether every violation is within some tolerances of the iteration."""
@@ -93,11 +84,8 @@ class Shape(NamedTuple):
     gap: ArrayKey  # (x, y): initial gap, metres; infinite beside the shape
     prescribed: Prescribed  # load or approach
     counterbody: Counterbody | None = None  # second elastic body; None: the shape is rigid
-    coupled_friction: float = 0.0
-    """Coefficient of the friction that displaces the surfaces normally; 0 without coupling."""
-    surface: LinearOperator | None = None
-    """Displacement (x, y) of the surfaces towards each other under a pressure (x, y), both raveled, in place of the
-    body."""
+    coupled_friction: float = 0.0  # friction that displaces the surfaces normally
+    surface: LinearOperator | None = None  # displacement of the surfaces under a pressure, in place of the body's
 
     @property
     def directions(self) -> tuple[Load, ...]:
@@ -165,15 +153,11 @@ class Contact:
 
     shape: Shape  # bodies, cells, gap and load
     settings: Settings  # tolerance and bound of the iteration
-    pressure: FloatArray
-    """(x, y): pressure, Pa; gap after deformation and displacement of the body's top relative to its reference line,
-    metres."""
-    gap: FloatArray
-    displacement: FloatArray
-    approach: float
-    """Rigid motion of the shape relative to the reference lines: where the load acts, or at ``x = 0``, metres, and
-    radians."""
-    tilt: float
+    pressure: FloatArray  # (x, y), Pa
+    gap: FloatArray  # (x, y): gap after deformation, metres
+    displacement: FloatArray  # (x, y): displacement of the body's top relative to its reference line, metres
+    approach: float  # relative to the reference lines, where the load acts, or at ``x = 0``, metres
+    tilt: float  # relative to the reference lines, radians
     iterations: int  # applications of the operator
     converged: bool  # whether the tolerance was reached
     motions: LineMotions  # motions of the reference lines

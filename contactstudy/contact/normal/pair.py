@@ -13,6 +13,7 @@ from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.counterbody import Counterbody
 from contactstudy.bodies.models import Body
 from contactstudy.checks import FloatArray
+from contactstudy.contact.normal.problem import cell_means
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
 
@@ -33,19 +34,10 @@ class Shares:
             return None
         return cls(overlap / counterbody.own_grid(grid).widths[:, None], overlap.T / widths[:, None])
 
-    def joined(self) -> Shares:
-        """Shares of cells of twice the size in each other."""
-        return Shares(_joined(self.to), _joined(self.back))
-
 
 def _opposed(direction: Load, values: FloatArray) -> FloatArray:
     """Reverse a load or a displacement along the surface, as the second body has it."""
     return values if direction is Load.NORMAL else -values
-
-
-def _joined(shares: FloatArray) -> FloatArray:
-    rows, columns = shares.shape
-    return np.asarray(0.5 * shares.reshape(rows // 2, 2, columns // 2, 2).sum(axis=(1, 3)))
 
 
 class PairOperator:
@@ -116,7 +108,7 @@ class PairOperator:
         """Approximate operator on cells of twice the size; without pairs of cells the softened first body."""
         if self.counterbody.grid.cells_x % 2:
             return ScaledOperator(self.body.coarse, self._softer)
-        shares = self._shares.joined() if self._shares is not None else None
+        shares = self._shares and Shares(2 * cell_means(self._shares.to), 2 * cell_means(self._shares.back))
         return PairOperator(self.body.coarse, self.counterbody.coarse, shares)
 
 

@@ -27,21 +27,19 @@ class Prescribed(NamedTuple):
     """Either the load, at a given position or with a given inclination, or the approach."""
 
     load: float | None = None  # normal load, N
-    load_position: float | None = None
-    """Position x on which the load acts, metres; None: the shape keeps its inclination."""
+    load_position: float | None = None  # position x of the load, metres; None: the shape keeps its inclination
     approach: float | None = None  # how far the shape is pressed down from first touch, metres
 
     def checked(self, gap: FloatArray, grid: Grid) -> Prescribed:
-        """Return the same as floats, or raise if the values do not go together or with the initial gap (x, y)."""
+        """Return floats, or raise if the values contradict each other or the initial gap (x, y)."""
         load, position, approach = self
         if (load is None) == (approach is None):
             raise InvalidInputError("load, approach", (load, approach), "exactly one of the two, the other None")
         if approach is not None:
             lowered = checks.finite("approach", approach, "metres")
             if position is not None:
-                raise InvalidInputError(
-                    "load_position", position, "None where the approach is prescribed", "prescribe the load instead"
-                )
+                allowed = "None where the approach is prescribed"
+                raise InvalidInputError("load_position", position, allowed, "prescribe the load instead")
             if lowered <= gap.min():
                 raise InvalidInputError("approach", lowered, f"more than the least gap, {gap.min():g} m")
             return Prescribed(approach=lowered)
@@ -51,11 +49,8 @@ class Prescribed(NamedTuple):
         at = checks.finite("load_position", position, "metres")
         columns = grid.x[np.isfinite(gap).any(axis=1)]
         if not columns[0] < at < columns[-1]:
-            raise InvalidInputError(
-                "load_position",
-                at,
-                f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there",
-            )
+            allowed = f"under the shape, between {columns[0]:g} and {columns[-1]:g} m, for it to balance there"
+            raise InvalidInputError("load_position", at, allowed)
         return Prescribed(total, at)
 
     @property

@@ -19,11 +19,8 @@ ROUGH_TOLERANCE = 1e-2  # tolerance of the first coupled round. Speed.
 NESTED_CELLS = 4096  # cells from which on the contact is first solved on coarser ones. Speed.
 COARSE_TOLERANCE = 1e-3  # tolerance of a solution that serves as a guess. Speed.
 
-GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3
-"""Part of the cells below the level of a first guess, and a depth over the gap's range added to it. Speed."""
-
-OPENING_POWER = 2 / 3
-"""Power of the opening that is linear in the distance from a contact's edge (Johnson, section 5.1). Speed."""
+GUESSED_CONTACT, GUESSED_DEPTH = 0.4, 1e-3  # cells below a first guess, and depth over the gap's range. Speed.
+OPENING_POWER = 2 / 3  # power of the opening that is linear in the distance from a contact's edge. Speed.
 
 
 class ContactOperator(Protocol):
@@ -48,9 +45,7 @@ class ContactProblem:
     """A contact to solve, checked."""
 
     grid: Grid
-    gap: FloatArray
-    """(x, y): initial gap, metres, less the approach if that is prescribed; infinite where there is nothing to
-    touch."""
+    gap: FloatArray  # (x, y): initial gap less a prescribed approach, metres; infinite where nothing can touch
     resultants: Resultants  # prescribed resultants of the pressure
     friction: float  # coefficient of the traction along +y
     tolerance: float  # tolerance of the iteration
@@ -88,7 +83,7 @@ def _first_guess(operator: ContactOperator, problem: ContactProblem) -> FloatArr
     if gap.size >= NESTED_CELLS and not any(cells % 2 for cells in problem.grid.shape):
         coarse = problem.coarser()
         squared = _continued_square(operator.coarse, coarse, solve_normal(operator.coarse, coarse))
-        finer = between_columns(_refined(squared.T).T, coarse.grid.x, problem.grid.x)
+        finer = between_columns(halve_cells(squared.T, 0).T, coarse.grid.x, problem.grid.x)
         guess = np.sqrt(np.maximum(np.where(possible, finer, 0.0), 0.0))
     else:
         heights = _levelled(problem)
@@ -128,11 +123,22 @@ def _continued_square(operator: ContactOperator, problem: ContactProblem, iterat
     return np.asarray(squared - opening * (np.median(squared[inner]) / np.median(opening[outer])))
 
 
-def _refined(values: FloatArray) -> FloatArray:
-    """Values on cells of half the size along the first axis, by linear interpolation between the centres."""
-    before, after = np.vstack([values[:1], values[:-1]]), np.vstack([values[1:], values[-1:]])
-    halves = np.stack([0.75 * values + 0.25 * before, 0.75 * values + 0.25 * after], axis=1)
-    return halves.reshape(-1, values.shape[1])
+def cell_means(values: FloatArray) -> FloatArray:
+    """Means (x, y) over cells of twice the size."""
+    rows, columns = values.shape
+    return np.asarray(values.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3)))
+
+
+def halve_cells(values: FloatArray, axis: int) -> FloatArray:
+    """Values on cells of half the size along an axis, linear between the centres."""
+    first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
+    padded = np.concatenate([first, values, last], axis=axis)
+    count = values.shape[axis]
+    middle, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
+    halves = np.stack([0.75 * middle + 0.25 * low, 0.75 * middle + 0.25 * high], axis=axis + 1)
+    shape = list(values.shape)
+    shape[axis] *= 2
+    return halves.reshape(shape)
 
 
 def between_columns(values: FloatArray, centres: FloatArray, x: FloatArray) -> FloatArray:

@@ -10,9 +10,7 @@ import numpy as np
 
 from contactstudy.checks import BoolArray, FloatArray
 
-FIRST_COLUMN = 0.1
-"""Width of the first columns at either end, over the half-width. Accuracy: wider ones miss a sharp end in a face."""
-
+FIRST_COLUMN = 0.1  # width of the first columns at the ends, over the half-width. Accuracy: wider ones miss sharp ends.
 WIDEST = 16  # least number of columns over the length. Accuracy.
 BENT = 0.1  # depth, over ``a**2 / 2R``, by which the shape may leave its chord inside a first column. Accuracy.
 
@@ -38,16 +36,11 @@ class AxialShape:
     half_width: float  # Hertz half-width ``a``, metres
     depth: float  # depth ``a**2 / 2R`` to which a cylinder sinks, metres
     height: Callable[[FloatArray], FloatArray]  # height along the axis over the plane that the shape touches, metres
-    room: tuple[float, float]
-    """How far the face of the body goes on beyond either end, metres; 0 or less where it does not."""
-    exponents: tuple[float, float] = (np.nan, np.nan)
-    """Exponent ``m`` of the pressure ``K d**-m`` at either end, if that is a sharp one on a face that goes on; NaN
-    without a law."""
-    fades: bool = False
-    """Whether the pressure falls towards a common end like a small power of the distance, which no columns settle."""
+    room: tuple[float, float]  # length of the body's face beyond either end, metres; 0 or less where it ends
+    exponents: tuple[float, float] = (np.nan, np.nan)  # ``m`` of ``K d**-m`` at sharp ends; NaN without a law
+    fades: bool = False  # whether the pressure falls towards a common end by a small power, which no columns settle
     corners: tuple[float, ...] = ()  # positions of convex corners, metres: edges of columns
-    nodes: FloatArray = field(default_factory=lambda: np.zeros(0))
-    """Positions between which the shape is smooth, metres, increasing: a column does not overlook them."""
+    nodes: FloatArray = field(default_factory=lambda: np.zeros(0))  # positions between which the shape is smooth, m
 
     @cached_property
     def node_heights(self) -> FloatArray:

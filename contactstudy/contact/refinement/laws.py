@@ -12,6 +12,7 @@ smaller than d0.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import NamedTuple
@@ -26,21 +27,15 @@ from contactstudy.errors import InvalidInputError
 
 RIGID = 0.5  # exponent at a sharp rigid end
 LEAST_GROWTH = 0.12  # least exponent of the growth between two halvings of a power law. Accuracy.
-
-LASTING_STEPS = 0.5
-"""Least ratio of the sum of the last two steps to the sum of the two preceding ones of a logarithm. Accuracy."""
-
-NEAREST, FARTHEST = 3.0, 64.0
-"""Distances, over the outermost column's width, between which the intensity is fitted. Accuracy."""
-
+LASTING_STEPS = 0.5  # least ratio of the last two steps of a logarithm to the two preceding ones. Accuracy.
+NEAREST, FARTHEST = 3.0, 64.0  # distances over the outermost width between which the intensity is fitted. Accuracy.
 FEWEST = 3  # least number of columns of a fitted intensity
 
 LEAST_ROOM, NARROW_ERROR = 0.5, 0.08
 """Largest reach of the fit over the room beyond an end, and the additional error over K beyond this reach. Accuracy:
 measured as 5 % at 2.5 times the room, 0.8 % at 0.6."""
 
-STEP_ERROR = 3e-3
-"""Error over the intensity from the steps of the pressure. Accuracy: measured as the residual of every fit."""
+STEP_ERROR = 3e-3  # error over the intensity from the pressure's steps. Accuracy: the residual of every fit.
 
 ELASTIC_SHARE = 1.5
 """Error of the intensity of an elastic end over its change when both limits of the fit double. Accuracy: unlike a rigid
@@ -114,9 +109,8 @@ def law_of(samples: list[Sample], exponent: float) -> EndLaw | None:
     # Without an exponent of the materials (NaN) the growth of the outermost column between splittings determines it.
     if not np.isnan(exponent):
         return EndLaw(kind="power", exponent=exponent) if samples[-1].pressure > 0 else None
-    if len(samples) < 4 or samples[-1].pressure <= samples[-2].pressure:
-        return None
-    if min(sample.pressure for sample in samples[-3:]) <= 0:
+    pressures = [sample.pressure for sample in samples]
+    if len(samples) < 4 or pressures[-1] <= pressures[-2] or min(pressures[-3:]) <= 0:
         return None
     growth = [
         np.log(after.pressure / before.pressure) / np.log(before.width / after.width)
@@ -180,9 +174,7 @@ def edge_peak(intensity: float, modulus: float, edge_radius: float) -> float:
     return float(EDGE_FACTOR * (k**2 * modulus / radius) ** (1 / 3))  # eq. (42)
 
 
-CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0
-"""Distances, over the width of the columns at the corner, between which d0 is fitted. Accuracy."""
-
+CORNER_NEAREST, CORNER_FARTHEST = 2.0, 32.0  # distances over the column at a corner where d0 is fitted. Accuracy.
 WIDEST_BLEND = 0.1  # width b of a blend over d0 up to which its peak follows from the law. Accuracy: 1 % at 0.1.
 
 
@@ -193,12 +185,9 @@ class CornerLaw:
     x: float  # position, metres
     slope: float  # jump ``s`` of the slope
     intensity: float  # ``E* s / (2 pi)``, Pa
-    distance: float
-    """``d0`` and its estimated error, metres; NaN without `distance` where the contact ends at the corner."""
-    distance_error: float
-    end: EndLaw | None = None
-    """Law of the pressure where the contact ends at the corner: too steep a chamfer is not pressed, and the corner
-    is a sharp end."""
+    distance: float = np.nan  # ``d0`` and its estimated error, metres; NaN where the contact ends at the corner
+    distance_error: float = np.nan
+    end: EndLaw | None = None  # law where the contact ends at the corner: too steep a chamfer is not pressed
 
 
 def corner_law(
@@ -216,14 +205,14 @@ def corner_law(
     if not all(pressed):
         room = max(float(distances[-1]) for distances, _ in outward)
         end = EndLaw(kind="power", exponent=exponent).with_intensity(*outward[pressed.index(True)], room)
-        return CornerLaw(x=x, slope=slope, intensity=intensity, distance=np.nan, distance_error=np.nan, end=end)
+        return CornerLaw(x=x, slope=slope, intensity=intensity, end=end)
     centre = int((pressure[index - 1] + pressure[index]).argmax())
     sides = [(distances, values[:, centre]) for distances, values in outward]
     width = max(float(distances[1]) for distances, _ in sides)
     fits = [[_log_distance(*side, width * factor, intensity) for side in sides] for factor in (1.0, 2.0)]
     logs = np.mean(fits, axis=1)
     if not np.isfinite(logs).all():
-        return CornerLaw(x=x, slope=slope, intensity=intensity, distance=np.nan, distance_error=np.inf)
+        return CornerLaw(x=x, slope=slope, intensity=intensity, distance_error=np.inf)
     distance = float(np.exp(logs[0]))
     error = distance * abs(float(np.expm1(logs[1] - logs[0])))
     return CornerLaw(x=x, slope=slope, intensity=intensity, distance=distance, distance_error=error)
@@ -282,7 +271,7 @@ Pair = tuple[float, float]
 Laws = tuple[EndLaw | None, EndLaw | None]
 
 
-def read_ends(edges: FloatArray, pressure: FloatArray, laws: Laws) -> tuple[Pair, Pair, float]:
+def read_ends(edges: FloatArray, pressure: FloatArray, laws: Sequence[EndLaw | None]) -> tuple[Pair, Pair, float]:
     """Peak of either half, pressure at either end, and by how much the parabola across lifts the largest pressure."""
     top = section_maxima(pressure)
     along_y = float(top.max() / pressure.max()) - 1

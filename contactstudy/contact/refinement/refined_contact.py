@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import NamedTuple
 
@@ -15,14 +14,14 @@ from contactstudy.bodies import hertz
 from contactstudy.bodies.models import EndedBody
 from contactstudy.cache import ArrayKey, cached
 from contactstudy.case.case import LARGEST_HALF_WIDTH, SMALLEST_HALF_WIDTH, Case
-from contactstudy.case.gridding import columns_of
+from contactstudy.case.gridding import columns_of, first_sufficient
 from contactstudy.case.motion import Rolling, Sliding
 from contactstudy.checks import FloatArray
 from contactstudy.contact.normal.contact import Contact, Settings, Shape, check_window, contact_of, contact_operator
 from contactstudy.contact.normal.prescribed import Prescribed
 from contactstudy.contact.normal.problem import ContactProblem, solve_normal
 from contactstudy.contact.refinement.columns import AxialShape
-from contactstudy.contact.refinement.laws import RIGID, CornerLaw, corner_law, elastic_exponent
+from contactstudy.contact.refinement.laws import RIGID, CornerLaw, EndLaw, corner_law, elastic_exponent
 from contactstudy.contact.refinement.refinement import (
     POLISHED,
     ColumnPressure,
@@ -30,9 +29,7 @@ from contactstudy.contact.refinement.refinement import (
     refine_columns,
     replace_pressure,
     rough_columns,
-    with_data_error,
 )
-from contactstudy.errors import WindowError
 from contactstudy.kernels.load import Load
 from contactstudy.profiles.base import as_shape
 from contactstudy.threads import one_blas_thread
@@ -43,9 +40,7 @@ ROOM, COUPLED_ROOM, MOVED_ROOM = 1.1, 1.4, 1.5
 """Least window over the extent of the contact along y: in full sliding, with coupled friction, with stick and slip,
 which also solve the contact on half of the cells and depend on two cells ahead. Speed."""
 
-WINDOW_STEP = 2 ** (1 / 6)
-"""Ratio of consecutive windows: similar cases share a window and the kernels of the ends. Speed."""
-
+WINDOW_STEP = 2 ** (1 / 6)  # ratio of consecutive windows: similar cases share the kernels of the ends. Speed.
 SMALL_SLOPE = 0.1  # slope of a corner up to which strains are small
 
 CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
@@ -54,6 +49,8 @@ CELLS_Y, ROUGH_CELLS_Y = (32, 64, 128, 256), 16
 CORNER_SHARE = 0.2
 """Jump of the slope of measured points times E*, over the peak, above which the peak is unbounded. Accuracy: the
 pressure at the corner grows by 3 % with each halving of its width."""
+
+DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
 
 BETWEEN_CELLS, SHARE_OF_Y = 0.7, 0.25
 """Part of the peak between its cells along y times the square of their number across the contact, and the share of the
@@ -97,11 +94,9 @@ def _is_immutable(part: object) -> bool:
 
 def _refine_contact(case: Case, accuracy: float, tolerance: float) -> RefinedContact:
     """Refine in the narrowest window that contains the contact."""
-    *narrower, widest = WINDOWS
-    for window in narrower:
-        with contextlib.suppress(WindowError):
-            return _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
-    return _refine_in_window(case, widest * case.hertz_half_width, accuracy, tolerance)
+    return first_sufficient(
+        WINDOWS, lambda window: _refine_in_window(case, window * case.hertz_half_width, accuracy, tolerance)
+    )
 
 
 _cached_contact = cached("refined contacts", lambda refined: refined.nbytes)(_refine_contact)
@@ -131,7 +126,8 @@ def _refine_in_window(case: Case, half_window: float, accuracy: float, tolerance
         # The splittings of the outermost columns determine the law of an end: begin with few columns.
         refined = refine_columns(solver, shape, accuracy, None if rough.singular(shape) else rough.edges)
         refined = _with_data_error(solver, refined, shape)
-    contact = solver.contact(refined.edges, refined.pressure, tolerance)
+    full = solver.shape(refined.edges)
+    contact = contact_of(full, Settings(tolerance), ArrayKey(_padded(refined.pressure, full.grid, refined.edges)))
     if contact.shape.coupled_friction or contact.motions.total.tilt:
         refined = replace_pressure(refined, contact.pressure[_roller_columns(contact.shape.grid, refined.edges)], shape)
     return RefinedContact(contact, refined, _strongest_corner(case, refined))
@@ -158,15 +154,21 @@ def _with_data_error(solver: _ColumnSolver, refined: RefinedColumns, shape: Axia
     if other is None:
         return refined
     solver = replace(solver, case=replace(case, roller=replace(case.roller, profile=other)))
-    refined = with_data_error(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
-    corners = case.slope_jumps
-    errors = list(refined.peak_errors)
-    for x, jump in zip(*corners, strict=True):
+    moved = replace_pressure(refined, solver(refined.edges, refined.pressure, POLISHED).pressure, shape)
+    errors = {
+        name: [
+            error + DATA_ERROR * (abs(value - other) if np.isfinite(value) else 0.0)
+            for error, value, other in zip(errors, refined.values[name], moved.values[name], strict=True)
+        ]
+        for name, errors in refined.errors.items()
+    }
+    for x, jump in zip(*case.slope_jumps, strict=True):
         column = int(np.clip(np.searchsorted(refined.edges, x) - 1, 0, refined.edges.size - 2))
         side = int(x > 0.5 * (shape.start + shape.stop))
-        if jump * case.modulus > CORNER_SHARE * refined.peaks[side] and refined.pressure[column].any():
-            errors[side] = np.inf
-    return replace(refined, peak_errors=(errors[0], errors[1]))
+        peak = refined.values["peak_pressure"][side]
+        if jump * case.modulus > CORNER_SHARE * peak and refined.pressure[column].any():
+            errors["peak_pressure"][side] = np.inf
+    return replace(refined, errors=errors)
 
 
 def _cell_number_y(part: float, accuracy: float) -> int:
@@ -177,49 +179,24 @@ def _cell_number_y(part: float, accuracy: float) -> int:
 
 def refined_values(settled: RefinedContact) -> xr.Dataset:
     """Labelled values with their errors; at a singular end the law instead of the pressure."""
-    refined = settled.refined
-    values: dict[str, float] = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
+    refined, corner = settled.refined, settled.corner
+    values = {"peak_pressure": refined.peak, "peak_pressure_error": refined.peak_error}
     dy = settled.contact.shape.grid.dy
-    for name, side in (("first", 0), ("last", 1)):
-        law = refined.laws[side]
-        values |= {
-            f"peak_pressure_{name}": refined.peaks[side],
-            f"peak_pressure_{name}_error": refined.peak_errors[side],
-            f"end_pressure_{name}": refined.ends[side],
-            f"end_pressure_{name}_error": refined.end_errors[side],
-            f"end_load_{name}": dy * refined.loads[side],
-            f"end_load_{name}_error": dy * refined.load_errors[side],
-        }
-        if law is not None:
-            values |= {
-                f"end_exponent_{name}": law.exponent,
-                f"end_intensity_{name}": law.intensity,
-                f"end_intensity_{name}_error": law.intensity_error,
-            }
+    for side, end in enumerate(("first", "last")):
+        for name, pair in refined.values.items():
+            unit = dy if name == "end_load" else 1.0
+            values[f"{name}_{end}"] = unit * pair[side]
+            values[f"{name}_{end}_error"] = unit * refined.errors[name][side]
+        values |= _law_values(refined.laws[side], f"_{end}")
     sharper = max((law for law in refined.laws if law), key=lambda law: np.nan_to_num(law.intensity), default=None)
-    if sharper is not None:
-        values |= {
-            "end_exponent": sharper.exponent,
-            "end_intensity": sharper.intensity,
-            "end_intensity_error": sharper.intensity_error,
-        }
-    if settled.corner is not None:
-        corner = settled.corner
-        values |= {
-            "corner_x": corner.x,
-            "corner_slope": corner.slope,
-            "corner_intensity": corner.intensity,
-        }
+    values |= _law_values(sharper)
+    if corner is not None:
+        values |= {"corner_x": corner.x, "corner_slope": corner.slope, "corner_intensity": corner.intensity}
         if corner.end is None:
             values |= {"corner_distance": corner.distance, "corner_distance_error": corner.distance_error}
-        else:
-            values |= {
-                "end_exponent": corner.end.exponent,
-                "end_intensity": corner.end.intensity,
-                "end_intensity_error": corner.end.intensity_error,
-            }
+        values |= _law_values(corner.end)
     result = xr.Dataset(values)
-    if settled.corner is not None and settled.corner.slope > SMALL_SLOPE:
+    if corner is not None and corner.slope > SMALL_SLOPE:
         result["corner_intensity"].attrs["comment"] = f"a slope above {SMALL_SLOPE} is beyond small strains"
     if any(law and law.fitted for law in refined.laws):
         result = without_error(result, *(str(name) for name in result if str(name).startswith("end_exponent")))
@@ -232,22 +209,25 @@ def refined_values(settled: RefinedContact) -> xr.Dataset:
     return describe(result)
 
 
-def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None) -> Shape:
-    """Contact of a case to solve on cells; default: the load or approach of the case."""
-    gap = case.gap(grid)
-    prescribed = (prescribed or prescribed_load(case)).checked(gap, grid)
+def _law_values(law: EndLaw | None, end: str = "") -> dict[str, float]:
+    """Exponent and intensity of a law by their names in results, for an `end` or the sharper one."""
+    if law is None:
+        return {}
+    intensity = f"end_intensity{end}"
+    return {f"end_exponent{end}": law.exponent, intensity: law.intensity, f"{intensity}_error": law.intensity_error}
+
+
+def contact_shape(case: Case, grid: Grid, prescribed: Prescribed | None = None, gap: FloatArray | None = None) -> Shape:
+    """Contact of a case to solve on cells; default: the load or approach, and the gap, of the case."""
+    gap = case.gap(grid) if gap is None else gap
+    if prescribed is None and case.approach is not None:
+        prescribed = Prescribed(approach=case.approach)
+    prescribed = (prescribed or Prescribed(case.normal_load, case.load_position)).checked(gap, grid)
     return Shape(case.body, grid, ArrayKey(gap), prescribed, case.counterbody, coupled_friction=case.coupled_friction)
 
 
-def prescribed_load(case: Case) -> Prescribed:
-    """Load or approach that a case prescribes."""
-    if case.approach is not None:
-        return Prescribed(approach=case.approach)
-    return Prescribed(case.normal_load, case.load_position)
-
-
 def replace_contact(settled: RefinedContact, contact: Contact, case: Case) -> RefinedContact:
-    """RefinedColumns contact with another pressure on the same columns, from friction or finer cells along y."""
+    """Refined contact with another pressure on the same columns, from friction or finer cells along y."""
     refined = settled.refined
     pressure = contact.pressure[_roller_columns(contact.shape.grid, refined.edges)]
     refined = replace_pressure(refined, pressure, _axial_shape(case))
@@ -269,11 +249,6 @@ class _ColumnSolver:
     def shape(self, edges: FloatArray) -> Shape:
         """Contact to solve."""
         return contact_shape(self.case, self.grid(edges))
-
-    def contact(self, edges: FloatArray, pressure: FloatArray, tolerance: float) -> Contact:
-        """Contact relative to the reference lines, from a pressure (column, y)."""
-        shape = self.shape(edges)
-        return contact_of(shape, Settings(tolerance), ArrayKey(_padded(pressure, shape.grid, edges)))
 
     def __call__(self, edges: FloatArray, start: FloatArray | None, tolerance: float) -> ColumnPressure:
         """Contact without coupled friction, which changes the pressure by a few percent and no columns."""
@@ -314,11 +289,6 @@ def _padded(pressure: FloatArray, grid: Grid, edges: FloatArray) -> FloatArray:
     return padded
 
 
-def _face_beyond(distance: float, near: float) -> float:
-    """Length of the face beyond an end; 0 at a flush or overhanging roller."""
-    return distance if distance > near else 0.0
-
-
 def _exponent(case: Case, distance: float, near: float) -> float:
     """Exponent of the pressure at an end, at a distance from the end of the face; NaN without a theory."""
     body, roller = case.body, case.roller.body
@@ -339,6 +309,7 @@ def _axial_shape(case: Case) -> AxialShape:
     half_width = case.hertz_half_width
     near = 1e-9 * (stop - start)
     distances = case.roller_start - low, high - (case.roller_start + case.roller.length)
+    room = [distance if distance > near else 0.0 for distance in distances]
     corners = case.slope_jumps
     resolved = as_shape(case.roller.profile).second_interpolation() is None
     return AxialShape(
@@ -347,7 +318,7 @@ def _axial_shape(case: Case) -> AxialShape:
         half_width=half_width,
         depth=half_width**2 / (2 * case.roller.radius),
         height=case.lowest,
-        room=(_face_beyond(distances[0], near), _face_beyond(distances[1], near)),
+        room=(room[0], room[1]),
         exponents=(_exponent(case, distances[0], near), _exponent(case, distances[1], near)),
         # The factor of the body's image is not that of the roller's.
         corners=tuple(corners.positions[corners.jumps > 0].tolist()) if resolved else (),
@@ -366,13 +337,10 @@ and the largest number of corrections of the load. Speed."""
 
 ABOVE = 1.02  # factor on a corrected load: the window of a shallower contact is too narrow. Speed.
 
-ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4
-"""Accuracy and tolerance of contacts that determine a load, or how a load turns the reference lines. Speed."""
-
+ROUGHLY, ROUGH_TOLERANCE = 0.1, 1e-4  # accuracy and tolerance of contacts that determine a load. Speed.
 ROOMIER = 1.5  # factor on the window for half as many cells along y, which reach farther beyond the contact. Speed.
 
-SLICES, WIDTH_PART = 200, 0.3
-"""Slices of the first guess of a load, and their half-width over the half-width of the undeformed overlap. Speed."""
+SLICES, WIDTH_PART = 200, 0.3  # slices of a first load; their half-width over that of the undeformed overlap. Speed.
 
 
 class ApproachContact(NamedTuple):

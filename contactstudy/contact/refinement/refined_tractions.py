@@ -16,7 +16,7 @@ import xarray as xr
 from contactstudy.arrays.grid import Grid
 from contactstudy.arrays.variables import describe
 from contactstudy.case.case import Case
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import FloatArray
 from contactstudy.contact.refinement.refined_contact import CELLS_Y, RefinedContact, contact_shape, replace_contact
 from contactstudy.contact.rolling.frictional_contact import (
@@ -71,7 +71,7 @@ def refine_tractions(case: Case, normal: RefinedContact, accuracy: float) -> Ref
         rows, last = 2 * rows, contact
     # Forces and moments may be small differences of large ones; work and rigid motions are not.
     sizes = [
-        size if name in ("force_x", "force_y", "moment_z") else min(size, abs(float(value)))
+        size if name in RESULTANTS.values() else min(size, abs(float(value)))
         for (name, size), value in zip(scales.items(), _values(contact), strict=True)
     ]
     column_error = COLUMNS_SHARE * normal.refined.least_error
@@ -111,8 +111,7 @@ def _contact_on_rows(
 def _values(contact: FrictionalContact) -> FloatArray:
     """Values to refine, in the order of `_scales`."""
     tractions = contact.tractions
-    forces = (tractions.force_x, tractions.force_y, tractions.moment_z, tractions.work)
-    return np.array([*forces, *tractions.rigid.values()])
+    return np.array([*tractions.resultants.values(), tractions.work, *tractions.rigid.values()])
 
 
 def _scales(case: Case, contact: FrictionalContact) -> dict[str, float]:
@@ -141,5 +140,4 @@ def _prescribed_names(case: Case) -> set[str]:
     motion = case.motion
     assert isinstance(motion, Shift | Rolling)
     names = AMPLITUDES[isinstance(motion, Rolling)]
-    forces = {"x": "force_x", "y": "force_y", "spin": "moment_z"}
-    return {forces[name] if name in motion.modes else names[name] for name in names}
+    return {RESULTANTS[mode] if mode in motion.modes else names[mode] for mode in names}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
@@ -65,7 +65,6 @@ SHARPEST, SMALLEST = 2e-3, 2e-4
 """Widths over the half-width down to which a sharp end is followed, and a column is split at all. Accuracy."""
 
 CORNER_GROWTH = 0.25  # width of the columns next to a convex corner, over the distance to it. Accuracy.
-DATA_ERROR = 1.5  # error over the difference of two interpolations of measured points. Accuracy.
 ROUGH, POLISHED = 1e-2, 1e-5  # tolerances of the contact at the levels and where values are read. Speed and accuracy.
 
 
@@ -81,23 +80,20 @@ Solve = Callable[[FloatArray, FloatArray | None, float], ColumnPressure]
 """From edges, a first guess of the pressure (or none) and a tolerance to the contact."""
 
 
+Pairs = Mapping[str, Sequence[float]]
+"""Values of the first and the last half or end, by their names in results: the largest pressure of a half, the pressure
+at an end and the load on its last half-width, the load over the width of a cell along y."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RefinedColumns:
     """Columns of a refined contact."""
 
     edges: FloatArray  # edges of the columns, metres
     pressure: FloatArray  # (column, y): pressure, Pa
-    peaks: tuple[float, float]
-    """Largest pressure of either half and its estimated error, Pa; both infinite at a singular end."""
-    peak_errors: tuple[float, float]
-    ends: tuple[float, float]
-    """Pressure at either end of the shape and its estimated error, Pa; 0 where it is not pressed."""
-    end_errors: tuple[float, float]
-    loads: tuple[float, float]
-    """Load on the last half-width at either end of the shape and its estimated error, over the width of a cell along
-    y, N/m."""
-    load_errors: tuple[float, float]
-    laws: tuple[EndLaw | None, EndLaw | None]  # law of a singular end
+    values: Pairs  # pressures infinite at a singular end, 0 where it is not pressed
+    errors: Pairs  # their estimated errors
+    laws: Laws  # law of a singular end
     settled: bool  # whether every error that is stated is within the accuracy
     first: FloatArray  # edges of the columns of the first threshold, metres
     least_error: float  # least error that is stated on these columns, over the value
@@ -105,12 +101,13 @@ class RefinedColumns:
     @property
     def peak(self) -> float:
         """Largest pressure, Pa."""
-        return max(self.peaks)
+        return max(self.values["peak_pressure"])
 
     @property
     def peak_error(self) -> float:
         """Estimated error of the largest pressure, Pa."""
-        return max(error for peak, error in zip(self.peaks, self.peak_errors, strict=True) if peak == self.peak)
+        pairs = zip(self.values["peak_pressure"], self.errors["peak_pressure"], strict=True)
+        return max(error for peak, error in pairs if peak == self.peak)
 
 
 class RoughColumns(NamedTuple):
@@ -140,7 +137,7 @@ def refine_columns(solve: Solve, shape: AxialShape, accuracy: float, begin: Floa
     while True:
         state.refine(theta)
         state.read()
-        if len(state.peaks) > 1:
+        if len(state.readings) > 1:
             refined = state.result(theta, accuracy)
             if (theta <= LOOSEST and refined.settled) or state.edges.size > MOST_COLUMNS:
                 return refined
@@ -156,9 +153,7 @@ class _Refinement:
     edges: FloatArray
     pressure: FloatArray = field(init=False)
     first: FloatArray | None = None
-    peaks: list[tuple[float, float]] = field(default_factory=list)
-    ends: list[tuple[float, float]] = field(default_factory=list)
-    loads: list[tuple[float, float]] = field(default_factory=list)
+    readings: list[Pairs] = field(default_factory=list)
     along_y: float = 0.0
     laws: list[EndLaw | None] = field(default_factory=lambda: [None, None])
     samples: tuple[list[Sample], list[Sample]] = field(default_factory=lambda: ([], []))
@@ -239,46 +234,39 @@ class _Refinement:
         return half
 
     def read(self) -> None:
-        """Note the peak of either half, and the pressure and the load at either end."""
-        peaks, ends, self.along_y = read_ends(self.edges, self.pressure, (self.laws[0], self.laws[1]))
-        self.peaks.append(_infinite_at_corners(peaks, self.shape, self.edges, self.pressure))
-        self.ends.append(ends)
-        self.loads.append(end_loads(self.edges, self.pressure, self.shape.half_width))
+        """Note the values of either half and end."""
+        values, self.along_y = read_values(self.edges, self.pressure, self.shape, self.laws)
+        self.readings.append(values)
 
     def result(self, theta: float, accuracy: float) -> RefinedColumns:
         """Values with their errors."""
-        finite = [value for value in self.peaks[-1] if 0 < value < np.inf]  # a half may have no contact
+        values = self.readings[-1]
+        finite = [value for value in values["peak_pressure"] if 0 < value < np.inf]  # a half may have no contact
         scale = max(finite, default=float(self.pressure.max()))
         floor = scale * (theta / THETA_PER_ERROR + self.along_y)
-        peak_errors = [_change_error([peaks[side] for peaks in self.peaks], floor) for side in (0, 1)]
-        first, last = (_change_error([ends[side] for ends in self.ends], floor) for side in (0, 1))
+        # Over a half-width under the mean load per length.
+        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
+        floors = {"peak_pressure": floor, "end_pressure": floor, "end_load": usual * floor / scale}
+        errors = {
+            name: [_change_error([reading[name][side] for reading in self.readings], least) for side in (0, 1)]
+            for name, least in floors.items()
+        }
         for side in (0, 1):
             fades = self.shape.fades and self.shape.room[side] == 0
             # The pressure at an end, sharp or fading at the end of the face, does not settle and has no law.
             diverges = (self.shape.sharp(side) or fades) and self.laws[side] is None
             if diverges and self.pressure[-side].any():
-                first, last = (np.inf, last) if side == 0 else (first, np.inf)
+                errors["end_pressure"][side] = np.inf
                 if self._half(side).max() <= self.pressure[-side].max():
-                    peak_errors[side] = np.inf
-        errors = [error for error in (*peak_errors, first, last) if np.isfinite(error)]
-        # Over a half-width under the mean load per length.
-        usual = float(self.pressure.sum(axis=1) @ np.diff(self.edges)) * min(1.0, self.shape.half_width / self.length)
-        load_errors = [_change_error([loads[side] for loads in self.loads], usual * floor / scale) for side in (0, 1)]
-        settled = max(errors, default=floor) <= accuracy * scale and max(load_errors) <= accuracy * usual
-        laws = [
-            law.with_intensity(*from_end(side, self.edges, self.pressure), self.shape.room[side]) if law else None
-            for side, law in enumerate(self.laws)
-        ]
+                    errors["peak_pressure"][side] = np.inf
+        stated = [error for error in errors["peak_pressure"] + errors["end_pressure"] if np.isfinite(error)]
+        settled = max(stated, default=floor) <= accuracy * scale and max(errors["end_load"]) <= accuracy * usual
         return RefinedColumns(
             edges=self.edges,
             pressure=self.pressure,
-            peaks=self.peaks[-1],
-            peak_errors=(peak_errors[0], peak_errors[1]),
-            ends=self.ends[-1],
-            end_errors=(first, last),
-            loads=self.loads[-1],
-            load_errors=(load_errors[0], load_errors[1]),
-            laws=(laws[0], laws[1]),
+            values=values,
+            errors=errors,
+            laws=_fitted_laws(self.laws, self.edges, self.pressure, self.shape),
             settled=settled,
             first=self.edges if self.first is None else self.first,
             least_error=floor / scale,
@@ -288,53 +276,38 @@ class _Refinement:
 def replace_pressure(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
     """Return the values of another pressure on the same columns, which the coupled friction has changed a little."""
     # The errors grow with the peak. The pressure of an end that only friction presses is its error.
-    peaks, ends, _ = read_ends(refined.edges, pressure, refined.laws)
-    peaks = _infinite_at_corners(peaks, shape, refined.edges, pressure)
-    largest = max(peaks)
+    values, _ = read_values(refined.edges, pressure, shape, refined.laws)
+    largest = max(values["peak_pressure"])
     factor = largest / refined.peak if np.isfinite(largest) else float(pressure.max() / refined.pressure.max())
-    first, last = (
-        law.with_intensity(*from_end(side, refined.edges, pressure), shape.room[side]) if law else None
-        for side, law in enumerate(refined.laws)
-    )
-    end_errors = [
-        factor * error if before > 0 else now
-        for before, error, now in zip(refined.ends, refined.end_errors, ends, strict=True)
-    ]
-    return replace(
-        refined,
-        pressure=pressure,
-        peaks=peaks,
-        peak_errors=(factor * refined.peak_errors[0], factor * refined.peak_errors[1]),
-        ends=ends,
-        end_errors=(end_errors[0], end_errors[1]),
-        loads=end_loads(refined.edges, pressure, shape.half_width),
-        laws=(first, last),
-    )
+    ends = zip(refined.values["end_pressure"], refined.errors["end_pressure"], values["end_pressure"], strict=True)
+    errors = {
+        "peak_pressure": [factor * error for error in refined.errors["peak_pressure"]],
+        "end_pressure": [factor * error if before > 0 else now for before, error, now in ends],
+    }
+    laws = _fitted_laws(refined.laws, refined.edges, pressure, shape)
+    return replace(refined, pressure=pressure, values=values, errors={**refined.errors, **errors}, laws=laws)
 
 
-def with_data_error(refined: RefinedColumns, pressure: FloatArray, shape: AxialShape) -> RefinedColumns:
-    """Return the values with errors of measured points: from the pressure of their second interpolation."""
-    other = replace_pressure(refined, pressure, shape)
-
-    def errors(name: str) -> tuple[float, float]:
-        pairs = zip(*(getattr(state, name) for state in (refined, other)), strict=True)
-        first, last = (abs(value - moved) if np.isfinite(value) else 0.0 for value, moved in pairs)
-        errors = getattr(refined, f"{name.removesuffix('s')}_errors")
-        return errors[0] + DATA_ERROR * first, errors[1] + DATA_ERROR * last
-
-    return replace(refined, peak_errors=errors("peaks"), end_errors=errors("ends"), load_errors=errors("loads"))
-
-
-def _infinite_at_corners(
-    peaks: tuple[float, float], shape: AxialShape, edges: FloatArray, pressure: FloatArray
-) -> tuple[float, float]:
-    """Peaks of either half, infinite where a convex corner is pressed."""
+def read_values(
+    edges: FloatArray, pressure: FloatArray, shape: AxialShape, laws: Sequence[EndLaw | None]
+) -> tuple[Pairs, float]:
+    """Values of a pressure (column, y), and by how much the parabola across lifts the largest pressure."""
+    peaks, ends, along_y = read_ends(edges, pressure, laws)
     middle = 0.5 * (edges[0] + edges[-1])
-    first, last = peaks
     for corner in shape.corners:
         index = int(np.abs(edges - corner).argmin())
         if pressure[index - 1 : index + 1].any():
-            first, last = (np.inf if corner <= middle else first), (np.inf if corner >= middle else last)
+            peaks = (np.inf if corner <= middle else peaks[0]), (np.inf if corner >= middle else peaks[1])
+    loads = end_loads(edges, pressure, shape.half_width)
+    return {"peak_pressure": peaks, "end_pressure": ends, "end_load": loads}, along_y
+
+
+def _fitted_laws(laws: Sequence[EndLaw | None], edges: FloatArray, pressure: FloatArray, shape: AxialShape) -> Laws:
+    """Laws of both ends with the intensities of a pressure (column, y)."""
+    first, last = (
+        law.with_intensity(*from_end(side, edges, pressure), shape.room[side]) if law else None
+        for side, law in enumerate(laws)
+    )
     return first, last
 
 

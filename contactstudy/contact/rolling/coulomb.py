@@ -27,9 +27,8 @@ Operator = Callable[[FloatArray], FloatArray]
 GUESS_TOLERANCE = 1e-6  # part of the bound by which the traction of a slipping cell of a guess may miss it. Speed.
 DESCENT_INTERVAL = 15  # Newton steps without convergence after which a descent of the energy gives a new start. Speed.
 
-CONTINUATION_STEPS, SHORTEST_STEP = 40, 1e-3
-"""Newton steps without convergence after which resultants are raised by steps, and the least step over the whole way.
-Speed."""
+CONTINUATION_STEPS = 40  # Newton steps without convergence after which resultants are raised by steps. Speed.
+SHORTEST_STEP = 1e-3  # least of these steps over the whole way. Speed.
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -43,10 +42,8 @@ class CoulombProblem:
     modes: FloatArray  # (mode, 2, cell): rigid slips of unknown amplitude
     works: FloatArray  # (mode, 2, cell): weights of the tractions in the resultant of each mode
     resultants: FloatArray  # (mode): prescribed resultants
-    shares: FloatArray
-    """(cell): areas of the cells over their mean: they make the linear systems symmetric and their residual a mean."""
-    tolerance: float = 1e-6
-    """Violation, over the largest bound and the largest rigid slip, at which the iteration stops."""
+    shares: FloatArray  # (cell): areas over their mean: the linear systems are symmetric, their residual a mean
+    tolerance: float = 1e-6  # violation, over the largest bound and rigid slip, at which the iteration stops
     max_steps: int = 40  # bound on the Newton steps
     symmetric: bool = False  # whether B is symmetric, so that the tractions minimise an energy
 

@@ -8,14 +8,11 @@ Rolling Contact (1990), table E.3).
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
-from contactstudy.bodies.material import Material
 from contactstudy.case.motion import Rolling
 from contactstudy.checks import FloatArray
-from contactstudy.contact.rolling.surfaces import Surfaces, Tractions, motion_names, prescribed_amplitude
+from contactstudy.contact.rolling.surfaces import Surfaces, Tractions
 
 POISSONS = (0.0, 0.25, 0.5)
 
@@ -56,55 +53,33 @@ def creep_coefficients(ratio: float, poisson: float) -> FloatArray:
     return np.array(coefficients)
 
 
-class Pair(NamedTuple):
-    """Shear modulus and Poisson's ratio of the mean compliance of two bodies."""
-
-    shear: float
-    poisson: float
-
-    @classmethod
-    def of(cls, materials: list[Material]) -> Pair:
-        """Mean compliances of the bodies; a rigid body contributes 0."""
-        compliance = 0.5 * sum(1 / material.shear_modulus for material in materials)
-        coupling = 0.5 * sum(material.poisson / material.shear_modulus for material in materials)
-        return cls(1 / compliance, coupling / compliance)
-
-
-def flexibilities(half_widths: tuple[float, float], pair: Pair) -> dict[str, float]:
+def flexibilities(half_widths: tuple[float, float], shear_modulus: float, poisson: float) -> dict[str, float]:
     """Flexibilities L, m/Pa, of the creepages along x and y and of the spin."""
     across, along = half_widths
-    c11, c22, c23 = creep_coefficients(along / across, pair.poisson)
+    c11, c22, c23 = creep_coefficients(along / across, poisson)
     return {
-        "x": 8 * along / (3 * pair.shear * c22),
-        "y": 8 * along / (3 * pair.shear * c11),
-        "spin": np.pi * along * np.sqrt(along / across) / (4 * pair.shear * c23),
+        "x": 8 * along / (3 * shear_modulus * c22),
+        "y": 8 * along / (3 * shear_modulus * c11),
+        "spin": np.pi * along * np.sqrt(along / across) / (4 * shear_modulus * c23),
     }
 
 
 def solve_strips(motion: Rolling, surfaces: Surfaces, bound: FloatArray) -> Tractions:
     """Tractions of FASTSIM's strips under their bound (x, y)."""
-    grid, weights = surfaces.grid, surfaces.weights
+    grid, rigid = surfaces.grid, motion.amplitudes
     rows, columns = np.flatnonzero(bound.any(axis=1)), np.flatnonzero(bound.any(axis=0))
     half_widths = 0.5 * float(grid.widths[rows].sum()), 0.5 * columns.size * grid.dy
-    rigid = {name: prescribed_amplitude(motion, name) for name in motion_names(motion)}
-    compliance = flexibilities(half_widths, Pair.of(surfaces.materials))
+    # Mean compliances of the bodies; a rigid body contributes 0.
+    shear_compliance = 0.5 * sum(1 / material.shear_modulus for material in surfaces.materials)
+    coupling = 0.5 * sum(material.poisson / material.shear_modulus for material in surfaces.materials)
+    compliance = flexibilities(half_widths, 1 / shear_compliance, coupling / shear_compliance)
     turning = rigid["spin"] / compliance["spin"]
     growth = np.zeros((2, *grid.shape))
     growth[0] = rigid["x"] / compliance["x"] - turning * grid.y
     growth[1] = rigid["y"] / compliance["y"] + turning * (grid.x - surfaces.middle)[:, None]
     traction, lost = strip_tractions(bound, growth, grid.dy)
     slip = np.array([compliance["x"], compliance["y"]])[:, None, None] * lost
-    force_x, force_y, moment = (weights * traction).sum(axis=(1, 2, 3)).tolist()
-    return Tractions(
-        traction=traction,
-        slip=slip,
-        sticks=(bound > 0) & ~lost.any(axis=0),
-        rigid=rigid,
-        force_x=force_x,
-        force_y=force_y,
-        moment_z=moment,
-        work=float((traction * slip * surfaces.areas).sum()),
-    )
+    return Tractions.of(surfaces, rigid, traction, slip, (bound > 0) & ~lost.any(axis=0))
 
 
 def strip_tractions(bound: FloatArray, growth: FloatArray, dy: float) -> tuple[FloatArray, FloatArray]:

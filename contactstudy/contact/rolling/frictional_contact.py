@@ -17,7 +17,7 @@ from contactstudy.contact.normal.contact import Contact, Settings, Shape, contac
 from contactstudy.contact.normal.pair import PairOperator
 from contactstudy.contact.rolling.surfaces import TANGENTIAL, Surfaces, Tractions
 from contactstudy.contact.rolling.tractions import CoarseTractions, TractionSettings, solve_tractions
-from contactstudy.errors import ConvergenceWarning, InvalidInputError, WindowError
+from contactstudy.errors import ConvergenceWarning, WindowError
 from contactstudy.fields.loads import Loads, TopLoad
 from contactstudy.fields.surface import SurfaceOperator, surface_operator
 from contactstudy.kernels.load import Load
@@ -27,12 +27,10 @@ ALL = (Load.NORMAL, *TANGENTIAL)
 
 ROUNDS = 30  # rounds of pressure and tractions after which a coupled contact counts as not converged. Speed.
 
-LEAST_ACCURACY = 1e-5
-"""Part of the pressure to which coupled rounds settle at least, however coarse the tolerance. Accuracy."""
-
+LEAST_ACCURACY = 1e-5  # change of the pressure to which coupled rounds settle at any tolerance. Accuracy.
 
 AMPLITUDES = {  # names in results of the rigid motions, in rolling and in a shift
-    True: {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"},
+    True: Rolling.AMPLITUDES,
     False: {"x": "shift_x", "y": "shift_y"},
 }
 
@@ -91,7 +89,8 @@ class FrictionalContact:
         rolling = "spin" in tractions.rigid
         names, unit = AMPLITUDES[rolling], "1" if rolling else "m"
         scalars: dict[str, object] = {names[name]: amplitude for name, amplitude in tractions.rigid.items()}
-        for name in ("force_x", "force_y", "moment_z", "bound_error", "slip_error", "force_error"):
+        scalars |= tractions.resultants
+        for name in ("bound_error", "slip_error", "force_error"):
             scalars[name] = getattr(tractions, name)
         areas, pressed = shape.grid.weights, self.contact.pressure > 0
         scalars["sticking_part"] = float((areas * tractions.sticks).sum() / (areas * pressed).sum())
@@ -101,15 +100,7 @@ class FrictionalContact:
         for name in ("slip_x", "slip_y"):
             result[name].attrs["units"] = unit
         result["friction_work"].attrs["units"] = "J/m" if rolling else "J"
-        assert shape.grid.shape == tractions.sticks.shape
         return result
-
-
-def relative_operator(shape: Shape, directions: tuple[Load, ...]) -> PairOperator | SurfaceOperator:
-    """Operator from pressure and tractions to displacements of the surfaces relative to each other."""
-    if shape.counterbody is None:
-        return surface_operator(shape.body, shape.grid, ALL, directions=directions)
-    return PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -129,18 +120,14 @@ def frictional_contact(shape: Shape, settings: Settings, request: FrictionReques
     """Solve a contact with the tractions of a motion."""
     motion = request.motion
     friction = np.broadcast_to(np.asarray(request.friction, dtype=np.float64), shape.grid.shape)
-    if (friction < 0).any():
-        raise InvalidInputError(
-            "friction",
-            float(friction.min()),
-            ">= 0 with stick and slip",
-            "the direction of the traction follows from the slip",
-        )
+    directions, materials = ALL if request.coupled else TANGENTIAL, [shape.body.material]
+    operator: PairOperator | SurfaceOperator
     with one_blas_thread():
-        operator = relative_operator(shape, ALL if request.coupled else TANGENTIAL)
-    materials = [shape.body.material]
-    if shape.counterbody is not None:
-        materials.append(shape.counterbody.body.material)
+        if shape.counterbody is None:
+            operator = surface_operator(shape.body, shape.grid, ALL, directions=directions)
+        else:
+            operator = PairOperator.of(shape.body, shape.counterbody, shape.grid, ALL, directions)
+            materials.append(shape.counterbody.body.material)
     surfaces = Surfaces(operator, shape.grid, materials, request.middle)
     traction_settings = TractionSettings(
         tolerance=settings.tolerance,

@@ -2,41 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol
+from typing import NamedTuple
 
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
 from contactstudy.bodies.material import Material
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray
-from contactstudy.contact.normal.pair import ScaledOperator
+from contactstudy.contact.normal.pair import PairOperator
 from contactstudy.errors import InvalidInputError
+from contactstudy.fields.surface import SurfaceOperator
 from contactstudy.kernels.load import Load
 
-TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)
-"""Directions of tractions and slip, in the order of every array of two components."""
-
-
-class RelativeOperator(Protocol):
-    """Displacements of the surfaces relative to each other."""
-
-    def displaced(self, loads: Mapping[Load, FloatArray], directions: Sequence[Load]) -> dict[Load, FloatArray]:
-        """Displacements (m) in `directions` under loads on the first body (Pa)."""
-        ...
-
-    @property
-    def coarse(self) -> RelativeOperator | ScaledOperator:
-        """Approximate operator on cells of twice the size; a scaled one has normal displacements only."""
-        ...
+TANGENTIAL = (Load.ALONG_X, Load.ALONG_Y)  # directions of tractions and slip, in the order of every array
 
 
 class Surfaces(NamedTuple):
     """Bodies and cells."""
 
-    operator: RelativeOperator  # displacements relative to each other
+    operator: PairOperator | SurfaceOperator  # displacements relative to each other
     grid: Grid
     materials: list[Material]  # of the elastic bodies
     middle: float  # position x about which spin and moment are counted, metres
@@ -77,75 +64,47 @@ class Tractions:
     """Tractions on the body, and the slip of the roller against it."""
 
     traction: FloatArray  # (2, x, y): along x and y, Pa
-    slip: FloatArray
-    """(2, x, y): along x and y: per distance rolled, or metres in a shift; 0 outside the contact and where cells
-    stick."""
+    slip: FloatArray  # (2, x, y): per distance rolled, or metres in a shift; 0 where cells stick or bear no pressure
     sticks: BoolArray  # (x, y): sticking cells of the contact
     rigid: Mapping[str, float]  # amplitudes of the rigid slip: "x", "y" and, in rolling, "spin"
-    force_x: float  # resultants on the body, N and N m
-    force_y: float
-    moment_z: float
+    resultants: Mapping[str, float]  # forces and moment on the body, N and N m, by their names in results
     work: float  # frictional work: per distance rolled, J/m, or of the shift, J
-    bound_error: float = 0.0
-    """Certificate, recomputed: traction above the bound, over the largest bound; slip where cells stick, and slip
-    across or against the traction elsewhere, over the rigid slip; error of prescribed resultants, over the
-    largest."""
-    slip_error: float = 0.0
-    force_error: float = 0.0
+    bound_error: float = 0.0  # certificate: traction above the bound, over the largest bound
+    slip_error: float = 0.0  # certificate: slip that contradicts the law, over the rigid slip
+    force_error: float = 0.0  # certificate: error of prescribed resultants, over the largest
     steps: int = 0  # Newton steps
     converged: bool = True  # whether the tolerance was reached
     leading: Leading | None = None  # origin of the places of the slip in rolling
 
-
-def motion_names(motion: Shift | Rolling) -> tuple[str, ...]:
-    """Names of the rigid motions."""
-    return ("x", "y", "spin") if isinstance(motion, Rolling) else ("x", "y")
-
-
-def prescribed_amplitude(motion: Shift | Rolling, name: str) -> float:
-    """Prescribed amplitude of a rigid motion; 0 where its force is prescribed."""
-    names = {"x": "x", "y": "y"}
-    if isinstance(motion, Rolling):
-        names = {"x": "lateral_creepage", "y": "longitudinal_creepage", "spin": "spin"}
-    return getattr(motion, names[name]) or 0.0
-
-
-def prescribed_resultant(motion: Shift | Rolling, name: str) -> float:
-    """Prescribed force or moment."""
-    return float(getattr(motion, {"x": "force_x", "y": "force_y", "spin": "moment_z"}[name]))
-
-
-def zero_tractions(motion: Shift | Rolling, surfaces: Surfaces) -> Tractions:
-    """Tractions and slip where the friction is 0 everywhere."""
-    shape = surfaces.grid.shape
-    return Tractions(
-        traction=np.zeros((2, *shape)),
-        slip=np.zeros((2, *shape)),
-        sticks=np.zeros(shape, bool),
-        rigid={name: prescribed_amplitude(motion, name) for name in motion_names(motion)},
-        force_x=0.0,
-        force_y=0.0,
-        moment_z=0.0,
-        work=0.0,
-    )
+    @classmethod
+    def of(
+        cls, surfaces: Surfaces, rigid: Mapping[str, float], traction: FloatArray, slip: FloatArray, sticks: BoolArray
+    ) -> Tractions:
+        """Tractions with their resultants and work."""
+        resultants = (surfaces.weights * traction).sum(axis=(1, 2, 3)).tolist()
+        return cls(
+            traction=traction,
+            slip=slip,
+            sticks=sticks,
+            rigid=rigid,
+            resultants=dict(zip(RESULTANTS.values(), resultants, strict=True)),
+            work=float((traction * slip * surfaces.areas).sum()),
+        )
 
 
 def check_forces(motion: Shift | Rolling, bound: FloatArray, weights: FloatArray) -> None:
     """Raise if tractions within their bound (x, y) cannot make the prescribed resultants with these `weights`."""
-    modes = motion.modes
-    resultants = np.array([prescribed_resultant(motion, name) for name in modes])
+    modes, resultants = motion.modes, np.array(list(motion.resultants.values()))
     if not modes or (bound.any() and not resultants.any()):
         return
-    names = [{"x": "force_x", "y": "force_y", "spin": "moment_z"}[name] for name in modes]
-    works = weights[[("x", "y", "spin").index(name) for name in modes]]
-    largest = _largest_multiple(resultants, bound, works)
+    names = [RESULTANTS[mode] for mode in modes]
+    largest = _largest_multiple(resultants, bound, weights[[list(RESULTANTS).index(mode) for mode in modes]])
     # At all of full sliding's force the rigid slip is undetermined.
     if largest * (1 - 1e-9) > 1:
         return
-    units = {"spin": "N m"}
     limits = ", ".join(
-        f"{name} = {largest * value:.6g} {units.get(mode, 'N')}"
-        for name, mode, value in zip(names, modes, resultants, strict=True)
+        f"{name} = {largest * value:.6g} {'N m' if name == 'moment_z' else 'N'}"
+        for name, value in zip(names, resultants, strict=True)
     )
     raise InvalidInputError(
         ", ".join(names),

@@ -26,9 +26,10 @@ from typing import NamedTuple
 import numpy as np
 
 from contactstudy.arrays.grid import Grid
-from contactstudy.case.motion import Rolling, Shift
+from contactstudy.case.motion import RESULTANTS, Rolling, Shift
 from contactstudy.checks import BoolArray, FloatArray, IntArray
 from contactstudy.contact.normal.pair import ScaledOperator
+from contactstudy.contact.normal.problem import cell_means, halve_cells
 from contactstudy.contact.rolling.coulomb import (
     CoulombProblem,
     CoulombSolution,
@@ -44,21 +45,14 @@ from contactstudy.contact.rolling.surfaces import (
     Surfaces,
     Tractions,
     check_forces,
-    motion_names,
-    prescribed_amplitude,
-    prescribed_resultant,
-    zero_tractions,
 )
 from contactstudy.kernels.load import Load
 
 LEAST_PART = 0.72  # part of the leading cell in the contact below which it is tied to the cell behind. Accuracy.
 
-EDGE_OFFSET, TIED_OFFSET, SLIDING_OFFSET = -0.84, 0.475, 0.0
-"""Place of the slip: ``EDGE_OFFSET + c``, a constant where the leading cell is tied or the column slides. Accuracy."""
-
-FEWEST_CELLS = 6
-"""Least number of cells along y for which the position of the edge follows from the pressure. Accuracy."""
-
+EDGE_OFFSET = -0.84  # place of the slip less c. Accuracy.
+TIED_OFFSET, SLIDING_OFFSET = 0.475, 0.0  # place of the slip behind a tied leading cell, in sliding columns. Accuracy.
+FEWEST_CELLS = 6  # least number of cells along y with which the pressure determines the edge. Accuracy.
 PARTS = (0.25, 1.4)  # range of the part c: less is not pressed, more is another pressed cell. Accuracy.
 
 
@@ -68,9 +62,8 @@ class RollingCells:
 
     unknown: IntArray  # (2, unknown): row and column of the cells with unknown tractions
     offset: FloatArray  # (unknown): place of the slip in each, in cells ahead of its centre
-    tied: IntArray
-    """(2, tied): row and column of the tied leading cells, and the number of the unknown cell behind each."""
-    to: IntArray
+    tied: IntArray  # (2, tied): row and column of the tied leading cells
+    to: IntArray  # (tied): number of the unknown cell behind each
     ratio: FloatArray  # (tied): their traction over the traction of the cell behind
 
     @classmethod
@@ -82,8 +75,6 @@ class RollingCells:
         leading: Leading | None = None,
     ) -> RollingCells:
         """Cells of a contact under `pressure` (x, y), with the bound on the traction."""
-        # `shares` as from `neighbour_shares`; default: separate offsets. Default of `leading`: the pressure, without
-        # sliding columns.
         slides, edge_pressure = (np.zeros(pressure.shape[0], bool), pressure) if leading is None else leading
         loaded: BoolArray = (pressure > 0) & (bound > 0)
         leading_cells = np.argwhere(loaded & ~np.pad(loaded, ((0, 0), (0, 1)))[:, 1:])
@@ -187,10 +178,8 @@ class TractionSettings:
     tolerance: float  # violation of Coulomb's law at which the iteration stops
     max_steps: int  # bound on the Newton steps
     start: Mapping[Load, FloatArray] | None = None  # (x, y): pressure and tractions at the start of a shift; default: 0
-    coarse: CoarseTractions | None = None
-    """Solution on coarser cells as a guess. Default: on many uniform cells it is computed first."""
-    last: Tractions | None = None
-    """Tractions under almost the same pressure as a guess, whose leading edges are retained."""
+    coarse: CoarseTractions | None = None  # guess; default: computed first on many uniform cells
+    last: Tractions | None = None  # guess under almost the same pressure, whose leading edges are retained
 
 
 def solve_tractions(
@@ -208,7 +197,8 @@ def solve_tractions(
     cells = RollingCells.of(pressure, bound, shares) if rolling else _shift_cells(bound)
     check_forces(motion, bound, surfaces.weights)
     if not cells.unknown.size:
-        return zero_tractions(motion, surfaces)
+        zero = np.zeros((2, *grid.shape))
+        return Tractions.of(surfaces, motion.amplitudes, zero, zero, np.zeros(grid.shape, bool))
     if isinstance(motion, Rolling) and motion.model == "fastsim":
         return solve_strips(motion, surfaces, bound)
     displaced = surfaces.operator.displaced({Load.NORMAL: pressure}, TANGENTIAL)
@@ -261,15 +251,15 @@ def _coulomb_problem(
         on_grid = cells.on_grid(traction, grid.shape)
         return -elastic_slip(surfaces.operator.displaced(dict(zip(TANGENTIAL, on_grid, strict=True)), TANGENTIAL))
 
-    names, modes, weights = motion_names(motion), motion.modes, surfaces.weights
+    amplitudes, modes, weights = motion.amplitudes, motion.modes, surfaces.weights
     row, column = cells.unknown
     x, y = grid.x[row], grid.y[column] + cells.offset * grid.dy
-    unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in names}
+    unit_slips = {name: surfaces.rigid_slip(name, x, y) for name in amplitudes}
     rigid = elastic_slip(displaced) + sum(
-        (prescribed_amplitude(motion, name) * unit_slips[name] for name in names if name not in modes),
+        (amplitude * unit_slips[name] for name, amplitude in amplitudes.items() if name not in modes),
         np.zeros((2, 1)),
     )  # eq. (44)
-    works = np.array([cells.gather(weights[names.index(name)]) for name in modes])
+    works = np.array([cells.gather(weights[list(amplitudes).index(name)]) for name in modes])
     return CoulombProblem(
         relief=relief,
         inverse=tangential_inverse(surfaces.materials, cells.unknown, grid, rolling=rolling),
@@ -277,7 +267,7 @@ def _coulomb_problem(
         rigid=rigid,
         modes=np.array([unit_slips[name] for name in modes]).reshape(len(modes), *rigid.shape),
         works=works.reshape(len(modes), *rigid.shape),
-        resultants=np.array([prescribed_resultant(motion, name) for name in modes]),
+        resultants=np.array(list(motion.resultants.values())),
         shares=np.broadcast_to(grid.weights, grid.shape)[tuple(cells.unknown)],
         symmetric=not rolling,
     )
@@ -322,7 +312,7 @@ def _complete_tractions(
     surfaces: Surfaces,
 ) -> Tractions:
     """Resultants and certificate of a solution, recomputed from its tractions."""
-    modes, grid, weights = motion.modes, surfaces.grid, surfaces.weights
+    grid = surfaces.grid
     cell_slip = problem.slip(solution.traction, solution.amplitudes)
     scale = problem.slip_scale(solution.amplitudes)
     bound_error, slip_error = law_violation(solution.traction, cell_slip, problem.bound, solution.sticks, scale)
@@ -332,27 +322,19 @@ def _complete_tractions(
     sticks[tuple(cells.unknown)] = solution.sticks
     for row, column, number in zip(*cells.tied, cells.to, strict=True):
         slip[:, row, column], sticks[row, column] = slip[:, row, column - 1], solution.sticks[number]
-    resultants = (weights * traction).sum(axis=(1, 2, 3))
-    prescribed = dict(zip(modes, problem.resultants, strict=True))
-    largest = (np.abs(weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2))
+    rigid = motion.amplitudes | dict(zip(motion.modes, solution.amplitudes.tolist(), strict=True))
+    tractions = Tractions.of(surfaces, rigid, traction, slip, sticks)
+    largest = (np.abs(surfaces.weights).sum(axis=1) * np.hypot(*traction)).sum(axis=(1, 2)).tolist()
     errors = [
-        abs(resultants[number] - prescribed[name]) / max(largest[number], 1e-300)
-        for number, name in enumerate(("x", "y", "spin"))
-        if name in prescribed
+        abs(tractions.resultants[name] - motion.resultants[mode]) / max(size, 1e-300)
+        for (mode, name), size in zip(RESULTANTS.items(), largest, strict=True)
+        if mode in motion.modes
     ]
-    unknown = dict(zip(modes, solution.amplitudes.tolist(), strict=True))
-    return Tractions(
-        traction=traction,
-        slip=slip,
-        sticks=sticks,
-        rigid={name: unknown.get(name, prescribed_amplitude(motion, name)) for name in motion_names(motion)},
-        force_x=float(resultants[0]),
-        force_y=float(resultants[1]),
-        moment_z=float(resultants[2]),
-        work=float((traction * slip * surfaces.areas).sum()),
+    return replace(
+        tractions,
         bound_error=bound_error,
         slip_error=slip_error,
-        force_error=float(max(errors, default=0.0)),
+        force_error=max(errors, default=0.0),
         steps=solution.steps,
         converged=solution.converged,
     )
@@ -395,9 +377,9 @@ def guess_from_coarse(coarse: CoarseTractions, cells: RollingCells, bound: Float
     part = coarse.tractions.traction / np.where(coarse.bound > 0, coarse.bound, 1.0)
     # Slipping cells have all of their bound; inside the stick zone the part is interpolated.
     parents = row // factor, column // 2
-    fine = _halve_cells(part, 2)
+    fine = halve_cells(part, 2)
     if factor == 2:
-        fine = _halve_cells(fine, 1)
+        fine = halve_cells(fine, 1)
     smooth = fine[:, row, column]
     size = np.hypot(*smooth)
     limited = smooth * np.minimum(1.0, LARGEST_STICKING / np.where(size > 0, size, 1.0))
@@ -414,21 +396,3 @@ def guess_from_last(last: Tractions, cells: RollingCells, bound: FloatArray, mod
     limited = np.where(last.sticks[unknown], np.minimum(size, LARGEST_STICKING * limit), limit)
     amplitudes = np.array([last.rigid[name] for name in modes])
     return Guess(traction * (limited / np.where(size > 0, size, 1.0)), amplitudes)
-
-
-def cell_means(values: FloatArray) -> FloatArray:
-    """Means (x, y) over cells of twice the size."""
-    rows, columns = values.shape
-    return np.asarray(values.reshape(rows // 2, 2, columns // 2, 2).mean(axis=(1, 3)))
-
-
-def _halve_cells(values: FloatArray, axis: int) -> FloatArray:
-    """Values (component, x, y) on cells of half the size along an axis, linear between the centres."""
-    first, last = np.take(values, [0], axis=axis), np.take(values, [-1], axis=axis)
-    padded = np.concatenate([first, values, last], axis=axis)
-    count = values.shape[axis]
-    middle, low, high = (np.take(padded, np.arange(start, start + count), axis=axis) for start in (1, 0, 2))
-    halves = np.stack([0.75 * middle + 0.25 * low, 0.75 * middle + 0.25 * high], axis=axis + 1)
-    shape = list(values.shape)
-    shape[axis] *= 2
-    return halves.reshape(shape)

@@ -245,8 +245,6 @@ def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.
             max_iterations=500,
         )
         assert found.converged
-        assert len(found.history) <= found.applications
-        assert 0 < found.history[-1] <= 1e-6 < max(found.history[:-1])
         sunk = operator(found.pressure)
         off = np.abs(unit * gap + sunk - found.motion[0])[found.pressure > 0].max() / np.ptp(sunk)
         assert off <= 2e-6

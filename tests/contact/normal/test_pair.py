@@ -61,9 +61,9 @@ def test_cells_are_the_same_but_for_rounding(unit: float) -> None:
 
 def test_joined_shares_take_a_load_as_the_fine_ones_do() -> None:
     counterbody = Counterbody(FiniteLengthSpace(material=SOFT, length=0.8e-3), 4.3e-4)
-    shares = Shares.of(counterbody, GRID)
-    assert shares is not None
-    coarse, load = shares.joined(), np.repeat(np.random.default_rng(0).random(8), 2)
+    operator = PairOperator.of(BODY, counterbody, GRID, (Load.NORMAL,))
+    shares, coarse = operator._shares, operator.coarse._shares
+    load = np.repeat(np.random.default_rng(0).random(8), 2)
     assert coarse.to @ load[::2] == pytest.approx((shares.to @ load).reshape(-1, 2).mean(axis=1))
     own = np.repeat(np.random.default_rng(1).random(coarse.to.shape[0]), 2)
     assert coarse.back @ own[::2] == pytest.approx((shares.back @ own).reshape(-1, 2).mean(axis=1))

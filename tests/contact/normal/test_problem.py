@@ -17,8 +17,8 @@ from contactstudy.contact.normal.problem import (
     _continued_square,
     _first_guess,
     _levelled,
-    _refined,
     between_columns,
+    halve_cells,
     solve_coupled,
     solve_normal,
 )
@@ -95,7 +95,7 @@ def test_values_between_columns_are_on_lines(positions: FloatArray) -> None:
 def test_halves_of_cells_are_on_lines_between_centres() -> None:
     values = np.random.default_rng(0).standard_normal((5, 3))
     fine = (np.arange(10) + 0.5) / 2 - 0.5
-    assert _refined(values) == pytest.approx(between_columns(values, np.arange(5.0), fine), abs=1e-12)
+    assert halve_cells(values, 0) == pytest.approx(between_columns(values, np.arange(5.0), fine), abs=1e-12)
 
 
 def tilting(grid: Grid, position: float) -> tuple[FloatArray, float]:

@@ -128,7 +128,7 @@ def test_stated_peak_and_ends_are_within_their_errors(name: str, accuracy: float
     assert found.laws == (None, None)
     assert abs(found.peak - peak) <= found.peak_error <= accuracy * peak * (1 + 1e-9)
     ends = along(np.array([0.0, LENGTH]))
-    for end, error, exact in zip(found.ends, found.end_errors, ends, strict=True):
+    for end, error, exact in zip(found.values["end_pressure"], found.errors["end_pressure"], ends, strict=True):
         assert abs(end - exact) <= error + 1e-12
 
 
@@ -162,11 +162,15 @@ def test_power_law_is_stated_by_intensity_and_the_other_end_by_pressure(exponent
     law, other = found.laws
     assert law is not None
     assert other is None
-    assert np.isinf([found.peak, found.peak_error, found.ends[0], found.end_errors[0]]).all()
+    assert np.isinf(
+        [found.peak, found.peak_error, found.values["end_pressure"][0], found.errors["end_pressure"][0]]
+    ).all()
     assert law.kind == "power"
     assert law.exponent == pytest.approx(exponent, abs=0.02)
     assert np.diff(found.edges)[0] <= SHARPEST * HALF_WIDTH
-    assert found.ends[1] == pytest.approx(0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.end_errors[1])
+    assert found.values["end_pressure"][1] == pytest.approx(
+        0.7 * LENGTH**-exponent * (1 + bend * LENGTH), abs=found.errors["end_pressure"][1]
+    )
     # K is that of the row of cells beside y = 0.
     assert law.intensity == pytest.approx(0.7 * np.sqrt(1 - Y[7] ** 2), rel=0.01)
 
@@ -236,10 +240,9 @@ def test_neither_units_nor_place_nor_side_decide_anything(name: str, unit: float
     other = refine_columns(solve, elsewhere, 0.02)
     assert (other.settled, other.first.size) == (plain.settled, plain.first.size)
     assert np.sort(own(other.edges)) == pytest.approx(plain.edges, abs=1e-9)
-    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads", "load_errors"):
-        factor = pressure * unit if key.startswith("load") else pressure
-        values = np.array(getattr(other, key)) / factor
-        assert (values if side == 0 else values[::-1]) == pytest.approx(getattr(plain, key), rel=1e-6), key
+    for key, factor in {"peak_pressure": pressure, "end_pressure": pressure, "end_load": pressure * unit}.items():
+        for values, expected in ((other.values, plain.values), (other.errors, plain.errors)):
+            assert np.array(values[key])[:: 1 - 2 * side] / factor == pytest.approx(expected[key], rel=1e-6), key
     for found, law in zip(other.laws if side == 0 else other.laws[::-1], plain.laws, strict=True):
         assert (found is None) == (law is None)
         if found and law:
@@ -313,9 +316,9 @@ def test_half_of_the_last_changes_is_the_error() -> None:
 def test_least_errors_of_loads_are_the_same_part_of_the_usual_as_those_of_peaks(length: float) -> None:
     found = refine_columns(averaged(BUMPS["even"]), shape(length), 0.02)
     usual = float(found.pressure[0].sum()) * min(HALF_WIDTH, length)
-    assert found.loads == pytest.approx((usual, usual))
-    for load_error, peak_error, peak in zip(found.load_errors, found.peak_errors, found.peaks, strict=True):
-        assert load_error / usual == pytest.approx(peak_error / peak)
+    assert found.values["end_load"] == pytest.approx((usual, usual))
+    parts = np.array(found.errors["peak_pressure"]) / found.values["peak_pressure"]
+    assert np.array(found.errors["end_load"]) / usual == pytest.approx(parts)
 
 
 @pytest.mark.parametrize("name", ["lesser peak", "singular"])
@@ -323,9 +326,11 @@ def test_another_pressure_on_the_same_columns_has_errors_that_grow_with_it(name:
     asked = shape(room=(3.0, 0.0))
     found = refine_columns(averaged(FOLLOWED[name]), asked, 0.02)
     other = replace_pressure(found, 1.25 * found.pressure, asked)
-    for key in ("peaks", "peak_errors", "ends", "end_errors", "loads"):
-        assert getattr(other, key) == pytest.approx([1.25 * each for each in getattr(found, key)]), key
-    assert other.load_errors == found.load_errors
+    for values, expected in ((other.values, found.values), (other.errors, found.errors)):
+        for key in ("peak_pressure", "end_pressure"):
+            assert values[key] == pytest.approx([1.25 * each for each in expected[key]]), key
+    assert other.values["end_load"] == pytest.approx([1.25 * each for each in found.values["end_load"]])
+    assert other.errors["end_load"] == found.errors["end_load"]
     for law, again in zip(found.laws, other.laws, strict=True):
         assert (law is None) == (again is None)
         if law and again:
@@ -336,19 +341,24 @@ def test_an_end_that_was_not_pressed_before_is_all_in_doubt() -> None:
     # Random case 4008736: coupled friction presses an end that the pressure alone does not reach.
     asked = shape()
     found = refine_columns(averaged(FOLLOWED["contact's end"]), asked, 0.02)
-    assert (found.ends, found.end_errors) == ((0.0, 0.0), (0.0, 0.0))
+    assert (found.values["end_pressure"], found.errors["end_pressure"]) == ((0.0, 0.0), [0.0, 0.0])
     pressed = found.pressure.copy()
     pressed[:20] += 0.02 * found.pressure.max()
-    first, last = replace_pressure(found, pressed, asked).ends
+    other = replace_pressure(found, pressed, asked)
+    first, last = other.values["end_pressure"]
     assert first > 0
-    assert replace_pressure(found, pressed, asked).end_errors == (first, last) == (first, 0.0)
+    assert other.errors["end_pressure"] == [first, last] == [first, 0.0]
 
 
 @pytest.mark.parametrize("errors", [(0.1, np.inf), (np.inf, 0.1)])
 def test_of_two_equal_peaks_the_larger_error_counts(errors: tuple[float, float]) -> None:
     found = refine_columns(averaged(FOLLOWED["even"]), shape(), 0.02)
-    assert np.isinf(replace(found, peaks=(1.0, 1.0), peak_errors=errors).peak_error)
-    assert replace(found, peaks=(1.0, 0.5)[:: 1 if errors[0] < 1 else -1], peak_errors=errors).peak_error == 0.1
+
+    def peak_error(peaks: tuple[float, ...]) -> float:
+        return replace(found, values={"peak_pressure": peaks}, errors={"peak_pressure": errors}).peak_error
+
+    assert np.isinf(peak_error((1.0, 1.0)))
+    assert peak_error((1.0, 0.5)[:: 1 if errors[0] < 1 else -1]) == 0.1
 
 
 def test_an_end_is_sampled_wherever_its_column_was_split(caplog: pytest.LogCaptureFixture) -> None:
@@ -376,9 +386,9 @@ def test_a_sharp_end_that_is_not_pressed_needs_no_law(side: int) -> None:
     room = (2.0, 0.0) if side == 0 else (0.0, 2.0)
     found = refine_columns(averaged(along), shape(room=room), 0.05)
     assert found.laws == (None, None)
-    assert found.ends[side] == 0.0
-    assert np.isfinite(found.end_errors).all()
-    assert np.isfinite(found.peak_errors).all()
+    assert found.values["end_pressure"][side] == 0.0
+    assert np.isfinite(found.errors["end_pressure"]).all()
+    assert np.isfinite(found.errors["peak_pressure"]).all()
 
 
 @pytest.mark.parametrize("slope", [0.5, -0.5])
@@ -389,7 +399,7 @@ def test_peak_at_a_pressed_sharp_end_has_an_infinite_error(side: int, slope: flo
         return np.asarray(1 + slope * distance / LENGTH)
 
     columns = refine_columns(averaged(pressure), shape(room=(2.0, 0.0) if side == 0 else (0.0, 2.0)), 0.05)
-    for errors in (columns.end_errors, columns.peak_errors):
+    for errors in (columns.errors["end_pressure"], columns.errors["peak_pressure"]):
         assert np.isinf(errors[side])
         assert np.isfinite(errors[1 - side])
 

@@ -24,8 +24,8 @@ ALONG_Y_ONLY = Grid(x_range=(0.0, 6.0), y_range=(0.0, 4.0), cells_x=6, cells_y=8
 
 def found_on(grid: Grid, traction: FloatArray, sticks: FloatArray) -> Tractions:
     rigid = {"x": 0.5, "y": -0.25, "spin": 3.0}
-    zeros = dict.fromkeys(("force_x", "force_y", "moment_z", "work"), 0.0)
-    return Tractions(traction=traction, slip=np.zeros_like(traction), sticks=sticks, rigid=rigid, **zeros)
+    slip = np.zeros_like(traction)
+    return Tractions(traction=traction, slip=slip, sticks=sticks, rigid=rigid, resultants={}, work=0.0)
 
 
 def all_cells(grid: Grid) -> RollingCells:
