@@ -34,6 +34,7 @@ from threadpoolctl import threadpool_limits
 
 import contactstudy as cs
 from contactstudy.bodies import Body
+from contactstudy.plots.style import MARKERS, line_styles
 from contactstudy.verification.closed_forms import hertz_circle_axis
 from contactstudy.verification.free_ends import EXTRA_DEFLECTION
 
@@ -431,38 +432,26 @@ def poisson_table(solutions: xr.Dataset) -> str:
     return "\n".join(lines)
 
 
-LINES = {
-    "load": ("load", "o", "-"),
-    "approach": ("depth", "o", "-"),
-    "contact_area": ("contact area", "s", "--"),
-    "peak_pressure": ("largest pressure", "^", "-."),
-    "von_mises": ("largest von Mises stress", "D", ":"),
+LABELS = {
+    "load": "load",
+    "approach": "depth",
+    "contact_area": "contact area",
+    "peak_pressure": "largest pressure",
+    "von_mises": "largest von Mises stress",
 }
 
 
 def draw(solutions: xr.Dataset, indenters: Sequence[str] = ("sphere", "cylinder")) -> plt.Figure:
     """Every quantity over its value on the half-space against the distance: a panel for each shape and condition."""
-    figure, axes = plt.subplots(
-        2, len(indenters), figsize=(10.0, 7.0), layout="constrained", sharex=True, squeeze=False
-    )
+    figure, axes = plt.subplots(2, len(indenters), figsize=(10.0, 7.0), layout="constrained", sharex=True)
     near = solutions["e_over_a"].values[np.isfinite(solutions["e_over_a"].values)]
     for (row, condition), (column, indenter) in itertools.product(enumerate(CONDITIONS), enumerate(indenters)):
         ax, part = axes[row, column], solutions.sel(indenter=indenter, condition=condition)
         ratio = part.sel(e_over_a=near) / part.sel(e_over_a=HALF_SPACE)
         ax.axhline(1.0, color="0.7", linewidth=0.8)
-        for name, (label, marker, dashes) in LINES.items():
-            if name != ("approach" if condition == "depth" else "load"):
-                fill = "black" if name == "von_mises" else "white"
-                ax.plot(
-                    near,
-                    ratio[name],
-                    dashes,
-                    marker=marker,
-                    color="black",
-                    markerfacecolor=fill,
-                    markersize=5,
-                    label=label,
-                )
+        names = [name for name in LABELS if name != ("approach" if condition == "depth" else "load")]
+        for name, style, marker in zip(names, line_styles(len(names)), MARKERS, strict=False):
+            ax.plot(near, ratio[name], marker=marker, markersize=5, label=LABELS[name], **style)
         if indenter == "sphere" and condition == "depth":
             far = np.linspace(2.0, near[-1], 61)
             line = [far_from_edge(float(part["poisson"]), float(e)) for e in far]

@@ -179,8 +179,8 @@ def main() -> None:
         return
     error.to_netcdf(folder / "errors.nc")
     limits(error).to_dataframe().to_csv(folder / "limits.csv")
-    for number, profile in enumerate(error["profile"].values, start=1):
-        draw(error, str(profile)).savefig(folder / f"regime_map_{number}.png", dpi=80)
+    for profile in map(str, error["profile"].values):
+        draw(error, profile).savefig(folder / f"{profile.replace(' ', '_')}.png", dpi=80)
     print(table(error))
     print(f"\n{stated_errors(study)}")
     print(f"\nwrote errors.nc, limits.csv and a figure for each crown in {folder}")

@@ -1,4 +1,4 @@
-"""Pages of the site whose source lies outside the folder docs: notebooks, changelog, and what pages link to."""
+"""Pages of the site whose source lies outside the folder docs: README, notebooks, changelog, and what pages link to."""
 
 from __future__ import annotations
 
@@ -13,13 +13,18 @@ from mkdocs.structure.pages import Page
 ROOT = Path(__file__).parents[2]
 NOTEBOOKS = ROOT / "studies" / "notebooks"
 ORDER = ("first_steps", "exploring_a_study", "designing_a_profile", "verification")
-LINKED = ("studies/*.toml", "studies/*.py")
-"""Files that pages link to as they lie in the repository, with ``../../`` before the name."""
+LINKED = ("studies/*.toml", "studies/*.py", "LICENSE", "CITATION.cff")
+"""Files that pages link to as they lie in the repository."""
 
 DIAGRAMS = re.compile(r'<script type="module">(?:(?!</script>).)*mermaid.*?</script>', re.DOTALL)
 """A script in every notebook's page that would load diagrams, of which there are none, from another host."""
 
-PAGES = {"contributing.md": "CONTRIBUTING.md", "releasing.md": "RELEASING.md", "changelog.md": "CHANGELOG.md"}
+PAGES = {
+    "index.md": "README.md",
+    "contributing.md": "CONTRIBUTING.md",
+    "releasing.md": "RELEASING.md",
+    "changelog.md": "CHANGELOG.md",
+}
 
 
 def on_config(config: MkDocsConfig) -> MkDocsConfig:

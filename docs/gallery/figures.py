@@ -25,9 +25,9 @@ BLOCKS = re.compile(r"^```python\n(.*?)^```", re.DOTALL | re.MULTILINE)
 PROGRAMS = {
     "study_best_profile": ("studies/best_profile.py", "results/best_profile/best_profile.png"),
     "study_quarter_space": ("studies/quarter_space.py", "results/quarter_space/quarter_space.png"),
-    "study_regime_map": ("studies/regime_map.py", "results/regime_map/regime_map_1.png"),
-    "study_regime_map_slight": ("studies/regime_map.py", "results/regime_map/regime_map_2.png"),
-    "study_regime_map_worn": ("studies/regime_map.py", "results/regime_map/regime_map_3.png"),
+    "study_regime_map": ("studies/regime_map.py", "results/regime_map/full_crown.png"),
+    "study_regime_map_slight": ("studies/regime_map.py", "results/regime_map/0.3_crown.png"),
+    "study_regime_map_worn": ("studies/regime_map.py", "results/regime_map/worn_crown.png"),
     "study_residual_stress": ("studies/residual_stress.py", "results/residual_stress/residual_stress.png"),
     "study_rolling": ("studies/rolling.py", "results/rolling.png"),
     "study_shakedown": ("studies/shakedown.py", "results/shakedown/shakedown.png"),
