@@ -58,7 +58,7 @@ class FilmResolution:
     ratio : float
         Ratio of the cells of one level to the next one's along y; its square for the narrowest columns.
     levels : int
-        Most levels, of each direction.
+        Most levels of each direction, at least 3.
     most_cells : int
         Most uniform cells along y. Speed.
     dry_accuracy, dry_tolerance : float

@@ -34,8 +34,14 @@ from contactstudy.film.newton import SETTINGS, FilmSettings, StepFailedError
 ACCURACIES = (2e-3, 0.2)
 """Accuracies that the levels reach and that mean something."""
 
-SAFETY, ROUNDING = 1.5, 1e-3
-"""Stated error over the change from the level before, and least stated error over the value. Accuracy."""
+SAFETY = {"cells": 1.5, "columns": 1.0}
+"""Stated error over the latest change by a refinement. Accuracy."""
+
+DECREASE = {"cells": 0.5, "columns": 0.25}
+"""Change by a refinement over the change before, of second order in the size of the cells. Accuracy."""
+
+ROUNDING = 1e-3
+"""Least stated error over the value. Accuracy."""
 
 VISCOSITY_EXPONENT = 1.3  # viscosity ratio ``kappa = Lambda**1.3`` from the film ratio (ISO 281:2007). Physics.
 
@@ -218,13 +224,14 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
             return _refined(film, accuracy, settings)
         raise _film_error(film, failure, level, closures) from None
     films = [films_of(film, solutions[0])]
-    changes = {name: [np.full(len(NAMES), np.inf)] for name in Level._fields}
-    errors = changes["cells"][0]
-    while np.any(errors > accuracy * films[-1].central):
+    changes = {name: [np.full(len(NAMES), np.inf)] * 2 for name in Level._fields}
+    while True:
+        parts = {name: _error(name, change) for name, change in changes.items()}
+        errors = np.sum([*parts.values()], axis=0) + ROUNDING * films[-1].values
         coarsest = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
-        if not coarsest:
+        if errors.max() <= accuracy * films[-1].central or not coarsest:
             break
-        direction = max(coarsest, key=lambda name: float(_latest(changes[name]).max()))
+        direction = max(coarsest, key=lambda name: float(parts[name].max()))
         level = level._replace(**{direction: getattr(level, direction) + 1})
         if direction == "columns":
             closures = _closures(films[-1], solutions[-1], closures)
@@ -236,7 +243,6 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
             break
         films.append(films_of(film, solutions[-1]))
         changes[direction].append(np.abs(films[-1].values - films[-2].values))
-        errors = sum(SAFETY * _latest(change) for change in changes.values()) + ROUNDING * films[-1].values
     try:
         solutions.append(solve_further(solutions[-1], settings))
     except StepFailedError as failure:
@@ -252,9 +258,9 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
     )
 
 
-def _latest(changes: list[FloatArray]) -> FloatArray:
-    """Latest change of each film, at least half the one before: a change may vanish by chance."""
-    return np.asarray(np.maximum(changes[-1], 0.5 * changes[-2])) if len(changes) > 1 else changes[-1]
+def _error(direction: str, changes: list[FloatArray]) -> FloatArray:
+    """Error of each film from its latest two changes by refinement in one direction: one may vanish by chance."""
+    return np.asarray(SAFETY[direction] * np.maximum(changes[-1], DECREASE[direction] * changes[-2]))
 
 
 def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) -> tuple[float, float]:
