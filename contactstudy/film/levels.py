@@ -229,7 +229,7 @@ class FilmOnCells(NamedTuple):
     Attributes
     ----------
     problem : FilmProblem
-        What was solved.
+        Equations of the film.
     solution : FilmSolution
         The film.
     grid : Grid

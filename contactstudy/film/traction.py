@@ -22,7 +22,7 @@ def film_traction(
 ) -> xr.Dataset:
     """Compute traction and losses of a film at slide-roll ratios, for the film of the case's entrainment speed.
 
-    The film forms in the inlet, so it is that of pure rolling but for its heat: `thermal_reduction` states by how much.
+    The film forms in the inlet: it equals the film of pure rolling times `thermal_reduction`.
 
     Parameters
     ----------

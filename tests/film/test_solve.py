@@ -9,6 +9,7 @@ import pytest
 import contactstudy as cs
 from contactstudy.film import Asperities, solve_film
 from contactstudy.film.formulas import moes_line
+from contactstudy.film.levels import RESOLUTION
 from contactstudy.film.line_contact import solve_line
 
 pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
@@ -83,6 +84,16 @@ def test_the_middle_of_a_long_roller_is_a_line_contact():
     assert abs(float(film.central_film) - line.central * scale) < error
     middle = float(film.slice_film.sel(x=50 * HALF_WIDTH, method="nearest"))
     assert middle == pytest.approx(line.central * scale, rel=0.04)
+
+
+def test_the_film_on_the_face_of_a_straight_flush_roller_does_not_follow_the_columns():
+    case = film_case(8 * HALF_WIDTH, 10.0, 5.0)
+    narrow = replace(RESOLUTION, columns=0.25 * RESOLUTION.columns, columns_inlet=0.25 * RESOLUTION.columns_inlet)
+    film, narrower = (solve_film(case, accuracy=0.2, resolution=cells) for cells in (RESOLUTION, narrow))
+    assert float(film.least_film_first_x) == 0.0
+    assert float(film.least_film_first) < 0.8 * float(film.least_film_middle)
+    difference = abs(float(film.least_film_first - narrower.least_film_first))
+    assert difference < float(film.least_film_first_error) < 0.02 * float(film.central_film)
 
 
 def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
