@@ -127,15 +127,26 @@ def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]]
     case = random_case(Random(seed))
     if moes_numbers(case)[0] > LARGEST_LOAD or case.contact_length > LONGEST * case.hertz_half_width:
         return None
-    film, finer = solve_film(case, accuracy=accuracy), solve_film(case, accuracy=LEAST_LEVELS, resolution=FINER)
+    film = solve_film(case, accuracy=accuracy)
+    finer = solve_film(case, accuracy=LEAST_LEVELS, resolution=FINER, start=film)
     return {name: (float(film[f"{name}_error"]), float(abs(finer[name] - film[name]))) for name in FILMS}
 
 
 def report_errors(seeds: range, accuracy: float) -> int:
     """Print the films whose stated errors cover the change to finer cells, and the medians of error over change."""
-    compared = {seed: errors for seed in seeds if (errors := compare_errors(seed, accuracy)) is not None}
+    compared = []
+    for seed in seeds:
+        try:
+            errors = compare_errors(seed, accuracy)
+        except cs.FilmError as error:
+            print(f"seed {seed}: {error}", flush=True)
+            continue
+        if errors is not None:
+            compared.append(errors)
+            texts = (f"{name} {stated:.2g} m against {change:.2g}" for name, (stated, change) in errors.items())
+            print(f"seed {seed}: {', '.join(texts)}", flush=True)
     for name in FILMS:
-        pairs = [errors[name] for errors in compared.values()]
+        pairs = [errors[name] for errors in compared]
         covered = sum(change <= stated for stated, change in pairs)
         median = np.median([stated / max(change, 1e-12) for stated, change in pairs])
         print(f"{name}: {covered} of {len(pairs)} covered, median of stated error over change {median:.1f}")

@@ -146,7 +146,7 @@ def returned(strip_result: Callable[..., xr.Dataset], opened: xr.Dataset, tmp_pa
         lubricant=cs.Lubricant.preset("heavy machine oil", 60.0).replaced(conductivity=0.14),
     )
     lubricated = film.solve_film(
-        oiled, accuracy=0.2, asperities=film.Asperities(rms=2e-7), resolution=film.FilmResolution(levels=2)
+        oiled, accuracy=0.2, asperities=film.Asperities(rms=2e-7), resolution=film.FilmResolution(levels=3)
     )
     values: dict[str, xr.Dataset | xr.DataArray] = {
         "solve": solved,

@@ -138,9 +138,9 @@ def made_up(case: Case, pressed: float, **rigid: float) -> FrictionalContact:
         motions=np.inf,
         certificate=certificate,
     )
-    zeros = dict.fromkeys(("force_x", "force_y", "moment_z", "work"), 0.0)
+    resultants = dict.fromkeys(("force_x", "force_y", "moment_z"), 0.0)
     pair = np.stack([none] * 2)
-    tractions = Tractions(traction=pair, slip=pair, sticks=none > 1, rigid=rigid, **zeros)
+    tractions = Tractions(traction=pair, slip=pair, sticks=none > 1, rigid=rigid, resultants=resultants, work=0.0)
     return FrictionalContact(contact, tractions, True)
 
 
@@ -185,9 +185,9 @@ def test_cells_double_until_what_is_free_changes_by_no_more_than_the_accuracy(
     def on(case: Case, settled: RefinedContact, cells: int, before: FrictionalContact | None) -> FrictionalContact:
         rows.append(cells)
         assert (before is None) == (len(rows) == 1)
-        values = {"force_x": -full * forces[len(rows) - 1]}
+        resultants = contact.tractions.resultants | {"force_x": -full * forces[len(rows) - 1]}
         rigid = contact.tractions.rigid | {"y": float(len(rows))}
-        return replace(contact, tractions=replace(contact.tractions, rigid=rigid, **values))
+        return replace(contact, tractions=replace(contact.tractions, rigid=rigid, resultants=resultants))
 
     settled = refine_contact(replace(LIKE, friction=0.0), 0.05, 1e-6)
     cells = settled.contact.shape.grid.cells_y
