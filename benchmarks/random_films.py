@@ -34,7 +34,7 @@ FINER = replace(
     **{name: 0.25 * getattr(RESOLUTION, name) for name in QUARTERED},
     **{name: 0.5 * getattr(RESOLUTION, name) for name in HALVED},
 )
-LEAST_LEVELS = 0.2  # Accuracy of the films on finer cells: of the fewest levels
+COARSE_ACCURACY = 0.2  # Accuracy of the films on finer cells, which the fewest levels reach
 
 
 def random_profile(chance: Random, amplitude: float, half_width: float, length: float) -> cs.profiles.Profile:
@@ -128,7 +128,7 @@ def compare_errors(seed: int, accuracy: float) -> dict[str, tuple[float, float]]
     if moes_numbers(case)[0] > LARGEST_LOAD or case.contact_length > LONGEST * case.hertz_half_width:
         return None
     film = solve_film(case, accuracy=accuracy)
-    finer = solve_film(case, accuracy=LEAST_LEVELS, resolution=FINER, start=film)
+    finer = solve_film(case, accuracy=COARSE_ACCURACY, resolution=FINER, start=film)
     return {name: (float(film[f"{name}_error"]), float(abs(finer[name] - film[name]))) for name in FILMS}
 
 

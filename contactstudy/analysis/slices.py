@@ -144,7 +144,7 @@ def pressure_errors(result: xr.Dataset) -> tuple[float, float]:
         return np.nan, np.nan
     across, along = (cell_size(result["pressure"], axis) for axis in "xy")
     resultant = float((result["pressure"] * across * along).sum())
-    if resultant <= (1 - MISSING_LOAD) * float(result["normal_load"]):
+    if not resultant > (1 - MISSING_LOAD) * float(result["normal_load"]):  # also of an unknown load
         return np.nan, np.nan
     accuracy = float(attribute(result, INPUTS_ATTRIBUTE).get("settings", {}).get("accuracy", np.nan))
     errors = []

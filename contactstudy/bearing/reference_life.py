@@ -154,7 +154,6 @@ def reference_life(
     number = loaded if rollers is None else checks.count("rollers", rollers, least=loaded)
     if isinstance(inner, Case):
         number = 1  # equal rollers: the mean does not depend on their number
-    checks.instance("turning", turning, str, "a name")
     checks.known_name("turning", turning, RACEWAYS)
     rated = checks.coordinates("ratings", ratings, "N")
     if rated.size != len(RACEWAYS) or (rated <= 0).any():

@@ -125,19 +125,7 @@ MODELS = ("exact", "mirror", "mirror-factor", "single-mirror")
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class EndedBody(Body):
-    """A body with free ends; use one of its kinds.
-
-    Parameters
-    ----------
-    material, reference_depth
-        As of `Body`.
-    model : str
-        How the ends are treated. "exact" frees them. The others are quick fixes in use, for comparison: "mirror"
-        mirrors the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
-        `guilbault_factor` to make up for it. "single-mirror", for two ends only, mirrors the load once in either end
-        and takes the normal stress from both by two separate half-spaces: the scheme of Zhang, Wang and Wong, which
-        leaves some shear on the ends.
-    """
+    """A body with free ends; :class:`FiniteLengthSpace` describes the models."""
 
     model: str = "exact"
 
@@ -169,7 +157,14 @@ def guilbault_factor(poisson: float) -> float:
 
 @dataclass(frozen=True, kw_only=True, repr=False)
 class QuarterSpace(EndedBody):
-    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``; parameters as of `EndedBody`.
+    """Elastic body ``x >= 0``, ``z >= 0`` with one free end face at ``x = 0``.
+
+    Parameters
+    ----------
+    material : Material
+        Material of the body.
+    model : str
+        Model of the end, "exact", "mirror" or "mirror-factor": see :class:`FiniteLengthSpace`.
 
     Examples
     --------
@@ -197,7 +192,15 @@ class FiniteLengthSpace(EndedBody):
     Parameters
     ----------
     length : float
-        Distance between the free ends (``L_f``), metres; further parameters as of `EndedBody`.
+        Distance between the free ends (``L_f``), metres.
+    material : Material
+        Material of the body.
+    model : str
+        Model of the ends. "exact" frees the ends. The others are quick fixes in use, for comparison: "mirror" mirrors
+        the load and leaves the normal stress on the ends; "mirror-factor" multiplies the mirrored loads by
+        Guilbault's factor to make up for it. "single-mirror" mirrors the load once in either end and takes the normal
+        stress from both by two separate half-spaces: the scheme of Zhang, Wang and Wong, which leaves some shear on
+        the ends.
 
     Raises
     ------

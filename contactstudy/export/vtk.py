@@ -124,7 +124,7 @@ def _write_mesh(
     nodes = np.stack([points.ravel() for points in np.meshgrid(*axes, indexing="ij")], axis=1)
     sections: dict[str, dict[str, Array]] = {
         "PointData": {name: values.reshape(len(nodes), -1) for name, values in (on_points or {}).items()},
-        "CellData": {name: values.ravel() for name, values in (in_cells or {}).items()},
+        "CellData": {name: values.ravel().astype(np.float64) for name, values in (in_cells or {}).items()},
         "Points": {"Points": nodes},
         "Cells": {
             "connectivity": corners.ravel(),

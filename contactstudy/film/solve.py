@@ -76,7 +76,7 @@ def solve_film(
     start : Dataset, optional
         Film of the same case at another speed or with another lubricant, from which the iteration starts.
     resolution : FilmResolution
-        Cells of the coarsest level.
+        Cells of the refinable level.
     settings : FilmSettings
         Settings of the iteration.
 
@@ -228,10 +228,10 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
     while True:
         parts = {name: _error(name, change) for name, change in changes.items()}
         errors = np.sum([*parts.values()], axis=0) + ROUNDING * films[-1].values
-        coarsest = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
-        if errors.max() <= accuracy * films[-1].central or not coarsest:
+        refinable = [name for name in Level._fields if getattr(level, name) < film.resolution.levels - 1]
+        if errors.max() <= accuracy * films[-1].central or not refinable:
             break
-        direction = max(coarsest, key=lambda name: float(parts[name].max()))
+        direction = max(refinable, key=lambda name: float(parts[name].max()))
         level = level._replace(**{direction: getattr(level, direction) + 1})
         if direction == "columns":
             closures = _closures(films[-1], solutions[-1], closures)

@@ -1,8 +1,16 @@
 """Displacements of the top under loads on cells: the kernels of strips of load along y, and their integrals.
 
 ``k(X, Y)`` is the displacement at a distance X from a strip, differenced over a cell along y, ``P' = k`` the corner
-function of a loaded rectangle, and ``F'' = k`` the double primitive in X (Love's rectangle integrated once more; terms
-that cancel in the differences are left out). Distances and their sign determine the kernels.
+function of a loaded rectangle, and ``F'' = k`` the double primitive in X. With ``R**2 = X**2 + Y**2``:
+
+    of 1 / R:        k = asinh(Y / |X|),  F = X**2 / 2 asinh(Y / |X|) + X Y asinh(X / |Y|) - Y X**2 / (2 R + 2 |Y|)
+    of X**2 / R**3:  k = Y / R,           F = X Y asinh(X / |Y|) - Y R
+    of Y / R**2:     k = ln R,            F = X**2 / 2 ln R + X Y atan(X / Y) - Y**2 / 4 ln(1 + X**2 / Y**2)
+    of X / R**2:     k = atan(Y / X),     F = X**2 / 2 atan(Y / X) + X Y ln R + Y**2 / 2 atan(X / Y)
+    of X Y / R**3:   k = -X / R,          F = -X R / 2 - Y**2 / 2 asinh(X / |Y|)
+
+(Love's rectangle integrated once more; terms that cancel in the differences are left out). Distances and their sign
+determine the kernels.
 
 There are two observers: the centre of a uniform cell (eq. (39a)), and the mean over the width of a column, eq. (35) of
 docs/explanation/columns.md, symmetric to the last bit for the normal displacement under a pressure; its integrals are

@@ -69,6 +69,9 @@ def plot_edge_effect(
     """
     if "e_over_a" not in dataset.dims or "status" not in dataset:
         raise InvalidInputError("dataset", list(map(str, dataset.dims)), "a study with the dimension e_over_a")
+    allowed = "a study with finished cases and stored pressures"
+    if "hertz_half_width" not in dataset:
+        raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     from matplotlib import pyplot
 
     dataset, remarks = _select_beside(dataset, selection or {})
@@ -89,7 +92,6 @@ def plot_edge_effect(
     numbers = sorted(set(np.linspace(0, len(candidates) - 1, min(most, len(candidates))).round().astype(int)))
     entries = with_surfaces([candidates[number] for number in numbers])
     if not entries:
-        allowed = "a study with finished cases and stored pressures"
         raise InvalidInputError("dataset", dict(dataset.sizes), allowed)
     half_spaces = solved("half-space") if has_bodies and "half-space" in bodies and finite != "half-space" else []
     # On a half-space the distance shifts the coordinate only: one case suffices.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 import re
@@ -301,7 +302,7 @@ class Study:
         cases = tuple(self.cases)
         product = Plan(name=self.name, level=self.level, base=self.base, axes=tuple(axes), explicit=cases)
         number_of = {name: number for number, axis in enumerate(axes) for name in axis[0]}
-        steps = np.unravel_index(np.arange(product.products), product.shape) if axes else ()
+        steps = np.unravel_index(np.arange(product.products), product.shape) if axes and self.exclude else ()
         # Labels of the parameters in the rules: along their axis, in every explicit case, and which of the former each
         # combination has.
         labels: dict[str, tuple[list[Any], list[Any], IntArray]] = {}
@@ -379,10 +380,12 @@ def _rows(table: xr.Dataset, columns: Mapping[str, xr.Variable]) -> Iterable[dic
     """Yield the varying parameters of every case, in the order of the table's dimensions."""
     varying = {name: array for name, array in columns.items() if array.dims}
     dims = [dim for dim in table.sizes if any(dim in array.dims for array in varying.values())]
-    frame = xr.Dataset(varying).to_dataframe(dims).reset_index()
-    for row in frame[list(varying)].to_dict("records"):
-        plain = {str(name): _plain(value) for name, value in row.items()}
-        yield {name: value for name, value in plain.items() if value is not None}
+    for steps in itertools.product(*(range(table.sizes[dim]) for dim in dims)):
+        step = dict(zip(dims, steps, strict=True))
+        row = {
+            name: _plain(array[{dim: step[dim] for dim in array.dims}].values[()]) for name, array in varying.items()
+        }
+        yield {name: value for name, value in row.items() if value is not None}
 
 
 def part_of_study(study: Study, table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:

@@ -127,6 +127,7 @@ _ENTRIES = (
         name="model",
         check=one_of(MODELS),
         meaning="model of the free ends",
+        label="model of the free ends",
         fallback=MODELS[0],
         note="`exact`; for comparison `mirror` and `mirror-factor`, quick fixes in use, and `single-mirror` (two ends "
         "only), the published scheme with one pair of images",

@@ -154,11 +154,13 @@ def _copied(profile: Profile, name: str, content: str) -> Profile:
 
     import cloudpickle  # type: ignore[import-untyped]
 
+    refused = "an object that can be pickled for workers ({})"
     try:
         copy: Profile = pickle.loads(cloudpickle.dumps(profile))
-        reason = "" if _digest([name, _values(copy), _behaviour(copy)]) == content else "its copy is another profile"
+        content_of_copy = _digest([name, _values(copy), _behaviour(copy)])
     except Exception as error:  # a user's class may raise anything
         reason = f"{type(error).__name__}: {error}"
-    if reason:
-        raise InvalidInputError("profile", name, f"an object that can be pickled for workers ({reason})", REMEDY)
+        raise InvalidInputError("profile", name, refused.format(reason), REMEDY) from error
+    if content_of_copy != content:
+        raise InvalidInputError("profile", name, refused.format("its copy is another profile"), REMEDY)
     return copy

@@ -299,7 +299,6 @@ def wear_in(
     began = time.perf_counter()
     checks.instance("case", case, Case, "a Case")
     warn_doubtful(case)
-    checks.instance("law", law, str, "a name")
     checks.known_name("law", law, LAWS)
     if isinstance(case.motion, Shift):
         raise InvalidInputError("case.motion", case.motion, "Sliding() or Rolling(...): a shift has no distance")

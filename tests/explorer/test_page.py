@@ -193,6 +193,7 @@ def test_planes_against_the_analysis(folder: Path) -> None:
     depth = 0.3 * float(case.points["z"][0]) + 0.7 * float(case.points["z"][1])
     expected = in_plane(case.dataset[["von_mises"]], z=depth, variables="von_mises")["von_mises"]
     values = interpolate_along(2, case.stress(), case.points["z"], np.array([depth]))[..., 0]
+    # The folder's stresses and the analysis' interpolation are of single precision.
     assert values == pytest.approx(expected.transpose(*case.dataset["von_mises"].dims[:2]).values, rel=1e-6)
     assert plane_image(CaseFields(case.dataset.drop_vars("von_mises")), scale, limits, PLANES[0], 0.5) is None
 

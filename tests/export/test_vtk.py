@@ -96,13 +96,15 @@ def test_pressure_in_a_mesh(tmp_path) -> None:
     grid = Grid.from_edges([0.0, 0.5, 1.0, 2.0, 3.0, 3.5, 4.0], (-2.0, 2.0), 12)
     case = Case(body=body, roller=Roller(radius=20.0, length=3.0), max_pressure=0.025)
     result = solve(case, grid, stresses=False)
-    mesh = meshio.read(export.to_vtk(result, tmp_path / "top.vtu", ["pressure", "gap"]))
+    result = result.assign(stick=result["pressure"] > 0, count=(result["pressure"] > 0).astype("i1"))
+    names = ["pressure", "gap", "stick", "count"]
+    mesh = meshio.read(export.to_vtk(result, tmp_path / "top.vtu", names))
     (block,) = mesh.cells
     assert block.type == "quad"
     corners = mesh.points[block.data]
     middle = corners.mean(axis=1)
     places = {"x": xr.DataArray(middle[:, 0]), "y": xr.DataArray(middle[:, 1])}
-    for name in ("pressure", "gap"):
+    for name in names:
         (values,) = mesh.cell_data[name]
         assert np.array_equal(values, result[name].sel(places, method="nearest")), name
     areas = np.prod(corners[:, 2] - corners[:, 0], axis=1, where=[True, True, False])

@@ -35,5 +35,7 @@ def test_study_figure_without_stresses_and_without_comparison(opened):
 def test_nothing_to_draw(opened):
     with pytest.raises(InvalidInputError, match="finished cases"):
         plots.plot_edge_effect(opened, selection={"friction": FAILS})
+    with pytest.raises(InvalidInputError, match="finished cases"):
+        plots.plot_edge_effect(opened[["status"]])
     with pytest.raises(InvalidInputError, match="e_over_a"):
         plots.plot_edge_effect(opened.isel(e_over_a=0))

@@ -61,6 +61,16 @@ def test_values_along_two_dimensions_and_missing_ones_are_cases() -> None:
     assert not study.plan().skipped
 
 
+def test_profile_tables_are_labels_of_two_dimensions() -> None:
+    tables = np.array([{"kind": "cylinder"}, {"kind": "full-crown", "crown_radius": 1.0}], dtype=object)
+    pressure = (("friction", "profile"), [[1.0, 1.5], [1.2, 2.0]], {"units": "GPa"})
+    table = xr.Dataset({"max_pressure": pressure}, coords={"friction": [0.0, 0.1], "profile": tables})
+    base = {key: value for key, value in BASE.items() if key != "max_pressure"} | {"e_over_a": 1.0}
+    study = Study.from_dataset(table, base=base)
+    assert [case["max_pressure"] for case in study.cases] == [1e9, 1.5e9, 1.2e9, 2e9]
+    assert [case["profile"]["kind"] for case in study.cases] == 2 * ["cylinder", "full-crown"]
+
+
 @pytest.mark.parametrize(
     ("table", "message"),
     [
