@@ -37,7 +37,7 @@ class Elements:
                 self.triangles += [np.array([a, b, c]), np.array([a, c, d])]
         self.count = 9 * len(self.triangles)
 
-    def equilibrium(self) -> sparse.csr_matrix:
+    def equilibrium(self) -> sparse.csr_array:
         """All equations: in the triangles, across their sides, on the faces."""
         rows: list[dict[int, float]] = []
         sides: dict[tuple[tuple[float, ...], ...], list[tuple[int, Array]]] = defaultdict(list)
@@ -67,12 +67,12 @@ class Elements:
                 rows.append(row)
         entries = [(i, j, value) for i, row in enumerate(rows) for j, value in row.items()]
         i, j, values = zip(*entries, strict=True)
-        return sparse.csr_matrix((values, (i, j)), shape=(len(rows), self.count))
+        return sparse.csr_array((values, (i, j)), shape=(len(rows), self.count))
 
-    def at_points(self) -> list[sparse.csr_matrix]:
+    def at_points(self) -> list[sparse.csr_array]:
         """Matrices from the unknowns to the stresses xx, zz, xz at all points (x first)."""
         x, z = points(self.x, 0), points(self.z, 1)
-        matrices = [sparse.lil_matrix((x.size * z.size, self.count)) for _ in range(3)]
+        matrices = [sparse.lil_array((x.size * z.size, self.count)) for _ in range(3)]
         for i, px in enumerate(x):
             for j, pz in enumerate(z):
                 rectangle = (i // 2) * (self.z.size - 1) + j // 2
@@ -104,14 +104,14 @@ def least_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     point = rows // instants
 
     # Unknowns: von Mises' stress t, the free part of each point along u, the stresses.
-    def cone(row: int, matrix: sparse.spmatrix) -> sparse.csr_matrix:
-        spread = sparse.csr_matrix((np.full(rows.size, -1.0), (5 * rows + row, rows)), shape=(5 * rows.size, rows.size))
+    def cone(row: int, matrix: sparse.sparray) -> sparse.csr_array:
+        spread = sparse.csr_array((np.full(rows.size, -1.0), (5 * rows + row, rows)), shape=(5 * rows.size, rows.size))
         return spread @ matrix
 
-    bound = cone(0, sparse.csr_matrix(np.ones((rows.size, 1))))
-    free = cone(1, sparse.csr_matrix((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
+    bound = cone(0, sparse.csr_array(np.ones((rows.size, 1))))
+    free = cone(1, sparse.csr_array((np.ones(rows.size), (rows, point)), shape=(rows.size, count)))
     stress = cone(2, 0.5 * root * (xx - zz)[point]) + cone(3, root * xz[point])
-    constraints = sparse.hstack([sparse.csr_matrix((equations.shape[0], 1 + count)), equations])
+    constraints = sparse.hstack([sparse.csr_array((equations.shape[0], 1 + count)), equations])
     matrix = sparse.vstack([constraints, sparse.hstack([bound, free, stress])], format="csc")
     right = np.concatenate([np.zeros(equations.shape[0]), np.stack(parts, axis=-1).ravel()])
     cost = np.zeros(1 + count + elements.count)
@@ -119,6 +119,6 @@ def least_shear_yield_stress(history: Array, x: Array, z: Array) -> float:
     settings = clarabel.DefaultSettings()
     settings.verbose = False
     cones = [clarabel.ZeroConeT(equations.shape[0])] + [clarabel.SecondOrderConeT(5)] * rows.size
-    nothing = sparse.csc_matrix((cost.size, cost.size))
+    nothing = sparse.csc_array((cost.size, cost.size))
     solution = clarabel.DefaultSolver(nothing, cost, matrix, right, cones, settings).solve()
     return float(solution.obj_val) / root

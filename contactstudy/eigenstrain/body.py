@@ -211,17 +211,17 @@ class Influence:
         """Influence of the cells with these numbers along x and along z on each other."""
         areas = np.diff(body.x_edges)[along_x] * np.diff(body.z_edges)[along_z]
 
-        def columns(of: Factors, i: int, j: int) -> sparse.csc_matrix:
+        def columns(of: Factors, i: int, j: int) -> sparse.csc_array:
             """Integrals of the functions' derivatives over each of the cells: array (function, cell)."""
-            x, z = (sparse.csc_matrix(m) for m in (of[0][i][:, along_x], of[1][j][:, along_z]))
-            return sparse.csc_matrix(
+            x, z = (sparse.csc_array(m) for m in (of[0][i][:, along_x], of[1][j][:, along_z]))
+            return sparse.csc_array(
                 sparse.hstack([sparse.kron(x[:, [n]], z[:, [n]], format="csc") for n in range(along_x.size)])
             )
 
-        def matrix(function: StressFunction, parts: list[sparse.csc_matrix], counts: FloatArray) -> FloatArray:
+        def matrix(function: StressFunction, parts: list[sparse.csc_array], counts: FloatArray) -> FloatArray:
             """Averages of the stresses per eigenstrains times `counts`, over minus the modulus."""
-            together = sparse.csc_matrix(sparse.hstack(parts))
-            averages = sparse.csr_matrix(together.T)
+            together = sparse.csc_array(sparse.hstack(parts))
+            averages = sparse.csr_array(together.T)
             influence = np.empty((together.shape[1],) * 2)
             for start in range(0, influence.shape[1], COLUMNS):
                 right = together[:, start : start + COLUMNS].toarray()

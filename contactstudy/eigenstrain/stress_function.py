@@ -61,11 +61,11 @@ class Splines:
         half = 0.5 * np.diff(self.edges)[:, None]
         return self.edges[:-1, None] + half * (1 + node), half * weight
 
-    def products(self, derivative: int) -> sparse.csr_matrix:
+    def products(self, derivative: int) -> sparse.csr_array:
         """Integrals of products of two functions' derivatives: array (function, function)."""
         points, weights = self._gauss
-        values = sparse.csr_matrix(self.values(points.ravel(), derivative))
-        return sparse.csr_matrix(values.T @ sparse.diags(weights.ravel()) @ values)
+        values = sparse.csr_array(self.values(points.ravel(), derivative))
+        return sparse.csr_array(values.T @ sparse.diags_array(weights.ravel()) @ values)
 
     def integrals(self, cell_edges: FloatArray, derivative: int) -> FloatArray:
         """Integrals of functions or their derivatives over cells with edges of elements: array (function, cell)."""
@@ -90,7 +90,7 @@ class StressFunction:
         parts = {(i, j): sparse.kron(self.x.products(i), self.z.products(j)) for i, j in self._derivatives}
         matrix = sum(weight * parts[pair] for pair, weight in self._derivatives.items())
         scale = 1 / np.sqrt(matrix.diagonal())
-        scaled = sparse.csc_matrix(sparse.diags(scale) @ matrix @ sparse.diags(scale))
+        scaled = sparse.csc_array(sparse.diags_array(scale) @ matrix @ sparse.diags_array(scale))
         factor = splu(scaled, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
         return factor, scale
 

@@ -345,7 +345,7 @@ def shakedown_in_plane(stress: xr.Dataset, body: Body) -> xr.Dataset:
     return result
 
 
-def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list[sparse.csr_matrix]:
+def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list[sparse.csr_array]:
     """Stresses xx, zz and xz at the points per coefficient of Airy's function: arrays (point, coefficient)."""
     ends = [end if np.isfinite(end) else edge for end, edge in zip(extent, x[[0, -1]], strict=True)]
     along_x = Splines(_elements(x, *ends), DEGREE, CONTINUITY, vanishing=2)
@@ -356,7 +356,7 @@ def _stresses(extent: tuple[float, float], x: FloatArray, z: FloatArray) -> list
     values_x, values_z = StressFunction(along_x, along_z).values(x, z)
     unit = step[0] * step[1]
     return [
-        sparse.csr_matrix(sign * unit * sparse.kron(values_x[i], values_z[j]))
+        sparse.csr_array(sign * unit * sparse.kron(sparse.csr_array(values_x[i]), values_z[j]))
         for i, j, sign in ((0, 2, 1), (2, 0, 1), (1, 1, -1))
     ]
 
@@ -373,11 +373,11 @@ class _Program:
     """The cone program: histories over their largest stress, and the stresses per coefficient."""
 
     history: Array
-    function: list[sparse.csr_matrix]
+    function: list[sparse.csr_array]
 
     def __post_init__(self) -> None:
         xx, zz, xz = self.function
-        self._v, self._xz = sparse.csr_matrix(0.5 * ROOT * (xx - zz)), sparse.csr_matrix(ROOT * xz)
+        self._v, self._xz = sparse.csr_array(0.5 * ROOT * (xx - zz)), sparse.csr_array(ROOT * xz)
         self.u, self.v, _ = in_ball_axes(self.history)
         self.xz = ROOT * self.history[..., 4]
         self.rest = np.sqrt(3 * (self.history[..., 3] ** 2 + self.history[..., 5] ** 2))
@@ -424,8 +424,8 @@ class _Program:
         rows = np.arange(count)
 
         # Variables: t, the free stress of each point, the coefficients. Rows: t, u, v, xz, rest of every instant.
-        def placed(row: int, columns: IntArray, width: int) -> sparse.csr_matrix:
-            return sparse.csr_matrix((np.full(count, -1.0), (5 * rows + row, columns)), shape=(5 * count, width))
+        def placed(row: int, columns: IntArray, width: int) -> sparse.csr_array:
+            return sparse.csr_array((np.full(count, -1.0), (5 * rows + row, columns)), shape=(5 * count, width))
 
         spread = [placed(row, rows, count) for row in (2, 3)]
         of_airy = spread[0] @ self._v[point] + spread[1] @ self._xz[point]
@@ -440,7 +440,7 @@ class _Program:
         settings = clarabel.DefaultSettings()
         settings.verbose = False
         solver = clarabel.DefaultSolver(
-            sparse.csc_matrix((cost.size, cost.size)),
+            sparse.csc_array((cost.size, cost.size)),
             cost,
             matrix,
             right,

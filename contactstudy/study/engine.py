@@ -351,11 +351,11 @@ class Workers:
         self._notify(f"worker {worker} is left out: {reason}")
 
     def _wait_for_one(self, present: set[str]) -> None:
-        """Inform the user about the lack of workers; raise if all are excluded or the wait was too long."""
-        excluded = {worker for worker in present if self._faults.get(worker)}
-        if present and excluded == present:
-            raise StudyFileError(f"none of the {len(excluded)} workers can be used: {self._faults[min(excluded)]}")
+        """Inform the user about the lack of workers; raise after the wait, which is short if all are excluded."""
         waited = time.monotonic() - self._last_present
+        excluded = {worker for worker in present if self._faults.get(worker)}
+        if present and excluded == present and waited > min(self._wait, RUN.announce_seconds):
+            raise StudyFileError(f"none of the {len(excluded)} workers can be used: {self._faults[min(excluded)]}")
         if waited > self._wait:
             state = "has answered" if present else "is connected to the dask scheduler"
             raise StudyFileError(

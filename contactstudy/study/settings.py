@@ -14,7 +14,8 @@ class RunSettings:
     compact_seconds: float = 20.0  # a run joins small batches
     poll_seconds: float = 0.5  # a run looks for workers that came or went
     start_seconds: float = 60.0  # longest wait for a scheduler's answer, or the start of a worker
-    announce_seconds: float = 10.0  # time without a worker after which the user is informed
+    # time without a usable worker after which the user is informed, or, if all are excluded, the run ends
+    announce_seconds: float = 10.0
     close_seconds: float = 2.0  # longest wait for the end of a connection
     share_seconds: float = 10.0  # longest wait of a share for another one that starts at the same moment
     buffer_bytes: int = 2**26  # size in memory at which a worker writes a batch

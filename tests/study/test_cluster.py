@@ -93,7 +93,7 @@ def test_no_worker_at_all(study, tmp_path):
 def test_a_worker_with_another_version(study, tmp_path):
     unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0")
     with cluster(tmp_path, workers=0, lame=1) as address, unfit:
-        run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
+        run_study(study, tmp_path / "out", scheduler=address, wait=1.0, solver=solve_fake)
 
 
 @pytest.mark.slow
