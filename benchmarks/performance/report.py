@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from importlib import metadata
 from pathlib import Path
 
-from benchmarks.performance import bodies, contacts, rolling, settled
+from benchmarks.performance import bodies, contacts, film, rolling, settled
 from benchmarks.performance.timing import Report, Row
 
 PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
@@ -21,6 +21,7 @@ PARTS: dict[str, Callable[[int, Report], Iterator[Row]]] = {
     "long": bodies.long_rollers,
     "rolling": rolling.steady_rolling,
     "refined": settled.refined_columns,
+    "film": film.films,
     "iterations": contacts.iterations,
 }
 VERSIONS = ("contactstudy", "numpy", "scipy", "pyfftw", "aspher", "tamaas", "ContactMechanics")
