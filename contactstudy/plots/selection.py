@@ -9,17 +9,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from contactstudy.arrays.engineering import quantity
+from contactstudy.arrays.engineering import quantity, unit_for
 from contactstudy.arrays.selections import place_of
 from contactstudy.errors import InvalidInputError
 from contactstudy.plots.style import SYMBOLS, escape_dollars
-
-SCALES = {
-    "Pa": ((1e9, 1e9, "GPa"), (0.0, 1e6, "MPa")),
-    "m": ((1e-4, 1e-3, "mm"), (0.0, 1e-6, "\N{MICRO SIGN}m")),
-    "rad": ((0.0, 1e-3, "mrad"),),
-}
-"""Units of figures by SI unit: least size, factor, name. One unit serves a complete axis."""
 
 
 def select_values(dataset: xr.Dataset, selection: Mapping[str, Any]) -> xr.Dataset:
@@ -55,13 +48,8 @@ def most_solved(array: xr.DataArray, axes: tuple[str, ...], selection: Mapping[s
 
 def scale_of(array: xr.DataArray) -> tuple[float, str]:
     """Size in SI and name of the unit of a figure's axis; an empty name for a pure number."""
-    unit = str(array.attrs.get("units", "1"))
-    if unit in ("", "1"):
-        return 1.0, ""
-    if unit not in SCALES:
-        return 1.0, unit
     largest = float(abs(array).where(np.isfinite(array)).max())
-    return next((entry[1:] for entry in SCALES[unit] if largest >= entry[0]), SCALES[unit][-1][1:])
+    return unit_for(largest, str(array.attrs.get("units", "1")))
 
 
 def scale_values(array: xr.DataArray, name: str) -> tuple[xr.DataArray, str]:

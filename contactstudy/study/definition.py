@@ -132,7 +132,6 @@ class Study:
         """Check names and types, and bring every value into one form."""
         if not isinstance(self.name, str) or not re.fullmatch(r"[A-Za-z0-9][\w.-]*", self.name):
             raise InvalidInputError("name", self.name, "a word of letters, digits and _ - .")
-        checks.instance("level", self.level, str, "text")
         checks.known_name("level", self.level, LEVELS)
         checks.instance("description", self.description, str, "text")
         for key in ("base", "sweep"):

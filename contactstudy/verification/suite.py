@@ -115,7 +115,6 @@ class Verification:
 
 def run(level: str = "quick", report: Callable[[str, Check], None] | None = None) -> Verification:
     """Run the suite as `verify`; `report` is called with the group and each check after its comparison."""
-    arguments.instance("level", level, str, "a name")
     arguments.known_name("level", level, LEVELS)
     began = time.perf_counter()
     groups: dict[str, list[Check]] = {name: [] for name in GROUPS}
