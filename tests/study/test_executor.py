@@ -82,4 +82,4 @@ def test_workers_of_another_version_are_left_out():
     assert workers.usable(busy=False) == {"new"}
     assert len(remarks) == 2
     with pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0\.0\.1"):
-        Workers(FakeClient({"old": "0.0.1"}), 1.0, remarks.append).usable(busy=False)
+        Workers(FakeClient({"old": "0.0.1"}), 0.0, remarks.append).usable(busy=False)
