@@ -24,7 +24,7 @@ STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
 BORDER_LEVEL = 0.01
-"""Squared pressure over its largest value at the border of the contact: linear in the distance from the border."""
+"""Squared pressure at the border over its largest value beside singular ends: linear in the distance from the border."""
 
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
@@ -52,6 +52,13 @@ class Surface(NamedTuple):
     def pressed(self) -> BoolArray:
         """Cells in contact over (y, x)."""
         return self.pressure > 0
+
+    @property
+    def beside_singular(self) -> BoolArray:
+        """Columns without those near a singular end; all columns if all are near one."""
+        x = positions(self.case["pressure"], "x").values
+        near = near_singular(self.case, singular_ends(self.case), x)
+        return ~near | near.all()
 
 
 def _surface(dataset: xr.Dataset, names: tuple[str, ...], *, si: bool, load: str = "pressure") -> Surface:
@@ -95,7 +102,8 @@ def _extend(values: FloatArray, pressed: BoolArray) -> FloatArray:
 def _draw_contact_border(ax: Axes, surface: Surface, *artists: Any) -> None:
     """Draw the border of the contact, and clip artists to it."""
     squared = surface.pressure**2
-    border = _draw_border(ax, surface, squared, BORDER_LEVEL * float(squared.max()), **CONTACT_BORDER)
+    level = BORDER_LEVEL * float(squared[:, surface.beside_singular].max())
+    border = _draw_border(ax, surface, squared, level, **CONTACT_BORDER)
     for artist in artists:
         if border is not None and artist is not None:
             artist.set_clip_path(border.get_paths()[0], ax.transData)
@@ -147,10 +155,8 @@ def plot_pressure_map(dataset: xr.Dataset, ax: Axes | None = None, *, si: bool =
     """
     surface = _surface(dataset, ("pressure",), si=si)
     ax = new_axes(ax)
-    x = positions(surface.case["pressure"], "x").values
-    near = near_singular(surface.case, singular_ends(surface.case), x)
-    stress = surface.unit.stress
-    largest = float(surface.pressure[:, ~near].max()) / stress if near.any() and not near.all() else None
+    stress, regular = surface.unit.stress, surface.beside_singular
+    largest = None if regular.all() else float(surface.pressure[:, regular].max()) / stress
     mesh = _draw_mesh(ax, surface, surface.pressure / stress, cmap=COLORS, vmin=0.0, vmax=largest)
     _draw_contact_border(ax, surface, mesh)
     _crop(ax, surface)

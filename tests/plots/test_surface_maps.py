@@ -37,6 +37,23 @@ def test_areas_are_those_of_the_case(assert_nothing_clipped) -> None:
     assert_nothing_clipped(ax.figure)
 
 
+def test_the_border_beside_singular_ends_is_that_of_the_pressed_cells() -> None:
+    steel = Material(210e9, 0.3)
+    case = Case(
+        body=FiniteLengthSpace(length=1.4e-3, material=steel),
+        roller=Roller(radius=5e-3, length=0.4e-3),
+        end_distance=0.5e-3,
+        max_pressure=1e9,
+    )
+    result = solve(case, stresses=False, accuracy=0.05)
+    ax = plots.plot_pressure_map(result, si=True)
+    border = ax.collections[1].get_paths()[0]
+    pressed = result.pressure.sel(x=0.7e-3, method="nearest") > 0
+    half_width = 0.5e3 * float(np.ptp(result.y.values[pressed.values]))
+    assert border.contains_points([[0.7, 0.9 * half_width], [0.7, -0.9 * half_width]]).all()
+    assert not border.contains_point([0.7, 1.1 * half_width])
+
+
 def test_arrows_point_along_the_tractions_where_they_stand() -> None:
     one = rolled()
     ax = plots.plot_stick_and_slip(one, arrows=12)
