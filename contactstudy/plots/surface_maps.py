@@ -24,7 +24,7 @@ STICK_COLOR, SLIP_COLOR = "0.55", "0.88"
 CONTACT_BORDER: dict[str, Any] = {"colors": "0.35", "linewidths": 0.9}
 STICK_BORDER: dict[str, Any] = {"colors": "#e8513a", "linewidths": 1.8}  # legible on every colour of the map
 BORDER_LEVEL = 0.01
-"""Squared pressure at the border over its largest value beside singular ends: linear in the distance from the border."""
+"""Squared pressure at the border over its largest value beside singular ends: linear in the distance from it."""
 
 MARGIN = 0.1  # Margin around the contact over its width
 ARROW_LENGTH = 1.5  # of the longest arrow over the spacing along x
