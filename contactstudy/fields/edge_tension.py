@@ -16,8 +16,9 @@ import xarray as xr
 
 from contactstudy.analysis.axes import single_case
 from contactstudy.analysis.axial import EDGE_UNCERTAINTY, contact_edges
-from contactstudy.analysis.provenance import solved_case
-from contactstudy.arrays.variables import describe, require
+from contactstudy.analysis.contact import cut_ends
+from contactstudy.analysis.provenance import INPUTS_ATTRIBUTE, attribute, solved_case
+from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.checks import FloatArray
 from contactstudy.errors import InvalidInputError
 from contactstudy.fields.positions import Positions
@@ -120,6 +121,22 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     names = ("edge_tension", "edge_tension_error", "trailing_edge")
     values = {name: ("x", np.array(column)) for name, column in zip(names, zip(*rows, strict=True), strict=True)}
     return describe(xr.Dataset(values, coords={"x": centres[columns]}))
+
+
+def edge_tension_summary(dataset: xr.Dataset) -> xr.Dataset:
+    """Largest edge tension of a solved case with its error and position; empty where :func:`edge_tension` has none."""
+    sliding = {"pressure", "gap", "traction_y"} <= set(dataset.data_vars) and "stick" not in dataset
+    if not sliding or not dataset["traction_y"].values.any() or any(cut_ends(dataset)):
+        return xr.Dataset()
+    if "case" not in attribute(dataset, INPUTS_ATTRIBUTE) or np.isinf(float(dataset.get("peak_pressure", 0))):
+        return xr.Dataset()
+    tension = edge_tension(dataset)
+    if bool(tension["edge_tension"].isnull().all()):
+        return xr.Dataset()
+    largest = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
+    names = {"edge_tension": "", "edge_tension_error": "_error", "x": "_x", "trailing_edge": "_y"}
+    values = {f"peak_edge_tension{suffix}": float(largest[name]) for name, suffix in names.items()}
+    return without_error(describe(xr.Dataset(values)), "peak_edge_tension_x", "peak_edge_tension_y")
 
 
 def _section(y: FloatArray, traction: FloatArray, limits: list[float]) -> _Section:

@@ -16,7 +16,7 @@ from contactstudy.arrays.engineering import NUMBER, TEXT, html_table, quantity, 
 from contactstudy.arrays.variables import AXES, STRESSES, variable_of
 from contactstudy.case.gridding import TOLERANCE
 from contactstudy.errors import InvalidInputError
-from contactstudy.fields.edge_tension import edge_tension
+from contactstudy.fields.edge_tension import edge_tension_summary
 
 NOT_ESTIMATED = "error not estimated"
 SINGULAR = "singular: unbounded towards a sharp end"
@@ -224,21 +224,16 @@ def _peak_stress(case: xr.Dataset) -> Iterator[Quantity]:
 
 def _edge_tension(case: xr.Dataset) -> Iterator[Quantity]:
     """Row of the largest tension at the trailing edge of a sliding contact, the stress that opens cracks."""
-    sliding = {"pressure", "gap", "traction_y"} <= set(case.data_vars) and "stick" not in case
-    if not sliding or "case" not in attribute(case, INPUTS_ATTRIBUTE) or np.isinf(float(case.get("peak_pressure", 0))):
-        return
-    if not bool((case["traction_y"] != 0).any()) or any(cut_ends(case)):
-        return
-    try:
-        tension = edge_tension(case)
-    except InvalidInputError:  # inputs of another version
-        return
-    if bool(tension["edge_tension"].isnull().all()):
-        return
-    largest = tension.isel(x=int(np.nanargmax(tension["edge_tension"].values)))
-    row = _row(largest, "edge_tension", "largest tension at the trailing edge")
-    position = f"x = {quantity(float(largest['x']), 'm')}, y = {quantity(float(largest['trailing_edge']), 'm')}"
-    yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
+    name = "peak_edge_tension"
+    if name not in case:
+        try:
+            case = case.assign(edge_tension_summary(case).data_vars)
+        except InvalidInputError:  # inputs of another version
+            return
+    if name in case:
+        row = _row(case, name, "largest tension at the trailing edge")
+        position = ", ".join(f"{axis} = {quantity(float(case[f'{name}_{axis}']), 'm')}" for axis in "xy")
+        yield row._replace(remark=", ".join(filter(None, (position, row.remark))))
 
 
 def _nearest_end(case: xr.Dataset, x: float) -> str:

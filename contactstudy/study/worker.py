@@ -223,6 +223,7 @@ def _solve_case(
     """Solve one case, a film from that of another speed; the result is None if it fails."""
     # Planning and opening a study need no solver.
     from contactstudy.fatigue.shakedown import shakedown_summary
+    from contactstudy.fields.edge_tension import edge_tension_summary
     from contactstudy.film.solve import solve_film
     from contactstudy.solution import solve
 
@@ -236,7 +237,10 @@ def _solve_case(
             warnings.simplefilter("always")
             dataset = first_sufficient(setup.grids, solve_on)
             numbers = case_numbers(dataset)
-            for name, entry in shakedown_summary(dataset).data_vars.items():
+            summaries = dict(shakedown_summary(dataset).data_vars)
+            if "von_mises" in dataset:
+                summaries |= edge_tension_summary(dataset).data_vars
+            for name, entry in summaries.items():
                 numbers[str(name)] = Number(float(entry), dict(entry.attrs))
     except StoreError:
         raise

@@ -6,9 +6,22 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from contactstudy import Case, FiniteLengthSpace, HalfSpace, InvalidInputError, Material, Roller, Rolling, solve
+from contactstudy import (
+    Case,
+    FiniteLengthSpace,
+    HalfSpace,
+    InvalidInputError,
+    Material,
+    Roller,
+    Rolling,
+    open_study,
+    run_study,
+    solve,
+)
 from contactstudy.analysis import half_width, line_load
 from contactstudy.fields.edge_tension import edge_tension
+from contactstudy.study.setup import build_setup
+from tests.small_study import BASE, small_study
 
 # Uncoupled: the traction causes no normal displacement.
 INCOMPRESSIBLE = Material(210e9, 0.5)
@@ -54,3 +67,17 @@ def test_contacts_without_sliding() -> None:
     rolling = Case(body=case.body, roller=case.roller, max_pressure=P0, friction=0.3, motion=motion)
     with pytest.raises(InvalidInputError, match="stick and slip"):
         edge_tension(solve(rolling, stresses=False, accuracy=0.1))
+
+
+def test_a_study_contains_the_largest_tension(tmp_path) -> None:
+    run_study(
+        small_study(base=BASE | {"e_over_a": 1.0}, sweep={"friction": [0.0, 0.1]}, level="summary"), tmp_path, workers=0
+    )
+    cases = open_study(tmp_path)
+    setup = build_setup(BASE | {"e_over_a": 1.0, "friction": 0.1})
+    tension = edge_tension(solve(setup.case, setup.grid, **setup.options))
+    assert np.isnan(cases["peak_edge_tension"].sel(friction=0.0))
+    for name, number in (("edge_tension", "peak_edge_tension"), ("edge_tension_error", "peak_edge_tension_error")):
+        largest = tension[name][int(tension["edge_tension"].values.argmax())]
+        np.testing.assert_allclose(cases[number].sel(friction=0.1), largest, rtol=1e-12)
+    assert cases["peak_edge_tension"].attrs["units"] == "Pa"
