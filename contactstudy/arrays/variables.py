@@ -19,10 +19,10 @@ from contactstudy.errors import InvalidInputError
 from contactstudy.versions import version_of
 
 DERIVED = "follows from the other parameters"  # comment of a coordinate that a study does not sweep
-ERROR_KIND = "error_kind"  # attribute of a number: how its error is stated, one of the three values below
+ERROR_KIND = "error_kind"  # attribute of a number: how its error is stated, one of the two values below
 
-ESTIMATED, NOT_ESTIMATED, BOUND = "estimated", "not estimated", "bound"
-"""The variable ``<name>_error`` holds the error; there is none; the number itself is a bound."""
+ESTIMATED, NOT_ESTIMATED = "estimated", "not estimated"
+"""The variable ``<name>_error`` contains the error, or no error is stated."""
 
 _AFFIXES = sorted((tuple(pattern.split("{name}")) for pattern in RULES), key=lambda pair: -len("".join(pair)))
 """Prefix and suffix of each rule, the longest first: `peak_gap_x` is the position of a peak, not a peak."""
