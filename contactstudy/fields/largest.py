@@ -311,6 +311,7 @@ def _neighbour_cells(cells: IntArray, index: int, count: int) -> IntArray:
 
 def _refined(top: _Maximum, search: Search, stress: Callable[[Points], FloatArray]) -> Largest:
     """Refine points about the largest value until polynomials of two degrees agree."""
+    change = 0.0
     for _ in range(ROUNDS):
         points, inside = _closer_points(top, search)
         if inside and top.largest.error <= TOLERANCE * top.largest.value:
@@ -318,15 +319,21 @@ def _refined(top: _Maximum, search: Search, stress: Callable[[Points], FloatArra
         next_top = _interpolated(points, stress(points))
         change = abs(next_top.largest.value - top.largest.value)
         if next_top.largest.value < top.largest.value and not inside:
-            # The stress falls beyond the edge, where the polynomials may overshoot: the stress itself.
-            sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
-            corners = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
-            largest = _sampled(corners, stress(corners)).largest
-            return largest._replace(error=max(change, abs(top.largest.value - largest.value)))
+            return _evaluated(top, change, stress)
         top = next_top
+    else:
+        return _evaluated(top, max(change, top.largest.error), stress)
     if top.largest.position[2] <= search.shallowest * (1 + 1e-9):
         return top.largest._replace(error=max(top.largest.error, ON_TOP * top.largest.value))
     return top.largest
+
+
+def _evaluated(top: _Maximum, error: float, stress: Callable[[Points], FloatArray]) -> Largest:
+    """Largest stress itself about a value of polynomials that may overshoot: they end at an edge, or do not agree."""
+    sampled = [axis[number] for axis, number in zip(top.points, top.indices, strict=True)]
+    corners = Points(*(np.unique(pair) for pair in zip(top.largest.position, sampled, strict=True)))
+    largest = _sampled(corners, stress(corners)).largest
+    return largest._replace(error=max(error, abs(top.largest.value - largest.value)))
 
 
 def _sampled(points: Points, stresses: FloatArray, selection: BoolArray | None = None) -> _Maximum:

@@ -236,3 +236,27 @@ def test_it_is_a_stress_of_the_body_where_polynomials_overshoot() -> None:
     assert float(found["peak_von_mises"]) == pytest.approx(there, rel=5e-3)
     fine = solve(case, accuracy=0.002, y=[0.0], z=[1e-5])
     assert abs(float(found["peak_von_mises"] - fine["peak_von_mises"])) <= float(found["peak_von_mises_error"])
+
+
+@pytest.mark.slow
+def test_polynomials_that_do_not_agree_give_no_stress() -> None:
+    """From the second half the search passes the roller's end: polynomials through its last points reached 0.80 p0."""
+    material = Material(210e9, 0.318)
+    a = 2 * 1e9 * RADIUS / material.plane_strain_modulus
+    length, distance = 42.835 * a, 3.451 * a
+    case = Case(
+        body=FiniteLengthSpace(length=length + 2 * distance, material=material),
+        roller=Roller(radius=RADIUS, length=length, profile=profiles.Lundberg(0.482 * a**2 / RADIUS)),
+        end_distance=distance,
+        tilt=2 * 1.197 * a**2 / (length * RADIUS),
+        max_pressure=1e9,
+    )
+    stop = distance + length
+    fine = solve(
+        case, x=stop - a * np.linspace(0.6, 1.4, 17), y=[0.0], z=a * np.linspace(0.5, 0.75, 11), accuracy=0.002
+    )
+    coarse = solve(case, x=[stop], y=[0.0], z=[0.0])
+    peak, error = float(fine["peak_von_mises"]), float(fine["peak_von_mises_error"])
+    assert peak == pytest.approx(float(fine["von_mises"].max()), abs=error)
+    assert error < 6e-3 * peak
+    assert peak == pytest.approx(float(coarse["peak_von_mises"]), rel=6e-3)
