@@ -22,7 +22,7 @@ def pressed(profile=None, *, beside: float = BESIDE) -> Case:
     return Case(body=body, roller=roller, max_pressure=1.5e9)
 
 
-def equal_columns(count: int, cells_y: int = 32) -> Grid:
+def equal_columns(count: int, cells_y: int = 48) -> Grid:
     """Columns of one width under the roller, and wider ones beside it."""
     beside = np.linspace(0.0, BESIDE, 6)
     edges = np.concatenate([beside[:-1], np.linspace(BESIDE, BESIDE + LENGTH, count + 1), BESIDE + LENGTH + beside[1:]])

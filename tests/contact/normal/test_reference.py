@@ -77,7 +77,7 @@ def test_gap_is_initial_gap_and_displacement_less_the_approach() -> None:
 def test_the_line_of_the_body_is_at_rest() -> None:
     case = crowned(load=1500.0, tilt=5e-4)
     result = solve(case, stresses=False, accuracy=0.05)
-    x = np.linspace(0.1e-3, 5.9e-3, 40)
+    x = np.linspace(0.1e-3, 5.9e-3, 16)
     middle = float(result.load_position)
     field = displacement_field(case.body, result.pressure, x=np.append(x, middle), y=[0.0], z=[0.0, 9e-3]).u_z[:, 0]
     slope = np.polynomial.polynomial.polyfit(x, field[:-1, 1], 1)[1]

@@ -36,8 +36,8 @@ def test_sharp_rigid_end_in_a_face_is_a_square_root_with_its_intensity() -> None
         assert abs(intensity / (PRESSURE * np.sqrt(A)) - 0.8125) * PRESSURE * np.sqrt(A) <= error < 0.01 * intensity
 
 
-@pytest.mark.parametrize("fillet", [0.01e-3, 0.005e-3])
-def test_peak_from_the_intensity_is_that_of_a_small_fillet(fillet: float) -> None:
+def test_peak_from_the_intensity_is_that_of_a_small_fillet() -> None:
+    fillet = 0.01e-3
     sharp = settled(Case(body=HALF, roller=Roller(radius=RADIUS, length=LENGTH), max_pressure=PRESSURE))
     law = sharp.refined.laws[0]
     assert law is not None
@@ -145,13 +145,10 @@ def test_an_end_that_fades_is_never_a_plain_number() -> None:
     assert 0 < float(found["peak_pressure_first_error"]) < 0.02 * float(found["peak_pressure_first"])
 
 
-@pytest.mark.parametrize("side", [0, 1])
-def test_a_sharp_end_that_alone_is_pressed_has_its_law(side: int) -> None:
-    tilt = 2e-3 if side else -2e-3
+def test_a_sharp_end_that_alone_is_pressed_has_its_law() -> None:
     body = finite(3e-3)
-    case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=tilt)
-    found = settled(case, 0.05).refined
-    assert found.laws[1 - side] is None
-    law = found.laws[side]
+    case = Case(body=body, roller=Roller(radius=RADIUS, length=2e-3), load=100.0, end_distance=0.5e-3, tilt=2e-3)
+    free, law = settled(case, 0.05).refined.laws
+    assert free is None
     assert law is not None
     assert law.exponent == 0.5

@@ -97,7 +97,8 @@ def test_creepages_share_one_settled_contact() -> None:
 @pytest.mark.slow
 def test_coupled_tractions_are_in_the_values_that_are_stated() -> None:
     """A rigid roller on compressible material: what drives it lifts the surface."""
-    case = replace(INSIDE, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
+    body = HalfSpace(material=Material(210e9, 0.0))
+    case = replace(INSIDE, body=body, coupled=True, friction=0.5, motion=Rolling(longitudinal_creepage=0.05))
     found = solve(case, stresses=False, accuracy=0.1)
     free = solve(replace(case, coupled=False), stresses=False, accuracy=0.1)
     assert bool(found.converged)
