@@ -24,7 +24,7 @@ NOWHERE = np.zeros(0)
 
 def circle() -> tuple[Grid, FloatArray]:
     """Hertz pressure on a circle of radius 1."""
-    grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=100, cells_y=100)
+    grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=72, cells_y=72)
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 

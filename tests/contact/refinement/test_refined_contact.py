@@ -90,7 +90,7 @@ def test_contact_is_that_on_uniform_cells(name: str) -> None:
     peak, error = float(found.peak_pressure), float(found.peak_pressure_error)
     assert bool(found.converged)
     assert error <= 0.01 * peak
-    # A fillet of 3 a is within half a percent on these uniform cells, an edge of the body within three.
+    # A fillet of 3 a is within one percent on these uniform cells, an edge of the body within three.
     allowed = 0.03 if case.roller.material is not None else 0.01
     assert peak == pytest.approx(top_of(uniform.pressure.values), rel=allowed)
     assert float(found.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
@@ -284,7 +284,7 @@ def test_every_crest_of_a_wavy_profile_is_followed() -> None:
     length, wave = 2e-3, 0.2e-3
     roller = Roller(radius=RADIUS, length=length, profile=Wavy(0.5, 0.6e-6, wave))
     case = Case(body=finite(length), roller=roller, max_pressure=0.7e9)
-    refined = solve(case, stresses=False)
+    refined = solve(case, stresses=False, accuracy=0.03)
     uniform = solve(case, choose_grid(case, cells_x=4, cells_y=12, window=3.0), stresses=False)
     for crest in range(5):
         at = abs(abs(refined.x - length / 2) - crest * wave) < 0.35 * wave
