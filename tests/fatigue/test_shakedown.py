@@ -40,7 +40,7 @@ LIMITS = {
 From f = 0.3 on the top itself decides first yield, at 0.4 all three; see the test of the top."""
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.2, 0.4])
+@pytest.mark.parametrize("friction", LIMITS)
 def test_line_contact(line_contact, friction: float) -> None:
     first, rolling, both = LIMITS[friction]
     result = line_contact(friction)
