@@ -114,10 +114,10 @@ def flexibility(body: FiniteLengthSpace, grid: Grid) -> np.ndarray:
     return np.array(columns).reshape(*grid.shape, *grid.shape)
 
 
-@pytest.mark.parametrize("start", [-2, 0, 1])
+@pytest.mark.parametrize("start", [-2, 1])
 def test_two_finite_bodies_against_quadratic_programming(start: int):
     """Flexibilities of both bodies added up by hand, and the least energy found by Lawson and Hanson's active sets."""
-    per_unit, across, load = 3, (-1.5, 1.5), 1.5
+    per_unit, across, load = 2, (-1.5, 1.5), 1.5
     body = FiniteLengthSpace(length=8.0, material=Material(1.0, 0.3))
     counter = FiniteLengthSpace(length=6.0, material=Material(2.0, 0.25))
     grid, own = (
@@ -153,17 +153,16 @@ def test_two_finite_bodies_against_quadratic_programming(start: int):
     np.testing.assert_allclose(found.pressure.values.ravel(), expected, atol=1e-5 * expected.max())
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.4])
-def test_exchanged_bodies_press_alike(friction: float):
+def test_exchanged_bodies_press_alike():
     first = FiniteLengthSpace(length=8 * HALF_WIDTH, material=STEEL)
     second = FiniteLengthSpace(length=6 * HALF_WIDTH, material=ALUMINIUM)
     below, above = Counterbody(second, HALF_WIDTH), Counterbody(first, -HALF_WIDTH)
-    gap = contact_shape(first, below, 64, first.length)
-    exchanged = gap.isel(x=slice(8, 56)).assign_coords(x=gap.x[8:56] - HALF_WIDTH)
-    settings = ContactSettings(coupled=friction != 0, tolerance=1e-8)
-    one = solve_contact(first, gap, load=100.0, friction=friction, counterbody=below, settings=settings)
-    other = solve_contact(second, exchanged, load=100.0, friction=-friction, counterbody=above, settings=settings)
-    pressure = one.pressure.values[8:56]
+    gap = contact_shape(first, below, 32, first.length)
+    exchanged = gap.isel(x=slice(4, 28)).assign_coords(x=gap.x[4:28] - HALF_WIDTH)
+    settings = ContactSettings(coupled=True, tolerance=1e-8)
+    one = solve_contact(first, gap, load=100.0, friction=0.4, counterbody=below, settings=settings)
+    other = solve_contact(second, exchanged, load=100.0, friction=-0.4, counterbody=above, settings=settings)
+    pressure = one.pressure.values[4:28]
     assert np.abs(pressure - other.pressure.values).max() < 2e-6 * pressure.max()
 
 
@@ -175,12 +174,12 @@ def test_flush_bodies_of_one_material_sink_alike_and_symmetrically():
         roller=Roller(radius=5e-3, length=8 * HALF_WIDTH),
         max_pressure=1.5e9,
     )
-    pressure, rigid = (solve(each, stresses=False).pressure.values for each in (case, soft))
+    pressure, rigid = (solve(each, stresses=False, accuracy=0.05).pressure.values for each in (case, soft))
     np.testing.assert_allclose(pressure, rigid, atol=1e-6 * rigid.max())
     np.testing.assert_allclose(pressure, pressure[::-1], atol=1e-6 * rigid.max())
 
 
-@pytest.mark.parametrize("distance", [-1.5, 0.0, 1.0])
+@pytest.mark.parametrize("distance", [-1.5, 1.0])
 def test_a_very_stiff_roller_is_a_rigid_one(distance: float):
     body = FiniteLengthSpace(length=9 * HALF_WIDTH, material=STEEL)
     pressures = [
@@ -207,7 +206,7 @@ def test_a_steel_roller_tilted_onto_its_sharp_end_converges():
         load=1225.0,
         tilt=1e-3,
     )
-    result = solve(case, choose_grid(case, cells_x=12, cells_y=12), stresses=False)
+    result = solve(case, choose_grid(case, cells_x=8, cells_y=12), stresses=False)
     assert bool(result.converged)
     assert float(result.penetration_error) < 1e-6
     assert int(result.iterations) < 110
@@ -232,7 +231,7 @@ def test_ends_between_the_borders_of_cells_cost_little():
 def test_the_other_bodies_work_below_an_elastic_roller():
     roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=ALUMINIUM, profile=FILLET)
     for body in (HalfSpace(material=STEEL), QuarterSpace(material=STEEL)):
-        assert bool(solve(Case(body=body, roller=roller, max_pressure=1e9), stresses=False).converged)
+        assert bool(solve(Case(body=body, roller=roller, max_pressure=1e9), stresses=False, accuracy=0.1).converged)
 
 
 def test_the_grid_meets_the_ends_of_an_elastic_roller():
@@ -244,11 +243,11 @@ def test_the_grid_meets_the_ends_of_an_elastic_roller():
 
 
 def test_stresses_of_the_roller_carry_the_opposite_traction():
-    body = FiniteLengthSpace(length=6 * HALF_WIDTH, material=STEEL)
-    roller = Roller(radius=5e-3, length=6 * HALF_WIDTH, material=STEEL)
+    body = FiniteLengthSpace(length=4 * HALF_WIDTH, material=STEEL)
+    roller = Roller(radius=5e-3, length=4 * HALF_WIDTH, material=STEEL)
     case = Case(body=body, roller=roller, max_pressure=1e9, friction=0.3)
     points = {"x": [0.0, 2 * HALF_WIDTH], "y": [0.4 * HALF_WIDTH], "z": [0.5 * HALF_WIDTH]}
-    result = solve(case, choose_grid(case, cells_x=4, cells_y=8), **points)
+    result = solve(case, choose_grid(case, cells_x=3, cells_y=8), **points)
     inside = roller_stress(case, result.pressure, **points)
     mirrored = roller_stress(case, result.pressure, **(points | {"y": [-0.4 * HALF_WIDTH]}))
     assert np.abs(inside.tau_yz.values - result.tau_yz.values).max() > 1e7
@@ -257,7 +256,7 @@ def test_stresses_of_the_roller_carry_the_opposite_traction():
 
 def test_a_rigid_roller_has_no_stresses(short_body):
     case = Case(body=short_body, roller=Roller(radius=100.0, length=8.0), load=0.1)
-    pressure = solve(case, stresses=False).pressure
+    pressure = solve(case, stresses=False, accuracy=0.1).pressure
     with pytest.raises(InvalidInputError, match="rigid"):
         roller_stress(case, pressure)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from contactstudy import (
@@ -77,18 +77,19 @@ def _island(gap: xr.DataArray) -> xr.DataArray:
     return gap.reindex(x=x, fill_value=np.inf)
 
 
+@settings(max_examples=10)
 @given(length=st.floats(1.5, 12.0), poisson=st.floats(0.05, 0.5), factor=st.floats(0.3, 2.0))
 def test_end_pressure_stays_below_the_middle_for_any_length_load_and_poisson(
     length: float, poisson: float, factor: float
 ) -> None:
     body = FiniteLengthSpace(length=length, material=Material(1 - poisson**2, poisson))
-    y = np.linspace(-1.96875 * factor, 1.96875 * factor, 64)
-    x = length * (np.arange(32) + 0.5) / 32
-    gap = xr.DataArray(np.broadcast_to(y**2, (32, 64)), coords={"x": x, "y": y}, dims=("x", "y"))
+    y = np.linspace(-1.9375 * factor, 1.9375 * factor, 32)
+    x = length * (np.arange(16) + 0.5) / 16
+    gap = xr.DataArray(np.broadcast_to(y**2, (16, 32)), coords={"x": x, "y": y}, dims=("x", "y"))
     contact = solve_contact(body, gap, load=length * LINE_LOAD * factor**2)
     along = contact["pressure"].max("y")
     assert bool(contact["converged"])
-    assert float(along[0]) <= float(along[16]) * (1 + 1e-6)
+    assert float(along[0]) <= float(along[8]) * (1 + 1e-6)
     assert abs(float(contact["load_error"])) < 1e-10
 
 

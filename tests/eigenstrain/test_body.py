@@ -49,10 +49,10 @@ def test_closed_form_leaves_the_top_free() -> None:
 
 @pytest.mark.parametrize(
     ("x_range", "z_range"),
-    [((0.0, 0.6), (0.0, 0.5)), ((0.3, 0.9), (0.2, 0.7)), ((1.2, 2.0), (0.1, 0.4))],
+    [((0.0, 0.6), (0.0, 0.5)), ((1.2, 2.0), (0.1, 0.4))],
 )
 def test_between_free_ends_as_finite_elements(in_rectangle, x_range, z_range) -> None:
-    """At the end and on the top; next to an end; at the other end."""
+    """At the end and on the top; at the other end."""
     body, strain = in_rectangle((0.0, 2.0), x_range, z_range, splits=2, degree=5)
     x, z = np.array([0.05, 0.2, 0.45, 0.75, 1.1, 1.5, 1.9]), np.array([0.05, 0.15, 0.3, 0.6, 0.9, 2.0])
     found = body.solve(strain).stresses(x, z)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -73,6 +73,7 @@ def test_findleys_plane_of_push_pull(cycle, wave) -> None:
 histories = arrays(float, (1, 9, 6), elements=st.floats(-1, 1).map(lambda value: round(value, 3)))
 
 
+@settings(max_examples=10)
 @given(history=histories)
 def test_no_plane_is_worse_than_findleys(history: np.ndarray) -> None:
     # Made up: histories of a passage are smooth, and there the search finds the worst plane to 1e-9.
@@ -90,6 +91,7 @@ def test_refinement_turns_about_all_axes() -> None:
     assert np.allclose(np.einsum("kij,klj->kil", turned, turned), np.eye(2))
 
 
+@settings(max_examples=10)
 @given(history=histories, turn=st.floats(0, 6))
 def test_criteria_do_not_depend_on_the_axes(history: np.ndarray, turn: float) -> None:
     xx, yy, zz, xy, xz, yz = np.moveaxis(history[0], -1, 0)
@@ -121,7 +123,7 @@ def test_line_contact(strip_result) -> None:
 
 
 def test_scale_of_size_and_load(strip_result) -> None:
-    unit, other = (result.isel(x_field=[0]) for result in (strip_result(), strip_result(3e-4, 2e9)))
+    unit, other = (result.isel(x_field=[0], z=[5, 9]) for result in (strip_result(), strip_result(3e-4, 2e9)))
     for criterion in CRITERIA:
         name = criterion.__name__
         small = criterion(unit, LIMITS)[name]
@@ -132,7 +134,7 @@ def test_scale_of_size_and_load(strip_result) -> None:
 def test_a_real_result_and_its_dimensions(solved: xr.Dataset) -> None:
     limits = FatigueLimits(bending=700e6, torsion=450e6)
     for criterion in CRITERIA:
-        result = criterion(solved, limits)
+        result = criterion(solved.isel(x_field=[0, 12], z=[0, 3]), limits)
         assert result["utilisation"].dims == ("x_field", "z")
         assert np.isfinite(result["utilisation"]).all()
         # Both ends of the roller are alike.
@@ -142,15 +144,16 @@ def test_a_real_result_and_its_dimensions(solved: xr.Dataset) -> None:
 @pytest.mark.parametrize("criterion", CRITERIA)
 def test_a_study_padded_and_lazy(criterion, solved: xr.Dataset) -> None:
     """Two cases of different length as dask arrays: each as if alone, NaN where padded."""
+    solved = solved.isel(x_field=[0, 3], z=[2, 3])
     short = solved.isel(y_field=slice(2, 15))
     stress = [one[list(STRESSES)].reset_coords(drop=True) for one in (solved, short)]
     padded = xr.concat(stress, "case", join="outer").chunk(case=1)
     limits = FatigueLimits(bending=700e6, torsion=450e6)
     name = criterion.__name__
-    together = criterion(padded.isel(z=[2, 3]), limits)[name]
+    together = criterion(padded, limits)[name]
     assert together.chunks is not None
     for number, one in enumerate(stress):
-        alone = criterion(one.isel(z=[2, 3]), limits)[name]
+        alone = criterion(one, limits)[name]
         assert np.allclose(together.isel(case=number), alone, rtol=1e-9)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from scipy import optimize
@@ -33,9 +33,7 @@ def line_contact():
 
 LIMITS = {
     0.0: (3.107, 3.536, 4.000),
-    0.1: (3.064, 3.240, 3.564),
     0.2: (2.936, 2.972, 3.203),
-    0.3: (2.598, 2.735, 2.901),
     0.4: (2.123, 2.206, 2.316),
 }
 """Pressure p0 over k for first yield, shakedown by rho_yy, and by rho_yy and rho_xx, by the friction. Johnson's is 4.0.
@@ -101,6 +99,7 @@ def test_loaded_corner_is_bound_by_its_pressure(short_body, strip_pressure, fric
 histories = arrays(float, (1, 7, 6), elements=st.integers(-3, 3).map(float))
 
 
+@settings(max_examples=10)
 @given(history=histories)
 def test_nothing_is_less_than_the_least(history: np.ndarray) -> None:
     """Against a one-dimensional search; whole numbers make many instants alike."""
@@ -150,13 +149,13 @@ def test_dimensions(solved: xr.Dataset) -> None:
 
 def test_limits_of_a_study(line_contact) -> None:
     """Each case as if alone; one without stresses has none."""
-    cases = [line_contact(friction).assign(hertz_half_width=1.0) for friction in (0.0, 0.2)]
+    cases = [line_contact(friction).isel(z=slice(0, None, 8)).assign(hertz_half_width=1.0) for friction in (0.0, 0.2)]
     cases.append(cases[0] * np.nan)
     study = xr.concat(cases, xr.Variable("friction", [0.0, 0.2, 0.4])).chunk(friction=1)
     found = fatigue.shakedown_limit(study)
     assert found["shakedown_limit"].dims == ("friction",)
     for number, friction in enumerate((0.0, 0.2)):
-        alone = fatigue.shakedown_limit(line_contact(friction))
+        alone = fatigue.shakedown_limit(line_contact(friction).isel(z=slice(0, None, 8)))
         for name in ("shakedown_limit", "peak_shakedown_stress", "peak_shakedown_stress_z", "shakedown_limit_error"):
             assert float(found[name][number]) == pytest.approx(float(alone[name]))
     assert np.isnan(found["shakedown_limit"][2])
@@ -182,7 +181,7 @@ def test_error_kinds(line_contact) -> None:
 
 
 def test_summary_of_a_passage(line_contact) -> None:
-    result = line_contact(0.1)
+    result = line_contact(0.1).isel(z=slice(0, None, 4))
     summary = shakedown_summary(result)
     limit = fatigue.shakedown_limit(result)
     assert set(summary.data_vars) == set(limit.data_vars)

@@ -32,7 +32,7 @@ def fading_line_contact() -> Callable[[float, float], xr.Dataset]:
     """Make Hertz' line contact, weaker at both ends of a length than in its middle, by half or another part."""
 
     def build(length: float, friction: float, part: float = 0.5) -> xr.Dataset:
-        x, y = np.linspace(0, length, 13), np.linspace(-4, 4, 81)
+        x, y = np.linspace(0, length, 9), np.linspace(-4, 4, 81)
         found = hertz_strip(y[:, None], DEPTHS, 1.0, 1.0, 0.3, friction)
         share = 1 - part * np.clip(1 - np.minimum(x, length - x) / (0.4 * length), 0, 1)[:, None, None]
         fields = {name: (("x", "y", "z"), share * values) for name, values in found.items()}
@@ -41,12 +41,11 @@ def fading_line_contact() -> Callable[[float, float], xr.Dataset]:
     return build
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.2])
-def test_line_contact_limit_of_a_long_body(fading_line_contact, friction: float) -> None:
+def test_line_contact_limit_of_a_long_body(fading_line_contact) -> None:
     """The ends take none of it: the stress along x turns round below the depth that decides (Johnson's 4.0)."""
-    stress = fading_line_contact(16.0, friction)
+    stress = fading_line_contact(16.0, 0.2)
     found = fatigue.shakedown_in_plane(stress, FiniteLengthSpace(length=16.0, material=SOFT))
-    line = fatigue.shakedown(stress.isel(x=[6]), axial=True)["shakedown_stress"].max()
+    line = fatigue.shakedown(stress.isel(x=[4]), axial=True)["shakedown_stress"].max()
     assert float(found["peak_shakedown_stress"]) == pytest.approx(float(line), rel=1e-3)
     assert float(found["program_gap"]) < 1e-3
 
@@ -80,7 +79,7 @@ def sphere_passage(counts: tuple[int, int], deepest: float) -> xr.Dataset:
 def test_sphere_reaches_the_published_limit() -> None:
     """p0 / k = 4.68 without friction; more positions settle the bound, without a gap."""
     limits = []
-    for counts, deepest in (((25, 17), 2.4), ((31, 25), 3.0)):
+    for counts, deepest in (((19, 13), 2.4), ((31, 25), 3.0)):
         bound = fatigue.shakedown_in_plane(sphere_passage(counts, deepest), HalfSpace(material=SOFT))
         assert float(bound["program_gap"]) < 1e-4
         limits.append(1 / float(bound["peak_shakedown_stress"]))
@@ -115,9 +114,9 @@ def test_equilibrium_elements_find_no_more() -> None:
 
 def test_flush_roller(short_body, strip_pressure) -> None:
     """Ends and top stay free, nothing yields at the k found, and the loaded corner bounds it."""
-    pressure, friction = strip_pressure(8.0, (32, 32)), 0.1
+    pressure, friction = strip_pressure(8.0, (32, 16)), 0.1
     pressure = pressure * (0.4 + 0.6 * np.minimum(1, np.minimum(pressure.x, 8 - pressure.x) / 2))
-    x, y, z = np.linspace(0, 8, 13), np.linspace(-3, 3, 49), np.linspace(0, 1.8, 13)
+    x, y, z = np.linspace(0, 8, 13), np.linspace(-3, 3, 33), np.linspace(0, 1.8, 10)
     stress = stress_field(short_body, pressure, friction=friction, x=x, y=y, z=z, inside_cells=pressure)
     found = fatigue.shakedown_in_plane(stress, short_body)
     largest = float(found["peak_shakedown_stress"])
@@ -150,7 +149,7 @@ def test_scale(fading_line_contact) -> None:
 
 def test_too_few_positions(fading_line_contact) -> None:
     with pytest.raises(InvalidInputError, match="at least 5 positions"):
-        fatigue.shakedown_in_plane(fading_line_contact(8.0, 0.1).isel(x=[0, 3, 6]), HalfSpace(material=SOFT))
+        fatigue.shakedown_in_plane(fading_line_contact(8.0, 0.1).isel(x=[0, 2, 4]), HalfSpace(material=SOFT))
 
 
 def test_missing_solver(fading_line_contact, monkeypatch) -> None:

@@ -24,10 +24,10 @@ from contactstudy.overlapping import problem
 from contactstudy.overlapping.lateral import POLES
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
 def test_end_loads_are_what_the_mirrored_top_load_leaves_on_the_ends(
-    short_body: FiniteLengthSpace, strip_pressure, friction: float
+    short_body: FiniteLengthSpace, strip_pressure
 ) -> None:
+    friction = 0.3
     pressure = strip_pressure(8.0, (96, 64))
     depths = np.array([0.2, 0.5, 1.0, 3.0])
     loads = equivalent_loads(short_body, pressure, friction, z=depths)
@@ -56,14 +56,16 @@ def test_quarter_space_has_one_face_load_and_half_space_none(half_space: HalfSpa
     np.testing.assert_array_equal(loads["P_h1"], pressure)
 
 
-@pytest.mark.parametrize("kind", ["exact", "mirror", "single-mirror", "quarter", "half"])
-@pytest.mark.parametrize("inside", [0.0, 0.1e-3])
+@pytest.mark.parametrize(
+    ("kind", "inside"),
+    [("exact", 0.0), ("mirror", 0.0), ("single-mirror", 0.1e-3), ("quarter", 0.0), ("half", 0.0)],
+)
 def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
     steel = Material(206e9, 0.3)
     bodies = {"quarter": QuarterSpace(material=steel), "half": HalfSpace(material=steel)}
     body = bodies.get(kind) or FiniteLengthSpace(length=1e-3, material=steel, model=kind)
     roller = Roller(radius=6e-3, length=1e-3 - 2 * inside, profile=profiles.Lundberg(amplitude=0.2e-6))
-    result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False)
+    result = solve(Case(body=body, roller=roller, max_pressure=1.2e9), stresses=False, accuracy=0.1)
     freed = kind not in ("mirror", "half")
     for depths in ([0.0], [1e-5, 1e-4]):
         loads = equivalent_loads(body, result.pressure, 0.2, z=depths)
@@ -76,7 +78,7 @@ def test_equivalent_loads_of_solved_pressure(kind: str, inside: float) -> None:
 def test_eccentric_loads_do_not_depend_on_where_the_poles_begin(
     short_body: FiniteLengthSpace, strip_pressure, monkeypatch
 ) -> None:
-    pressure = strip_pressure(8.0, (32, 32)) * (1 + 0.5 * (strip_pressure(8.0, (32, 32)).x - 4.0))
+    pressure = strip_pressure(8.0, (16, 16)) * (1 + 0.5 * (strip_pressure(8.0, (16, 16)).x - 4.0))
 
     def loads():
         return equivalent_loads(short_body, pressure, 0.3, z=[0.2, 1.0])

@@ -24,7 +24,7 @@ NOWHERE = np.zeros(0)
 
 def circle() -> tuple[Grid, FloatArray]:
     """Hertz pressure on a circle of radius 1."""
-    grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=100, cells_y=100)
+    grid = Grid(x_range=(-1.25, 1.25), y_range=(-1.25, 1.25), cells_x=72, cells_y=72)
     return grid, np.sqrt(np.maximum(1 - grid.x[:, None] ** 2 - grid.y**2, 0.0))
 
 
@@ -94,17 +94,17 @@ def at(result: xr.Dataset) -> list[float]:
     return [float(result[f"peak_von_mises_{axis}"]) for axis in "xyz"]
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.1])
-def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones(friction: float) -> None:
+def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones() -> None:
+    friction = 0.1
     case = sharp(friction)
     far = solve(case, accuracy=0.02, x=[0.0, 5 * A], y=[0.0], z=[0.5 * A])
-    near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 21), y=[0.0], z=A * np.linspace(0, 3, 7))
+    near = solve(case, accuracy=0.02, x=A * np.linspace(0, 8, 9), y=[0.0], z=A * np.linspace(0, 3, 4))
     value = float(far.peak_von_mises)
     assert float(near.peak_von_mises) == pytest.approx(value, rel=2e-3)
     x, y, z = at(far)
     step = 0.01 * A
-    offsets = step * np.arange(-4.0, 5.0)
-    depths = z + 0.2 * step * np.arange(-9.0, 10.0)
+    offsets = 2 * step * np.arange(-2.0, 3.0)
+    depths = z + 0.4 * step * np.arange(-4.0, 5.0)
     beside = stress_field(
         case.body, far.pressure, friction=friction, x=x + offsets, y=y + offsets, z=depths, inside_cells=far.pressure
     )
@@ -112,9 +112,8 @@ def test_it_does_not_depend_on_the_points_and_is_that_of_closer_ones(friction: f
     assert value / float(far.von_mises.max()) > 1.4
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.4])
-def test_its_error_covers_that_on_finer_cells(friction: float) -> None:
-    coarse, fine = (solve(sharp(friction), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.004))
+def test_its_error_covers_that_on_finer_cells() -> None:
+    coarse, fine = (solve(sharp(0.4), accuracy=each, x=[0.0], y=[0.0], z=[A]) for each in (0.02, 0.008))
     error = abs(float(coarse.peak_von_mises - fine.peak_von_mises))
     assert error <= float(coarse.peak_von_mises_error) < 0.04 * float(fine.peak_von_mises)
 
@@ -136,7 +135,7 @@ def test_near_a_free_end_less_pressure_does_more() -> None:
     length = 10e-3
     roller = Roller(radius=RADIUS, length=length, profile=profile, material=STEEL, ends="none")
     case = Case(body=FiniteLengthSpace(length=length, material=STEEL), roller=roller, max_pressure=pressure)
-    found = solve(case, accuracy=0.02, x=[0.5 * length], y=[0.0], z=[half_width])
+    found = solve(case, accuracy=0.05, x=[0.5 * length], y=[0.0], z=[half_width])
     x, z = half_width * np.linspace(0.2, 2, 37), half_width * np.linspace(0.1, 1, 19)
     near = stress_field(case.body, found.pressure, x=x, y=[0.0], z=z, inside_cells=found.pressure)
     line = found.pressure.max("y")
@@ -159,19 +158,17 @@ def test_given_cells_have_no_error_and_singular_ends_no_largest_stress() -> None
 
 
 FREE_ENDS = {
-    "sharp, without friction": (1.2e-3, 1.8e9, 0.0, None),
     "sharp": (1.2e-3, 1.8e9, 0.3, None),
     "crowned": (1e-3, 1.5e9, 0.3, profiles.FullCrown(1.0)),
 }
 """Length, pressure, friction and profile of rollers that are flush with the body."""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("length", "pressure", "friction", "profile"),
-    [
-        pytest.param(*values, id=name, marks=() if name == "sharp" else pytest.mark.slow)
-        for name, values in FREE_ENDS.items()
-    ],
+    FREE_ENDS.values(),
+    ids=FREE_ENDS,
 )
 def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     length: float, pressure: float, friction: float, profile: profiles.Profile | None
@@ -181,7 +178,7 @@ def test_where_the_contact_reaches_a_free_end_it_is_on_the_top(
     body = FiniteLengthSpace(length=length, material=material)
     case = Case(body=body, roller=roller, max_pressure=pressure, friction=friction)
     a = case.hertz_half_width
-    far = solve(case, x=[0.5 * length], y=[0.0], z=[a])
+    far = solve(case, accuracy=0.03, x=[0.5 * length], y=[0.0], z=[a])
     columns = (far.x.values > 0.05 * a) & (far.x.values < a)
     x, z = far.x.values[columns], a * np.array([0.0, 0.02, 0.05, 0.1, 0.2, 0.4])
     dense = stress_field(body, far.pressure, friction=friction, x=x, y=far.y.values, z=z, inside_cells=far.pressure)
@@ -214,7 +211,13 @@ def test_on_the_top_beside_a_narrow_peak_it_goes_with_the_friction() -> None:
     body = FiniteLengthSpace(length=length + 8 * A, material=STEEL)
     roller = Roller(radius=RADIUS, length=length, profile=crown)
     found = [
-        solve(Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction), x=[0.5 * length], y=[0.0], z=[A])
+        solve(
+            Case(body=body, roller=roller, max_pressure=1.5e9, friction=friction),
+            accuracy=0.05,
+            x=[0.5 * length],
+            y=[0.0],
+            z=[A],
+        )
         for friction in (0.3, 0.5)
     ]
     assert [at(one)[2] for one in found] == [0.0, 0.0]

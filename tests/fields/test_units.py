@@ -18,7 +18,7 @@ from contactstudy import (
 )
 from contactstudy.bodies.models import Body
 
-EDGES = {"uniform": np.linspace(0.0, 3.0, 9), "graded": np.array([0.0, 0.1, 0.3, 0.6, 1.1, 1.7, 2.2, 2.8, 3.0])}
+EDGES = {"uniform": np.linspace(0.0, 3.0, 6), "graded": np.array([0.0, 0.1, 0.4, 1.1, 2.6, 3.0])}
 
 
 def body(kind: str, length: float, modulus: float) -> Body:
@@ -30,7 +30,7 @@ def body(kind: str, length: float, modulus: float) -> Body:
 
 def fields(kind: str, cells: str, length: float, modulus: float) -> list[np.ndarray]:
     """Stresses over the modulus, displacements over the length, equivalent loads over the modulus."""
-    x, y = 0.5 * (EDGES[cells][1:] + EDGES[cells][:-1]), np.linspace(-1.0, 1.0, 9)
+    x, y = 0.5 * (EDGES[cells][1:] + EDGES[cells][:-1]), np.linspace(-1.0, 1.0, 7)
     pressure = 1e-3 * modulus * np.sqrt(np.maximum(0.7 - y**2, 0)) * (1 + 0.3 * x[:, None])
     coordinates = {"x": length * x, "y": length * y, "x_width": ("x", length * np.diff(EDGES[cells]))}
     load = xr.DataArray(pressure, coordinates, ("x", "y"))

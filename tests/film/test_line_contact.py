@@ -11,14 +11,10 @@ pytestmark = pytest.mark.filterwarnings("ignore::contactstudy.MagnitudeWarning")
 
 BARUS = [
     (2, 5, 4.451, 3.470),
-    (10, 5, 3.813, 2.881),
-    (20, 5, 3.500, 2.632),
     (20, 10, 5.270, 3.968),
-    (100, 10, 4.367, 3.265),
-    (200, 10, 4.009, 2.990),
     (1000, 10, 3.265, 2.434),
 ]
-ROELANDS = [(5, 5, 3.5005, 2.9753), (10, 10, 4.6225, 4.0084), (20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
+ROELANDS = [(20, 5, 2.9088, 2.5116), (50, 10, 3.871, 3.400)]
 
 
 # The table's inlets end about four half-widths from the middle, which matters at low load.

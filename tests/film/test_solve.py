@@ -39,13 +39,20 @@ def film_case(length, load=20.0, lubricant=10.0, *, body=None, profile=None, spe
     return replace(case, lubricant=oil_of(case, load, lubricant, abs(speed)), motion=motion)
 
 
-def crown(length=16 * HALF_WIDTH):
-    return cs.profiles.Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
+COARSE = replace(
+    RESOLUTION, finest=1.1, finest_share=0.24, inner=0.32, inner_inlet=5, growth=0.2, columns=0.24, columns_inlet=0.8
+)
+LENGTH = 6 * HALF_WIDTH
+CROWN = cs.profiles.Lundberg(amplitude=HALF_WIDTH**2 / (4 * RADIUS))
+
+
+def coarse_film(case, **arguments):
+    return solve_film(case, accuracy=0.2, resolution=COARSE, **arguments)
 
 
 @pytest.fixture(scope="module")
 def crowned():
-    return solve_film(film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown()), accuracy=0.1)
+    return coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN))
 
 
 def test_certificate(crowned):
@@ -64,20 +71,19 @@ def test_the_pressure_carries_the_load(crowned):
 
 def test_a_symmetric_roller_has_a_symmetric_film(crowned):
     assert float(crowned.least_film_first) == pytest.approx(float(crowned.least_film_last), rel=1e-3)
-    middle = 8 * HALF_WIDTH
-    assert float(crowned.least_film_first_x + crowned.least_film_last_x) == pytest.approx(2 * middle, rel=1e-3)
+    assert float(crowned.least_film_first_x + crowned.least_film_last_x) == pytest.approx(LENGTH, rel=1e-3)
 
 
 def test_film_at_the_ends_of_a_half_space_is_thinner(crowned):
     body = cs.HalfSpace(material=STEEL)
-    other = solve_film(film_case(16 * HALF_WIDTH, 10.0, 5.0, body=body, profile=crown()), accuracy=0.2)
+    other = coarse_film(film_case(LENGTH, 10.0, 5.0, body=body, profile=CROWN))
     assert float(other.least_film) < 0.6 * float(crowned.least_film)
     assert float(other.central_film) == pytest.approx(float(crowned.central_film), rel=0.05)
 
 
 def test_the_middle_of_a_long_roller_is_a_line_contact():
-    case = film_case(100 * HALF_WIDTH, profile=crown())
-    film = solve_film(case, accuracy=0.05)
+    case = film_case(100 * HALF_WIDTH, profile=CROWN)
+    film = coarse_film(case)
     scale = RADIUS * np.sqrt(2 * case.lubricant.viscosity / (2 * case.modulus * RADIUS))
     line = solve_line(float(film.moes_load), float(film.moes_lubricant), finest=0.1)
     error = float(film.central_film_error) + 5e-3 * float(film.central_film)
@@ -87,21 +93,21 @@ def test_the_middle_of_a_long_roller_is_a_line_contact():
 
 
 def test_the_film_on_the_face_of_a_straight_flush_roller_does_not_follow_the_columns():
-    case = film_case(8 * HALF_WIDTH, 10.0, 5.0)
-    narrow = replace(RESOLUTION, columns=0.25 * RESOLUTION.columns, columns_inlet=0.25 * RESOLUTION.columns_inlet)
-    film, narrower = (solve_film(case, accuracy=0.2, resolution=cells) for cells in (RESOLUTION, narrow))
-    assert float(film.least_film_first_x) == 0.0
+    case = film_case(4 * HALF_WIDTH, 10.0, 5.0)
+    cells = (replace(COARSE, columns=0.12 * share, columns_inlet=0.4 * share) for share in (1.0, 0.5))
+    film, narrower = (solve_film(case, accuracy=0.2, resolution=each) for each in cells)
+    assert float(film.least_film_first_x) == pytest.approx(0.0, abs=1e-12)
     assert float(film.least_film_first) < 0.8 * float(film.least_film_middle)
     difference = abs(float(film.least_film_first - narrower.least_film_first))
-    assert difference < float(film.least_film_first_error) < 0.02 * float(film.central_film)
+    assert difference < float(film.least_film_first_error) < 0.04 * float(film.central_film)
 
 
 def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
-    case = replace(film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown()), lubricant=None, motion=cs.Sliding())
+    case = replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), lubricant=None, motion=cs.Sliding())
     dry = cs.solve(case, accuracy=0.05, stresses=False)
     load = dry.pressure.sum("y") * float(dry.y[1] - dry.y[0])
     root = np.sqrt(2 * oil_of(case, 10.0, 5.0).viscosity / (2 * case.modulus * RADIUS))
-    for x in (8 * HALF_WIDTH, 2 * HALF_WIDTH):
+    for x in (3 * HALF_WIDTH, HALF_WIDTH):
         number = float(load.sel(x=x, method="nearest")) / (2 * case.modulus * RADIUS * root)
         expected = moes_line(number, 5.0) * RADIUS * root
         assert float(crowned.slice_film.sel(x=x, method="nearest")) == pytest.approx(float(expected), rel=1e-2)
@@ -110,19 +116,18 @@ def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
 
 
 def test_surfaces_that_move_backwards_mirror_the_film(crowned):
-    case = film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown(), speed=-1.0)
-    turned = solve_film(case, accuracy=0.1)
+    turned = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN, speed=-1.0))
     assert float(turned.least_film_y) == pytest.approx(-float(crowned.least_film_y), rel=1e-6)
     assert turned.film_thickness.values[:, ::-1] == pytest.approx(crowned.film_thickness.values, rel=1e-6)
 
 
 def test_the_next_speed_takes_cells_and_film_of_the_former_one(crowned):
-    case = film_case(16 * HALF_WIDTH, 10.0, 5.0, profile=crown())
+    case = film_case(LENGTH, 10.0, 5.0, profile=CROWN)
     faster = replace(case, motion=cs.Sliding(body_speed=1.02, roller_speed=1.02))
     computed = cs.cache.info().kinds["surface operators"].computed
-    warm = solve_film(faster, accuracy=0.1, start=crowned)
+    warm = coarse_film(faster, start=crowned)
     assert cs.cache.info().kinds["surface operators"].computed == computed
-    cold = solve_film(faster, accuracy=0.1)
+    cold = coarse_film(faster)
     assert int(warm.newton_steps) < 0.6 * int(cold.newton_steps)
     for name in ("central_film", "least_film"):
         assert float(warm[name]) == pytest.approx(float(cold[name]), rel=1e-7)
@@ -130,16 +135,16 @@ def test_the_next_speed_takes_cells_and_film_of_the_former_one(crowned):
 
 
 def test_asperities_carry_what_the_film_does_not():
-    rough = Asperities(rms=5e-8)
+    rough = Asperities(rms=1e-7)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", cs.ConvergenceWarning)
-        mixed = solve_film(film_case(16 * HALF_WIDTH, 50.0, 5.0, profile=crown()), accuracy=0.2, asperities=rough)
+        mixed = coarse_film(film_case(LENGTH, 10.0, 5.0, profile=CROWN), asperities=rough)
     assert bool(mixed.converged)
     assert 0.0 < float(mixed.asperity_load_share) < 1.0
     assert float(mixed.film_thickness.min()) > 0.0
     assert bool((mixed.asperity_pressure <= mixed.pressure * (1 + 1e-9)).all())
     # A surface as rough as the film is thick has a viscosity ratio of 1.
-    assert float(mixed.viscosity_ratio) == pytest.approx((float(mixed.least_film_middle) / 5e-8) ** 1.3)
+    assert float(mixed.viscosity_ratio) == pytest.approx((float(mixed.least_film_middle) / 1e-7) ** 1.3)
     assert float(mixed.viscosity_ratio_error) > 0.0
 
 

@@ -64,8 +64,11 @@ def own_displacement(bump: Bump, lateral: float, response: Response) -> FloatArr
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lateral", [0.05, 0.5, 3.0])
-@pytest.mark.parametrize("bump", [Bump(1.0, 1.0), Bump(2.0, 1.5)], ids=["to the end", "centred"])
+@pytest.mark.parametrize(
+    ("bump", "lateral"),
+    [(Bump(1.0, 1.0), 0.05), (Bump(2.0, 1.5), 0.5), (Bump(1.0, 1.0), 3.0)],
+    ids=["long wave to the end", "centred", "short wave to the end"],
+)
 def test_displacements_of_the_top(bump: Bump, lateral: float) -> None:
     mesh = MeshResolution(growth=2.0, smallest=0.02)
     depth = mesh.mesh_z()

@@ -41,11 +41,15 @@ def pressure(grid: Grid) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(1 - (grid.y / 0.93) ** 2 - along, 0.0)))
 
 
-@pytest.mark.parametrize("kind", EDGES)
-@pytest.mark.parametrize("extent", [(-np.inf, np.inf), (0.0, 4.0)], ids=["no end", "two ends"])
-@pytest.mark.parametrize("shaped", [True, False])
-@pytest.mark.parametrize("aligned", [True, False])
-def test_field_is_linear_in_the_load(kind: str, extent: tuple[float, float], *, shaped: bool, aligned: bool) -> None:
+@pytest.mark.parametrize(
+    ("kind", "ended", "shaped", "aligned"),
+    [
+        *((kind, False, shaped, shaped) for kind in EDGES for shaped in (True, False)),
+        *((kind, True, shaped, not shaped) for kind in EDGES for shaped in (True, False)),
+    ],
+)
+def test_field_is_linear_in_the_load(kind: str, *, ended: bool, shaped: bool, aligned: bool) -> None:
+    extent = (0.0, 4.0) if ended else (-np.inf, np.inf)
     edges = EDGES[kind] * 4.0 / EDGES[kind][-1]
     grid = Grid.between(edges, (-1.2, 1.2), 24)
     shape = pressure(grid) if shaped else None

@@ -47,9 +47,10 @@ def fine(
     return FineCells(load=cells, shape=cells, grid=grid, extent=extent, image=image)
 
 
-@pytest.mark.parametrize("edges", [EDGES, UNIFORM], ids=["graded", "uniform"])
-@pytest.mark.parametrize("image", [1, -1])
-@pytest.mark.parametrize("ends", [0, 1, 2])
+@pytest.mark.parametrize(
+    ("ends", "image", "edges"),
+    [(0, 1, UNIFORM), (1, -1, UNIFORM), (2, 1, UNIFORM), (0, -1, EDGES), (1, 1, EDGES), (2, -1, EDGES)],
+)
 def test_neither_unit_nor_place_decides_anything(ends: int, image: int, edges: FloatArray) -> None:
     plain = fine(edges=edges, image=image, ends=ends)
     for place, unit, pressure in ((0.0, LENGTH, PRESSURE), (16.0, 1.0, 1.0), (-32.0, 1.0, 1.0)):
@@ -177,8 +178,7 @@ def test_whole_cells_keep_moments_to_sixth_order(parts: int) -> None:
     assert moments(loads, np.arange(-3.0, 8.0)) == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize("ends", [0, 1, 2])
-@pytest.mark.parametrize("image", [1, -1])
+@pytest.mark.parametrize(("ends", "image"), [(0, 1), (1, -1), (2, 1)])
 def test_distribution_is_linear_in_the_load(ends: int, image: int) -> None:
     """For one shape, also outside it; the shape as a load is its smooth form, bit for bit."""
     own = fine(edges=UNIFORM, ends=ends, image=image)

@@ -18,8 +18,7 @@ def corner_at(depth: float):  # type: ignore[no-untyped-def]
     return corner
 
 
-@pytest.mark.parametrize("unit", [2.0**-17, 1.0, 2.0**17])
-@pytest.mark.parametrize("length", [0.5, 2.0, 12.0])
+@pytest.mark.parametrize(("length", "unit"), [(0.5, 2.0**-17), (2.0, 1.0), (12.0, 2.0**17)])
 def test_images_are_summed_to_any_distance(length: float, unit: float) -> None:
     dx, dy = 0.25 * unit, 0.2 * unit
     x = dx * np.arange(-int(length / 0.25), int(length / 0.25) + 1.0)

@@ -69,10 +69,10 @@ def test_corners_and_edges_on_the_surface_give_numbers() -> None:
 
 
 @pytest.mark.parametrize("kind", sorted(CORNERS))
-@pytest.mark.parametrize("depth", [0.0, 0.3, 4.0])
+@pytest.mark.parametrize("depth", [0.0, 0.4])
 @pytest.mark.parametrize(
     ("length", "dy", "cells_y", "cells_x", "allowed"),
-    [(2.0, 0.2, 3, 20, 1e-8), (0.2, 0.04, 90, 20, 1e-8), (2.0, 0.2, 3, 2, 1e-5)],
+    [(2.0, 0.2, 3, 20, 1e-8), (0.2, 0.12, 30, 20, 3e-8), (2.0, 0.2, 3, 2, 1e-5)],
     ids=["long", "thin", "two cells"],
 )
 def test_all_images_are_summed(
@@ -83,11 +83,11 @@ def test_all_images_are_summed(
     corner = partial(CORNERS[kind], z=depth, poisson=0.3)
     x, y = dx * np.arange(0, cells_x + 1), dy * np.arange(cells_y)
     found = images.mirrored_kernel(corner, x, y, dx, dy, length)
-    sums = []
-    for count in (400, 800):
-        shifts = 2 * length * np.arange(-count, count + 1)
-        sums.append(sum(images.cell_kernel(corner, x + shift, y, dx, dy) for shift in shifts))
-    limit = sums[1] + (sums[1] - sums[0])
+    near, far = (
+        sum(images.cell_kernel(corner, x + 2 * length * number, y, dx, dy) for number in numbers)
+        for numbers in (range(-400, 401), [*range(-800, -400), *range(401, 801)])
+    )
+    limit = near + 2 * far
     # Far below the length of the body there is next to nothing left of one cell's load.
     assert np.abs(found - limit).max() < allowed / length
 

@@ -25,13 +25,12 @@ PLACES = (
 )
 
 
-@pytest.mark.parametrize("length", [8.0, np.inf])
-@pytest.mark.parametrize("points", [0, 10_000])
+@pytest.mark.parametrize(("length", "points"), [(8.0, 0), (8.0, 10_000), (np.inf, 10_000)])
 def test_a_place_has_the_same_field_alone_and_among_others(
     length: float, points: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=32, cells_y=24)
-    pressure = (1 - grid.y**2) ** 2 * np.linspace(0.5, 1.5, 32)[:, None]
+    grid = Grid(x_range=(0.0, 8.0), y_range=(-1.0, 1.0), cells_x=16, cells_y=16)
+    pressure = (1 - grid.y**2) ** 2 * np.linspace(0.5, 1.5, 16)[:, None]
     problem = EndProblem(
         length=length,
         poisson=0.3,
@@ -80,13 +79,11 @@ def test_few_points_are_evaluated_at_once_and_many_where_they_are_wanted() -> No
             assert points < 1.5 * sum(own for _, own in alone)
 
 
-@pytest.mark.parametrize("length", [8.0, np.inf])
-@pytest.mark.parametrize("loads", [(Load.NORMAL, Load.ALONG_Y), (Load.ALONG_X,)])
+@pytest.mark.parametrize(("length", "loads"), [(8.0, (Load.NORMAL, Load.ALONG_Y)), (np.inf, (Load.ALONG_X,))])
 def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
     """The quadratures depend on body, grid and positions, not on the load."""
     grid = Grid(x_range=(0.0, 8.0), y_range=(-1.5, 1.5), cells_x=16, cells_y=16)
-    hertz = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.ones((16, 1))
-    tilted = hertz * np.linspace(0.5, 1.5, 16)[:, None]
+    tilted = np.sqrt(np.clip(1 - grid.y**2, 0, None)) * np.linspace(0.5, 1.5, 16)[:, None]
     rough = np.random.default_rng(1).random(grid.shape) * (np.abs(grid.y) < 1)
     spot = np.zeros(grid.shape)
     spot[2:5, 7:9] = 1.0
@@ -98,6 +95,6 @@ def test_fields_of_loads_add_up(length: float, loads: tuple[Load, ...]) -> None:
         (displacement,) = end_fields(problem, DISPLACEMENT, [place], 10 * length)
         return [field[load] for field in (stress, displacement) for load in loads]
 
-    parts = [fields(cells) for cells in (hertz, tilted, rough, spot)]
-    for *terms, total in zip(*parts, fields(hertz + tilted + rough + spot), strict=True):
+    parts = [fields(cells) for cells in (tilted, rough, spot)]
+    for *terms, total in zip(*parts, fields(tilted + rough + spot), strict=True):
         assert np.abs(sum(terms) - total).max() < 1e-10 * np.abs(total).max()

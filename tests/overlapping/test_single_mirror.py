@@ -46,14 +46,11 @@ def eccentric(strip_pressure) -> xr.DataArray:
     return pressure * (1 + 0.3 * (pressure.x / 4.0 - 0.5))
 
 
-@pytest.mark.parametrize("friction", [0.0, FRICTION])
-def test_ends_are_free_of_normal_stress_and_carry_some_shear(
-    eccentric: xr.DataArray, unit_material: Material, friction: float
-) -> None:
+def test_ends_are_free_of_normal_stress_and_carry_some_shear(eccentric: xr.DataArray, unit_material: Material) -> None:
     grid = Grid.from_centres(eccentric.x.values, eccentric.y.values)
     body = single_mirror(4.0, unit_material)
     place = Points(np.array([0.0, 4.0]), ACROSS, DEPTHS)
-    (stress,) = stresses_at(body, sliding(eccentric.values, friction), grid, [place], eccentric.values)
+    (stress,) = stresses_at(body, sliding(eccentric.values, FRICTION), grid, [place], eccentric.values)
     assert np.abs(stress[0]).max() < 6e-5
     assert np.abs(stress[4]).max() > 3e-3
 
@@ -86,10 +83,10 @@ def test_added_load_and_its_two_images_sink_a_plain_half_space_as_much(on_cells,
     hold to some tenths of a percent of the displacement (half of the difference goes when they are halved along x).
     """
     body, half_space = single_mirror(4.0, unit_material), HalfSpace(material=unit_material)
-    window, middle = (-24.0, 24.0), slice(220, 260)
-    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2.2) ** 2 - y**2, 0), (0.0, 4.0), window, (32, 480))
+    window, middle = (-24.0, 24.0), slice(110, 130)
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 2.2) ** 2 - y**2, 0), (0.0, 4.0), window, (32, 240))
     load = equivalent_loads(body, pressure, z=[1.0])["P_h1"].values
-    three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 480))
+    three = on_cells(lambda x, y: 0 * x * y, (-4.0, 8.0), window, (96, 240))
     by_hand = surface_displacement(half_space, three + np.concatenate([load[::-1], load, load[::-1]]))
     sunk = surface_displacement(body, pressure.isel(y=middle)).values
     difference = sunk - by_hand.values[32:64, middle]
@@ -122,8 +119,8 @@ def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_mater
     ======  =============  =======
     """
     left = {}
-    for length in (2.5, 4.0, 8.0, 16.0):
-        pressure = strip_pressure(length, (int(8 * length), 48))
+    for length in (2.5, 4.0, 8.0):
+        pressure = strip_pressure(length, (int(8 * length), 32))
         grid = Grid.from_centres(pressure.x.values, pressure.y.values)
         depths = np.append(DEPTHS, [length, 2 * length])
         left[length] = [
@@ -140,7 +137,7 @@ def test_shear_left_on_the_ends_falls_with_the_length(strip_pressure, unit_mater
 
 
 def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
-    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (480, 24))
+    pressure = on_cells(lambda x, y: np.maximum(1 - (x - 1) ** 2 - y**2, 0), (0.0, 60.0), (-1.5, 1.5), (240, 16))
     points = {"x": [0.0, 0.4, 1.0, 2.0, 50.0], "y": [0.0, 0.6], "z": [0.05, 0.5, 2.0]}
     stress = stress_field(single_mirror(60.0, unit_material), pressure, friction=FRICTION, **points)
     exact = stress_field(FiniteLengthSpace(length=60.0, material=unit_material), pressure, friction=FRICTION, **points)
@@ -150,8 +147,8 @@ def test_long_body_is_the_exact_one(on_cells, unit_material: Material) -> None:
 
 def test_contact_nears_the_exact_one_in_a_longer_body(cylinder_gap, unit_material: Material) -> None:
     difference = []
-    for length in (2.5, 8.0, 32.0):
-        gap = cylinder_gap(length, (int(8 * length), 48))
+    for length in (2.5, 8.0, 24.0):
+        gap = cylinder_gap(length, (int(8 * length), 32))
         pressures = [
             solve_contact(body, gap, load=length * LINE_LOAD)["pressure"].max("y").values
             for body in (

@@ -78,6 +78,7 @@ def test_bad_files_are_named(tmp_path: Path) -> None:
 
 
 def test_large_xml_is_refused_before_it_is_unpacked(tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr(instruments, "MOST_XML", 100_000)
     path = tmp_path / "bomb.x3p"
     x3pio.write(path, MAP.T, x_scale=2e-6, y_scale=3e-6)
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED) as archive:

@@ -159,7 +159,7 @@ def rolling():
         friction=0.2,
         motion=Rolling(longitudinal_creepage=1e-3),
     )
-    return case, choose_grid(case, cells_x=3, cells_y=8, window=2.5)
+    return case, choose_grid(case, cells_x=2, cells_y=6, window=2.5)
 
 
 def test_rolling_by_slip(rolling):

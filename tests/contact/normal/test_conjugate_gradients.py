@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import optimize
 
@@ -187,6 +187,7 @@ def energy(gap: np.ndarray, pressure: np.ndarray) -> float:
     return float((pressure * (np.where(np.isfinite(gap), gap, 0.0) + 0.5 * operator(pressure))).sum())
 
 
+@settings(max_examples=10)
 @given(rng=random, sharp=st.booleans(), resultants=st.sampled_from([Resultants(50.0), TILTING, Resultants(None)]))
 def test_no_change_of_the_area_raises_the_energy_or_loses_the_resultants(
     rng: np.random.Generator, sharp: bool, resultants: Resultants
@@ -231,6 +232,7 @@ def test_the_part_of_a_change_that_descends(slope: float, curvature: float):
         assert at(part) <= min(at(0.99 * part), at(1.01 * part))
 
 
+@settings(max_examples=10)
 @given(rng=random)
 def test_it_ends_when_violation_and_change_are_small_in_any_unit(rng: np.random.Generator):
     gap = rough_gap(rng, False)

@@ -29,11 +29,11 @@ def long_case(length: float, depth: float | None = None) -> Case:
     return Case(body=body, roller=Roller(radius=RADIUS, length=length), max_pressure=1e9)
 
 
-@pytest.mark.parametrize("depth", [5e-3, 20e-3])
-def test_approach_at_mid_length_of_a_long_roller(depth: float) -> None:
-    case = long_case(200e-3, depth)
-    result = solve(case, stresses=False)
-    line_load = float(result.pressure.sel(x=0.1, method="nearest").sum()) * float(result.y[1] - result.y[0])
+def test_approach_at_mid_length_of_a_long_roller() -> None:
+    depth = 5e-3
+    case = long_case(100e-3, depth)
+    result = solve(case, stresses=False, accuracy=0.05)
+    line_load = float(result.pressure.sel(x=0.05, method="nearest").sum()) * float(result.y[1] - result.y[0])
     ratio = POISSON / (1 - POISSON)
     expected = (1 - POISSON**2) * line_load / (np.pi * YOUNG) * (2 * np.log(2 * depth / case.hertz_half_width) - ratio)
     assert float(result.approach) == pytest.approx(expected, rel=0.005)
@@ -41,7 +41,7 @@ def test_approach_at_mid_length_of_a_long_roller(depth: float) -> None:
 
 def test_approach_grows_with_the_logarithm_of_the_depth_beyond_three_lengths() -> None:
     length = 4e-3
-    near, far = (solve(long_case(length, depth), stresses=False) for depth in (3 * length, 6 * length))
+    near, far = (solve(long_case(length, depth), stresses=False, accuracy=0.05) for depth in (3 * length, 6 * length))
     slope = float(far.approach - near.approach) / np.log(2)
     assert slope == pytest.approx(2 * float(near.normal_load) / length / (np.pi * YOUNG), rel=0.01)
 
@@ -69,15 +69,15 @@ def test_a_prescribed_tilt_and_a_prescribed_position_of_its_load_agree() -> None
 
 def test_gap_is_initial_gap_and_displacement_less_the_approach() -> None:
     case = replace(crowned(load=1500.0, tilt=5e-4), roller=Roller(radius=6e-3, length=4e-3, profile=CROWN))
-    result = solve(case, stresses=False)
+    result = solve(case, stresses=False, accuracy=0.1)
     gap = result.initial_gap + result.displacement_z - result.approach
     np.testing.assert_allclose(gap.values, result.gap.values, atol=1e-12)
 
 
 def test_the_line_of_the_body_is_at_rest() -> None:
     case = crowned(load=1500.0, tilt=5e-4)
-    result = solve(case, stresses=False)
-    x = np.linspace(0.1e-3, 5.9e-3, 40)
+    result = solve(case, stresses=False, accuracy=0.05)
+    x = np.linspace(0.1e-3, 5.9e-3, 16)
     middle = float(result.load_position)
     field = displacement_field(case.body, result.pressure, x=np.append(x, middle), y=[0.0], z=[0.0, 9e-3]).u_z[:, 0]
     slope = np.polynomial.polynomial.polyfit(x, field[:-1, 1], 1)[1]
@@ -90,7 +90,11 @@ def test_the_line_of_the_body_is_at_rest() -> None:
 def test_depths_of_half_spaces_and_bad_depths() -> None:
     roller = Roller(radius=RADIUS, length=4e-3, profile=CROWN)
     far, near = (
-        solve(Case(body=HalfSpace(material=STEEL, reference_depth=depth), roller=roller, load=500.0), stresses=False)
+        solve(
+            Case(body=HalfSpace(material=STEEL, reference_depth=depth), roller=roller, load=500.0),
+            stresses=False,
+            accuracy=0.1,
+        )
         for depth in (None, 10e-3)
     )
     assert float(near.approach) < float(far.approach)

@@ -16,13 +16,13 @@ ANGLE = np.radians(2)
 
 def solved(profile: Profile, accuracy: float = 0.01):
     roller = cs.Roller(radius=6e-3, length=LENGTH, profile=profile)
-    case = cs.Case(body=cs.FiniteLengthSpace(length=LENGTH, material=STEEL), roller=roller, max_pressure=1e9)
+    case = cs.Case(body=cs.HalfSpace(material=STEEL), roller=roller, max_pressure=1e9)
     return cs.solve(case, stresses=False, accuracy=accuracy)
 
 
 @pytest.fixture(scope="module")
 def chamfered():
-    return solved(Chamfer(width=0.5e-3, angle=ANGLE))
+    return solved(Chamfer(width=0.5e-3, angle=ANGLE), accuracy=0.02)
 
 
 def test_no_largest_pressure_at_a_corner(chamfered) -> None:
@@ -48,9 +48,9 @@ def test_pressure_follows_the_logarithm(chamfered) -> None:
         np.testing.assert_allclose(chamfered.pressure.max("y").values[inside], law, rtol=0.05)
 
 
-@pytest.mark.parametrize("radius", [50e-6, 100e-6])
+@pytest.mark.parametrize("radius", [50e-6])
 def test_peak_of_a_blend_radius_is_that_of_the_solved_blend(chamfered, radius: float) -> None:
-    blended = solved(Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius), accuracy=0.005)
+    blended = solved(Chamfer(width=0.5e-3, angle=ANGLE, blend_radius=radius))
     law = corner_peak(
         float(chamfered.corner_intensity), float(chamfered.corner_distance), float(chamfered.corner_slope), radius
     )
@@ -64,7 +64,7 @@ def test_wide_blend_is_refused(chamfered) -> None:
 
 
 def test_contact_that_ends_at_a_steep_chamfer_has_the_law_of_a_sharp_end() -> None:
-    sharp = solved(Chamfer(width=0.1e-3, angle=np.radians(45)))
+    sharp = solved(Chamfer(width=0.1e-3, angle=np.radians(45)), accuracy=0.02)
     assert "0.1" in sharp.corner_intensity.attrs["comment"]
     assert float(sharp.end_exponent) == 0.5
     radius = 20e-6

@@ -11,10 +11,10 @@ from contactstudy.profiles import Cylinder, FullCrown, Measured, Profile
 STEEL = cs.Material(young=210e9, poisson=0.3)
 
 
-def peak(profile: Profile, length: float = 2e-3, **load: float) -> tuple[float, float]:
+def peak(profile: Profile, length: float = 2e-3, accuracy: float = 0.01, **load: float) -> tuple[float, float]:
     body = cs.FiniteLengthSpace(length=1.2 * length, material=STEEL)
     case = cs.Case(body=body, roller=cs.Roller(radius=5e-3, length=length, profile=profile), **load)
-    result = cs.solve(case, stresses=False, accuracy=0.01)
+    result = cs.solve(case, stresses=False, accuracy=accuracy)
     return float(result.peak_pressure), float(result.peak_pressure_error)
 
 
@@ -28,10 +28,9 @@ def test_stated_error_covers_an_edge_radius_of_few_points(step: float) -> None:
     assert abs(measured - exact) < error
 
 
-@pytest.mark.parametrize("step", [50e-6, 20e-6])
-def test_crest_between_points_keeps_its_curvature(step: float) -> None:
+def test_crest_between_points_keeps_its_curvature() -> None:
     formula = FullCrown(50e-3, centre=7e-6)
-    x = np.linspace(-1e-3, 1e-3, round(2e-3 / step) + 1)
+    x = np.linspace(-1e-3, 1e-3, 41)
     exact, _ = peak(formula, load=5.0)
     measured, error = peak(Measured(x, formula.drop(x, 2e-3)), load=5.0)
     assert measured == pytest.approx(exact, rel=2e-3)
@@ -41,10 +40,10 @@ def test_crest_between_points_keeps_its_curvature(step: float) -> None:
 @pytest.mark.parametrize("position", [0.231, pytest.param(0.487, marks=pytest.mark.slow)])
 def test_ridge_is_resolved_wherever_it_lies(position: float) -> None:
     """A burr of 0.4 um over ten points carries several times the pressure of the cylinder."""
-    length = 10e-3
-    x = np.linspace(-length / 2, length / 2, 2001)
+    length = 4e-3
+    x = np.linspace(-length / 2, length / 2, 801)
     burr = np.exp(-(((x + length / 2 - position * length) / 10e-6) ** 2))
     drop = 0.4e-6 * (1 - burr) + 0.5e-6 * (2 * x / length) ** 2
     profile = Measured(x, drop) + Cylinder(fillet_radius=0.03 * length)
-    largest, _ = peak(profile, length, max_pressure=1e9)
+    largest, _ = peak(profile, length, 0.1, max_pressure=1e9)
     assert largest > 2.5e9

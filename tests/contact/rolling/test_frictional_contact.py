@@ -160,15 +160,14 @@ ENDED: dict[str, Body] = {
 }
 
 
-@pytest.mark.parametrize("body", ENDED.values(), ids=ENDED)
 @pytest.mark.parametrize(
-    "motion", [MOTIONS["all"], MOTIONS["forces"], MOTIONS["shift"]], ids=["all", "forces", "shift"]
+    ("name", "motion"), [("quarter space", "shift"), ("finite length", "all"), ("finite length", "forces")]
 )
-def test_the_law_holds_at_free_ends(body: Body, motion: Rolling | Shift) -> None:
-    gap = ball(26)
+def test_the_law_holds_at_free_ends(name: str, motion: str) -> None:
+    body, gap = ENDED[name], ball(26)
     gap = gap.assign_coords(x=gap.x + 1.3)
     counterbody = Counterbody(body) if isinstance(body, FiniteLengthSpace) else None
-    holds(rolled(motion, body=body, gap=gap, counterbody=counterbody))
+    holds(rolled(MOTIONS[motion], body=body, gap=gap, counterbody=counterbody))
 
 
 def test_rolling_between_free_ends_is_symmetric_about_the_middle() -> None:
@@ -258,15 +257,15 @@ def test_bad_input_is_named() -> None:
 GRADED = Grid.from_edges(np.concatenate([np.linspace(-1.3, 0.4, 15), np.linspace(0.5, 1.3, 19)]), (-1.3, 1.3), 26)
 
 
-@pytest.mark.parametrize("motion", MOTIONS.values(), ids=MOTIONS)
-def test_cells_of_different_widths(motion: Rolling | Shift) -> None:
+@pytest.mark.parametrize("name", ["all", "moment", "shift"])
+def test_cells_of_different_widths(name: str) -> None:
     """Coulomb's law and the resultants on them, close to those on uniform cells."""
     gap = xr.DataArray(
         0.05 * (GRADED.x[:, None] ** 2 + GRADED.y**2),
         coords={"x": GRADED.x, "y": GRADED.y, "x_width": ("x", GRADED.widths)},
         dims=("x", "y"),
     )
-    graded, uniform = rolled(motion, gap=gap), rolled(motion)
+    graded, uniform = rolled(MOTIONS[name], gap=gap), rolled(MOTIONS[name])
     holds(graded)
     areas = GRADED.widths[:, None] * GRADED.dy
     for axis in "xy":
@@ -318,7 +317,7 @@ def test_the_part_that_sticks_is_of_the_pressed_area() -> None:
     assert float(result.sticking_part) == pytest.approx(float(result.stick.sum() / pressed.sum()))
 
 
-@pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), (0.0, 5.0)])
+@pytest.mark.parametrize(("poisson", "spin"), [(0.3, 10.0), pytest.param(0.0, 5.0, marks=pytest.mark.slow)])
 def test_pressure_and_tractions_of_a_large_spin_converge(poisson: float, spin: float) -> None:
     """Sliding columns or leading edges from each pressure would alternate between two states."""
     steel = Material(210e9, poisson)
@@ -331,4 +330,4 @@ def test_pressure_and_tractions_of_a_large_spin_converge(poisson: float, spin: f
         coupled=True,
         motion=Rolling(spin=spin),
     )
-    assert solve(case, stresses=False, accuracy=0.05).converged
+    assert solve(case, stresses=False, accuracy=0.1).converged
