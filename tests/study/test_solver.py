@@ -39,7 +39,8 @@ def test_a_study_gives_what_the_solver_gives(tmp_path):
 def test_comparison_models_beside_the_exact_ends(tmp_path):
     study = small_study(
         level="surface",
-        base=BASE | {"field_x_over_a": [0.0], "field_y_over_a": [0.0], "field_z_over_a": [1.0]},
+        base=BASE
+        | {"roller_length": 0.3e-3, "field_x_over_a": [0.0], "field_y_over_a": [0.0], "field_z_over_a": [1.0]},
         sweep={
             "model": ["exact", "mirror", "mirror-factor", "single-mirror"],
             "e_over_a": [0.0],
