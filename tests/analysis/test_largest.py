@@ -50,7 +50,7 @@ def test_peak_on_the_top() -> None:
     assert float(found.peak_maximum_shear_error) < 0.1
 
 
-def solved(count: int, **roller: object) -> xr.Dataset:
+def sampled(count: int, **roller: object) -> xr.Dataset:
     body = FiniteLengthSpace(length=12 * A, material=STEEL)
     case = Case(body=body, roller=Roller(radius=5e-3, length=12 * A, **roller), max_pressure=1.5e9, friction=0.1)
     points = np.linspace(0.0, 6 * A, 2 * count)
@@ -59,17 +59,16 @@ def solved(count: int, **roller: object) -> xr.Dataset:
 
 @pytest.mark.slow
 def test_coarse_and_fine_depths() -> None:
-    coarse, fine = (analysis.peak(solved(count), "tresca") for count in (9, 25))
+    coarse, fine = (analysis.peak(sampled(count), "tresca") for count in (9, 25))
     error = abs(float(coarse.peak_tresca - fine.peak_tresca))
     assert error <= float(coarse.peak_tresca_error)
     assert error < 0.005 * float(fine.peak_tresca)
     assert float(coarse.peak_tresca_z) == pytest.approx(float(fine.peak_tresca_z), abs=0.03 * A)
 
 
-def test_peak_of_a_solved_case() -> None:
-    result = solved(9)
-    found = analysis.peak(result)
-    assert float(found.peak_von_mises) == float(result.peak_von_mises)
+def test_peak_of_a_solved_case(solved: xr.Dataset) -> None:
+    found = analysis.peak(solved)
+    assert float(found.peak_von_mises) == float(solved.peak_von_mises)
     assert set(found.data_vars) == {f"peak_von_mises{part}" for part in ("", "_error", "_x", "_y", "_z")}
 
 

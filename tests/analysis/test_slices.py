@@ -5,8 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given
-from hypothesis import strategies as st
 
 from contactstudy import (
     Case,
@@ -25,7 +23,7 @@ from contactstudy.study import Study, open_study, run_study
 from tests.split_columns import split_columns
 
 
-@given(count=st.integers(1, 16))
+@pytest.mark.parametrize("count", [1, 5, 16])
 def test_load_of_slices(strip_result, count: int) -> None:
     result = strip_result()
     table = analysis.slices(result, count)
@@ -101,7 +99,7 @@ KINDS = {
 }
 
 
-QUICK = ("crowned", "straight, flush and tilted", "sharp end inside the face")
+QUICK = ("crowned", "sharp end inside the face")
 """Kinds of the default tier."""
 
 
@@ -139,12 +137,12 @@ def test_mirrored_slices() -> None:
 
 
 def test_narrow_columns_and_singular_ends() -> None:
-    rounded = solve(KINDS["rounded edges"], stresses=False)
+    rounded = solve(KINDS["rounded edges"], stresses=False, accuracy=0.03)
     largest = analysis.slices(rounded, 10)["axial_pressure"]
     for side, part in (("first", 0), ("last", -1)):
         peak, error = (float(rounded[f"peak_pressure_{side}{kind}"]) for kind in ("", "_error"))
         assert float(largest[part]) == pytest.approx(peak, abs=error)
-    sharp = analysis.slices(solve(KINDS["sharp end inside the face"], stresses=False), 10)
+    sharp = analysis.slices(solve(KINDS["sharp end inside the face"], stresses=False, accuracy=0.1), 10)
     for name in ("axial_pressure", "axial_pressure_error"):
         assert np.isinf(sharp[name]).values.tolist() == [False] * 9 + [True]
     assert np.isfinite(sharp["normal_load_error"]).all()
@@ -152,6 +150,7 @@ def test_narrow_columns_and_singular_ends() -> None:
 
 def test_errors_of_a_case_of_a_study(tmp_path) -> None:
     base = {"young": 210e9, "poisson": 0.3, "radius": 5e-3, "roller_length": 0.5e-3, "e_over_a": 1.0, "stresses": False}
+    base["accuracy"] = 0.05
     edge = {"name": "rounded", "kind": "cylinder", "fillet_radius": 0.05e-3}
     study = Study(name="small", base=base | {"profile": edge}, sweep={"max_pressure": [1.2e9, 1.5e9]})
     run_study(study, tmp_path, workers=0, progress=False)

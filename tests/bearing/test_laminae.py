@@ -50,15 +50,15 @@ def test_slices_as_the_limit_of_long_rollers() -> None:
     The sharp ends of a half-space take load from the middle, flush free ends give load to it, the less the longer.
     """
     middles: dict[str, list[float]] = {"half-space": [], "flush": []}
-    for length in (0.5e-3, 2e-3, 8e-3):
+    for length in (0.5e-3, 8e-3):
         bodies = {"half-space": HalfSpace(material=STEEL), "flush": FiniteLengthSpace(length=length, material=STEEL)}
         for name, body in bodies.items():
             case = Case(body=body, roller=Roller(radius=5e-3, length=length), max_pressure=1.5e9)
             factors = lamina_factors(solve(case, stresses=False, accuracy=0.02), laminae=31)
             middles[name].append(float(factors.stress_riser[15]))
-    assert middles["half-space"][0] < middles["half-space"][1] < middles["half-space"][2] < 1
-    assert middles["flush"][0] > middles["flush"][1] > middles["flush"][2] > 1
-    assert middles["flush"][2] - middles["half-space"][2] < 0.12
+    assert middles["half-space"][0] < middles["half-space"][1] < 1
+    assert middles["flush"][0] > middles["flush"][1] > 1
+    assert middles["flush"][1] - middles["half-space"][1] < 0.12
 
 
 def test_number_of_laminae(uniform: xr.Dataset) -> None:
@@ -101,8 +101,8 @@ def test_sharp_end_and_uniform_cells() -> None:
     ],
 )
 def test_errors_against_finer_columns(profile: profiles.Profile, tilt: float) -> None:
-    roller = Roller(radius=5e-3, length=1.6e-3, profile=profile)
-    case = Case(body=FiniteLengthSpace(length=2e-3, material=STEEL), roller=roller, max_pressure=1.5e9, tilt=tilt)
+    roller = Roller(radius=5e-3, length=0.8e-3, profile=profile)
+    case = Case(body=FiniteLengthSpace(length=1.2e-3, material=STEEL), roller=roller, max_pressure=1.5e9, tilt=tilt)
     coarse = solve(case, stresses=False, accuracy=0.01)
     fine = solve(case, split_columns(coarse, 4), stresses=False)
     for laminae in (4, 9, 30, 60):

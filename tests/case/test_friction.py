@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 import xarray as xr
@@ -35,25 +33,23 @@ def case(friction: object, **named: object) -> Case:
 def test_a_roller_that_slides_both_ways() -> None:
     asked = case(BOTH_WAYS)
     grid = choose_grid(asked, cells_x=3, cells_y=8, window=1.5)
-    positions = {"x": LENGTH * np.array([0.1, 0.3, 0.7, 0.9]), "y": [0.0, 2e-5], "z": [2e-5]}
+    positions = {"x": LENGTH * np.array([0.1, 0.3, 0.7, 0.9]), "y": [-2e-5, 0.0, 2e-5], "z": [2e-5]}
     result = solve(asked, grid, **positions)
     along = 0.2 * (result.x / LENGTH) - 0.1
     assert np.allclose(result.traction_y, along * result.pressure)
     assert float(result.traction_y.sum()) == pytest.approx(0.0, abs=1e-6 * float(result.pressure.sum()))
-    # About mid-length the traction is odd: so is the shear that it makes, and the pressure's part is even.
-    plain = solve(replace(asked, friction=0.0), grid, **positions)
-    change = (result.tau_yz - plain.tau_yz).values
+    # Of the shear, the pressure's part is odd along y; the traction's part is even, and odd about mid-length.
+    change = (result.tau_yz + result.tau_yz[:, ::-1].values).values
     assert np.abs(change + change[::-1]).max() < 1e-6 * np.abs(change).max()
 
 
 def test_equal_values_are_the_number() -> None:
     grid = choose_grid(case(0.1), cells_x=3, cells_y=8, window=1.5)
     numbers, values = (
-        solve(case(friction), grid, x=[0.0, 0.3 * LENGTH], y=[0.0, 2e-5], z=[2e-5])
+        solve(case(friction), grid, stresses=False)
         for friction in (0.1, xr.DataArray([0.1, 0.1], coords={"x": [0.0, LENGTH]}, dims="x"))
     )
-    for name in ("traction_y", "von_mises"):
-        assert np.allclose(numbers[name], values[name], rtol=1e-9)
+    assert np.allclose(numbers["traction_y"], values["traction_y"], rtol=1e-9)
 
 
 def test_the_bound_of_rolling_varies_along_the_axis() -> None:

@@ -14,9 +14,9 @@ HALF_WIDTH = 4 * 1.5e9 * 5e-3 / (2 * STEEL.plane_strain_modulus)
 
 
 def roller_case(end_distance: float = 0.0, body: float | None = None, **settings: float) -> Case:
-    """Steel roller of 2 mm with an edge radius, and its body."""
-    length = 2e-3 + 2 * end_distance if body is None else body
-    roller = Roller(radius=5e-3, length=2e-3, profile=profiles.Cylinder(fillet_radius=0.05e-3))
+    """Steel roller of 1 mm with an edge radius, and its body."""
+    length = 1e-3 + 2 * end_distance if body is None else body
+    roller = Roller(radius=5e-3, length=1e-3, profile=profiles.Cylinder(fillet_radius=0.05e-3))
     return Case(
         body=FiniteLengthSpace(length=length, material=STEEL),
         roller=roller,
@@ -33,12 +33,12 @@ def roller_case(end_distance: float = 0.0, body: float | None = None, **settings
         pytest.param(roller_case(), id="flush"),
         pytest.param(roller_case(HALF_WIDTH), id="1a", marks=pytest.mark.slow),
         pytest.param(roller_case(5 * HALF_WIDTH), id="5a", marks=pytest.mark.slow),
-        pytest.param(roller_case(-0.2e-3, body=1.6e-3), id="overhanging"),
+        pytest.param(roller_case(-0.2e-3, body=0.6e-3), id="overhanging"),
         pytest.param(roller_case(HALF_WIDTH, tilt=2e-4), id="tilted", marks=pytest.mark.slow),
     ],
 )
 def test_largest_stress_drawn_and_stated(case: Case) -> None:
-    result = solve(case, y=[0.0], accuracy=0.03)
+    result = solve(case, y=[0.0], accuracy=0.05)
     x = result["x_field"].values
     assert x[0] == 0.0
     assert x[-1] == case.body.extent[1]

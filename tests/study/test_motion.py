@@ -20,21 +20,21 @@ ROLLS: dict[str, Any] = {
     "young": 210e9,
     "poisson": 0.3,
     "radius": 5e-3,
-    "roller_length": 0.5e-3,
+    "roller_length": 0.3e-3,
     "roller_body": "half-space",
     "body": "half-space",
     "max_pressure": 1.5e9,
     "e_over_a": 0.0,
     "friction": 0.1,
-    "accuracy": 0.05,
+    "accuracy": 0.1,
     "stresses": False,
     "motion": "rolling",
 }
 
 
 def rolling_study(**changes: Any) -> Study:
-    """Six cases of a roller on a half-space: three creepages, two pressures."""
-    sweep = {"longitudinal_creepage": [0.0, 5e-4, 2e-3], "max_pressure": [1.0e9, 1.5e9]}
+    """Four cases of a roller on a half-space: two creepages, two pressures."""
+    sweep = {"longitudinal_creepage": [0.0, 5e-4], "max_pressure": [1.0e9, 1.5e9]}
     content = {"base": ROLLS, "sweep": sweep, "level": "surface"} | changes
     return Study(name="rolls", **content)
 
@@ -89,9 +89,9 @@ def test_motions_differ_in_identity_and_the_default_does_not_count() -> None:
 
 @pytest.fixture(scope="module")
 def rolled(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Results of the six cases, solved at once in this process."""
+    """Results of the four cases, solved at once in this process."""
     folder = tmp_path_factory.mktemp("rolled")
-    assert run_study(rolling_study(), folder, workers=0, progress=False).counts == {"ok": 6}
+    assert run_study(rolling_study(), folder, workers=0, progress=False).counts == {"ok": 4}
     return folder
 
 
@@ -124,7 +124,7 @@ def test_a_study_that_goes_on_has_the_same_bits(rolled: Path, tmp_path: Path) ->
     first, study = rolling_study(sweep={"longitudinal_creepage": [5e-4], "max_pressure": [1.0e9]}), rolling_study()
     run_study(first, tmp_path / "parts", workers=0, progress=False)
     report = run_study(study, tmp_path / "parts", workers=0, progress=False)
-    assert (report.solved, report.counts) == (5, {"ok": 6})
+    assert (report.solved, report.counts) == (3, {"ok": 4})
     for case in study.plan():
         one, other = (load_case(folder, case.id) for folder in (tmp_path / "parts", rolled))
         assert one.drop_vars("seconds").identical(other.drop_vars("seconds").assign_attrs(one.attrs))

@@ -9,14 +9,20 @@ from tests.stand_in_solver import FAILS, solve_fake
 PROFILES = [{"name": "sharp", "kind": "cylinder"}, {"name": "crowned", "kind": "lundberg", "amplitude": 2e-7}]
 
 
-@pytest.fixture
-def opened(tmp_path):
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("opened")
     study = small_study(
         sweep={"e_over_a": [0, 1, -9], "friction": [0, FAILS], "profile": PROFILES},
         exclude=[{"e_over_a": 1, "friction": FAILS, "profile": "sharp"}],
     )
-    run_study(study, tmp_path, workers=0, solver=solve_fake)
-    return open_study(tmp_path)
+    run_study(study, path, workers=0, solver=solve_fake)
+    return path
+
+
+@pytest.fixture
+def opened(folder):
+    return open_study(folder)
 
 
 def test_swept_parameters_are_the_dimensions(opened):
@@ -35,14 +41,14 @@ def test_the_state_of_every_case_is_data(opened):
     assert np.isnan(opened["peak_pressure"].sel(e_over_a=-9)).all()
 
 
-def test_fields_are_lazy(opened, tmp_path):
+def test_fields_are_lazy(opened, folder):
     for name in ("pressure", "von_mises"):
         assert not opened[name].variable._in_memory
-    chunked = open_study(tmp_path, chunks={})
+    chunked = open_study(folder, chunks={})
     assert dask.is_dask_collection(chunked["pressure"].data)
     assert float(chunked["pressure"].max()) == float(opened["pressure"].max()) > 0
-    stored = load_case(tmp_path, identity(e_over_a=1))
-    one = open_study(tmp_path, cells="original").sel(e_over_a=1, friction=0, profile="sharp")
+    stored = load_case(folder, identity(e_over_a=1))
+    one = open_study(folder, cells="original").sel(e_over_a=1, friction=0, profile="sharp")
     size = stored.sizes["x"]
     np.testing.assert_array_equal(one["pressure"].values[:size], stored["pressure"])
     assert np.isnan(one["pressure"].values[size:]).all()
@@ -123,8 +129,8 @@ def test_units_with_exponents_that_differ(tmp_path):
     assert "end_exponent" in opened["end_intensity"].attrs["comment"]
 
 
-def test_collect_keeps_summaries_only(opened, tmp_path):
-    summary = collect(tmp_path)
+def test_collect_keeps_summaries_only(folder):
+    summary = collect(folder)
     assert set(summary.dims) == {"e_over_a", "friction", "profile"}
     assert "pressure" not in summary
     assert summary["peak_pressure"].attrs["units"] == "Pa"

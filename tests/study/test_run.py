@@ -269,16 +269,6 @@ def test_a_full_disk(small_disk, study, workers):
 
 
 @pytest.mark.system
-def test_results_do_not_depend_on_workers(study, tmp_path):
-    for workers in (0, 1, 2):
-        assert run(study, tmp_path / str(workers), workers=workers).counts == {"ok": 4}
-    first = open_study(tmp_path / "0").drop_vars("seconds")
-    for workers in (1, 2):
-        other = open_study(tmp_path / str(workers)).drop_vars("seconds")
-        assert other.load().identical(first.load())
-
-
-@pytest.mark.system
 def test_a_worker_that_dies_costs_its_case_only(tmp_path):
     sweep = {"e_over_a": [0, 1, 2], "friction": [0, DIES]}
     study = small_study(sweep=sweep, exclude=[{"e_over_a": [0, 2], "friction": DIES}])

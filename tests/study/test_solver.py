@@ -39,23 +39,24 @@ def test_a_study_gives_what_the_solver_gives(tmp_path):
 def test_comparison_models_beside_the_exact_ends(tmp_path):
     study = small_study(
         level="surface",
-        base=BASE | {"field_x_over_a": [0.0], "field_y_over_a": [0.0], "field_z_over_a": [1.0]},
+        base=BASE
+        | {"roller_length": 0.3e-3, "field_x_over_a": [0.0], "field_y_over_a": [0.0], "field_z_over_a": [1.0]},
         sweep={
-            "model": ["exact", "mirror", "mirror-factor", "single-mirror"],
+            "model": ["exact", "mirror", "single-mirror"],
             "e_over_a": [0.0],
             "body": ["finite-length", "half-space"],
         },
     )
     report = run_study(study, tmp_path, workers=0)
-    assert report.counts == {"ok": 5, "skipped": 3}
+    assert report.counts == {"ok": 4, "skipped": 2}
     opened = open_study(tmp_path).squeeze("e_over_a")
-    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped", "skipped"]
+    assert opened["status"].sel(body="half-space").values.tolist() == ["ok", "skipped", "skipped"]
     assert "no free end" in opened["message"].sel(body="half-space", model="mirror").item()
     residual = opened["end_traction_residual"].sel(body="finite-length")
     exact, once, mirror = (float(residual.sel(model=m)) for m in ("exact", "single-mirror", "mirror"))
     assert exact < 3e-4 < once < mirror  # from a depth of 0.02 a on
     ends = opened["end_pressure_over_p0"].sel(body="finite-length").values
-    assert len({round(value, 4) for value in ends.tolist()}) == 4
+    assert len({round(value, 4) for value in ends.tolist()}) == 3
 
 
 def test_one_is_one_case(tmp_path):

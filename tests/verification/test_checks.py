@@ -13,6 +13,8 @@ from tests.verification import listed
 LISTED = listed.read()
 FULL = [entry for entry in LISTED if entry.group in {each.group for each in LISTED if each.level == "full"}]
 """Checks of the groups that have more at the full level."""
+LONG = ("film", "passes")
+"""Groups whose quick level, a part of the full one, takes too long for the default tier."""
 TIGHTER = {
     "six stresses / p0, z >= 0.1a, largest difference": 1e-3,
     "six stresses / p0, z >= 0.1a, median difference": 3e-6,
@@ -47,24 +49,25 @@ def verdict(check: Check) -> None:
     assert abs(check.difference) <= TIGHTER.get(check.quantity, check.tolerance), suite.line(check)
 
 
-def parameters(level: str) -> list[object]:
-    """Checks of a level under their names."""
-    return [pytest.param(entry, id=entry.name) for entry in LISTED if entry.level == level]
+def parameters(*, slow: bool) -> list[object]:
+    """Checks of the default or the slow tier under their names."""
+    in_tier = (entry for entry in LISTED if (entry.level == "full" or entry.group in LONG) == slow)
+    return [pytest.param(entry, id=entry.name) for entry in in_tier]
 
 
-@pytest.mark.parametrize("entry", parameters("quick"))
+@pytest.mark.parametrize("entry", parameters(slow=False))
 def test_check(entry: listed.Listed) -> None:
     verdict(quick(entry.group)[entry.case, entry.quantity])
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("entry", parameters("full"))
+@pytest.mark.parametrize("entry", parameters(slow=True))
 def test_check_of_the_full_level(entry: listed.Listed) -> None:
     (check,) = [c for c in full().groups[entry.group] if (c.case, c.quantity) == (entry.case, entry.quantity)]
     verdict(check)
 
 
-@pytest.mark.parametrize("group", suite.GROUPS)
+@pytest.mark.parametrize("group", [group for group in suite.GROUPS if group not in LONG])
 def test_the_list_is_complete(group: str) -> None:
     entries = [(entry.case, entry.quantity) for entry in LISTED if (entry.level, entry.group) == ("quick", group)]
     assert entries
