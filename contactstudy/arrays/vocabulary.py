@@ -48,6 +48,8 @@ COORDINATES = {  # coordinates of results; swept parameters stand in :data:`cont
     "e_over_a": Variable(SCALAR, "1", "e/a", "end distance over a", "roller end to free end over Hertz half-width"),
     "length_over_a": Variable(SCALAR, "1", "L/a", "length over a", "of the roller"),
     "crown": Variable(SCALAR, "1", "", "crown", "amplitude of the logarithmic profile over a**2 / R"),
+    "tilt_ratio": Variable(SCALAR, "1", "", "drop of an end by the tilt", "over a**2 / R"),
+    "poisson": Variable(SCALAR, "1", r"\nu", "Poisson's ratio", "of the body"),
     "friction": Variable(SCALAR, "1", "f", "coefficient of friction"),
     "gamma": Variable(SCALAR, "1", r"\gamma", "length over radius", "of the body over that of the roller"),
     "profile": Variable(SCALAR, "", "", "roller profile"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache, cached_property
 from importlib.resources import files
 from pathlib import Path
@@ -19,12 +20,13 @@ from contactstudy.checks import FloatArray, IntArray
 from contactstudy.errors import InvalidInputError
 
 # Dimensionless groups, in the order of the coordinates of the interpolation
-GROUPS = ("length_over_a", "e_over_a", "crown")
+GROUPS = ("length_over_a", "e_over_a", "crown", "tilt_ratio", "poisson")
 # Interpolated quantities
 QUANTITIES = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio", "end_load_ratio")
 # Quantities whose logarithm is interpolated: their errors are relative
 LOGARITHMIC = ("peak_pressure_ratio", "peak_von_mises_ratio", "approach_ratio")
-NEIGHBOURS = 6  # Nearest points whose residuals give the local error
+NEIGHBOURS = 6  # Nearest points of which one belongs to a branch that reaches so far
+RESIDUALS = 12  # Nearest points whose residuals give the local error
 LOAD_STEP = 0.05  # Change of the half-width, over it, for the slope of the approach
 RISE = 2 * np.log((1 + LOAD_STEP) / (1 - LOAD_STEP))  # Change of the load's logarithm over two steps
 
@@ -33,12 +35,13 @@ def atlas(
     length_over_a: npt.ArrayLike | xr.DataArray,
     e_over_a: npt.ArrayLike | xr.DataArray,
     crown: npt.ArrayLike | xr.DataArray,
+    tilt_ratio: npt.ArrayLike | xr.DataArray = 0.0,
+    poisson: npt.ArrayLike | xr.DataArray = 0.3,
 ) -> xr.Dataset:
     """Interpolate the contact of a rigid roller with a logarithmic profile between free ends.
 
     The scales are those of the Hertz line contact: half-width ``a = 2 p0 R / E*``, pressure p0, and the load
-    ``P = pi E* a**2 L / (4 R)``. Poisson's ratio is 0.3, the friction 0, the tilt 0, and the approach refers to the
-    depth of the body's length.
+    ``P = pi E* a**2 L / (4 R)``. The friction is 0, and approach and tilt refer to the depth of the body's length.
 
     Parameters
     ----------
@@ -48,15 +51,19 @@ def atlas(
         Distance of the roller's ends from the free ends over the half-width, ``e / a``.
     crown : float or array
         Amplitude A of `profiles.Lundberg`, ``A R / a**2``. A crown for the pressure pd has ``(pd / p0)**2 / 4``.
+    tilt_ratio : float or array
+        Drop of one end by the roller's rotation theta, ``theta L R / (2 a**2)``.
+    poisson : float or array
+        Poisson's ratio of the body.
 
     Returns
     -------
     Dataset
         `peak_pressure_ratio` and `peak_von_mises_ratio` over p0, `approach_ratio` over ``a**2 / R``,
-        `stiffness_ratio` dP/d(approach) over ``E* L``, and `end_load_ratio`, the load on the last half-width over the
-        mean load per half-width; each with its error ``<name>_error``, of solver and interpolation, which covers 94
-        to 99 % of 1000 other points. DataArrays are broadcast; other arrays of one dimension have the dimension
-        `point`.
+        `stiffness_ratio` dP/d(approach) over ``E* L`` at a constant rotation, and `end_load_ratio`, the load on the
+        last half-width of the end that is pressed deeper over the mean load per half-width; each with its error
+        ``<name>_error``, of solver and interpolation, which covers 95 to 97 % of 256 other points. DataArrays are
+        broadcast; other arrays of one dimension have the dimension `point`.
 
     Raises
     ------
@@ -74,7 +81,7 @@ def atlas(
     (('point',), True)
     """
     table = atlas_table()
-    given = {"length_over_a": length_over_a, "e_over_a": e_over_a, "crown": crown}
+    given = dict(zip(GROUPS, (length_over_a, e_over_a, crown, tilt_ratio, poisson), strict=True))
     groups = xr.broadcast(*(_checked(name, value, table.ranges[name]) for name, value in given.items()))
     points = np.stack([group.values.ravel() for group in groups], axis=1)
     shape, dims = groups[0].shape, groups[0].dims
@@ -107,10 +114,10 @@ class Branch(NamedTuple):
     tree: cKDTree
     members: npt.NDArray[np.bool_]
 
-    def values(self, coordinates: FloatArray, scales: FloatArray) -> FloatArray:
-        """Values at coordinates (point, group); minus infinity away from the members."""
+    def values(self, coordinates: FloatArray, scaled: FloatArray) -> FloatArray:
+        """Values at coordinates (point, group), also scaled; minus infinity away from the members."""
         _, nearest = self.tree.query(coordinates, NEIGHBOURS)
-        values = self.interpolation(scales * coordinates)
+        values = self.interpolation(scaled)
         return np.where(self.members[nearest].any(axis=1), values, -np.inf)
 
 
@@ -119,6 +126,7 @@ class AtlasTable:
     """Solved points and their interpolation; residuals: differences from the interpolation between the other points."""
 
     dataset: xr.Dataset  # (point): groups; quantities with scales, solver_error, coverage_factor; residuals; *_at_end
+    _interpolators: dict[str, list[Branch]] = field(default_factory=dict)
 
     @cached_property
     def ranges(self) -> dict[str, tuple[float, float]]:
@@ -148,45 +156,41 @@ class AtlasTable:
         at_end = self.dataset[f"{name}_at_end"].values.astype(bool)
         return [at_end, ~at_end]
 
-    def interpolators(self, name: str, without: int | None = None) -> list[Branch]:
-        """Interpolation of each branch, through all points or all but one."""
-        samples, numbers = self.samples(name), np.arange(len(self.points))
-        selections = [branch & (numbers != without) for branch in self.branches(name)]
-        # Points from which on the polynomial beside the radial functions is quadratic
-        return [
-            Branch(
-                RBFInterpolator(
-                    self.dataset[name].attrs["scales"] * self.points[selected],
-                    samples[selected],
-                    kernel="cubic",
-                    degree=2 if selected.sum() >= 20 else 1,
-                ),
-                cKDTree(self.points[numbers != without]),
-                selected[numbers != without],
-            )
-            for selected in selections
-        ]
+    def interpolators(self, name: str) -> list[Branch]:
+        """Interpolation of each branch of a quantity."""
+        if name not in self._interpolators:
+            tree, samples = cKDTree(self.points), self.samples(name)
+            self._interpolators[name] = [
+                Branch(
+                    RBFInterpolator(
+                        self.scaled(name, self.points[members]), samples[members], kernel="cubic", degree=2
+                    ),
+                    tree,
+                    members,
+                )
+                for members in self.branches(name)
+            ]
+        return self._interpolators[name]
 
-    @cached_property
-    def _interpolators(self) -> dict[str, list[Branch]]:
-        return {name: self.interpolators(name) for name in QUANTITIES}
+    def scaled(self, name: str, coordinates: FloatArray) -> FloatArray:
+        """Coordinates (point, group) whose distances measure the variation of a quantity."""
+        return np.asarray(self.dataset[name].attrs["scales"] * coordinates)
 
-    def interpolate(
-        self, name: str, coordinates: FloatArray, branches: list[Branch] | None = None
-    ) -> tuple[FloatArray, IntArray]:
+    def interpolate(self, name: str, coordinates: FloatArray) -> tuple[FloatArray, IntArray]:
         """Interpolated values at coordinates (point, group), and the branch of each."""
-        scales = np.asarray(self.dataset[name].attrs["scales"])
-        values = np.stack([each.values(coordinates, scales) for each in branches or self._interpolators[name]])
+        scaled = self.scaled(name, coordinates)
+        values = np.stack([branch.values(coordinates, scaled) for branch in self.interpolators(name)])
         return values.max(axis=0), values.argmax(axis=0)
 
-    def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray) -> FloatArray:
-        """Mean residual of the nearest points of the same branch."""
+    def local_residual(self, name: str, coordinates: FloatArray, branch: IntArray, first: int = 0) -> FloatArray:
+        """Mean residual of the nearest points of the same branch, from the `first` nearest on."""
         residuals, local = np.abs(self.dataset[f"{name}_residual"].values), np.zeros(len(coordinates))
+        points, scaled = self.scaled(name, self.points), self.scaled(name, coordinates)
         for number, members in enumerate(self.branches(name)):
             selected = branch == number
             if selected.any():
-                _, nearest = cKDTree(self.points[members]).query(coordinates[selected], NEIGHBOURS)
-                local[selected] = residuals[members][nearest].mean(axis=1)
+                _, nearest = cKDTree(points[members]).query(scaled[selected], first + RESIDUALS)
+                local[selected] = residuals[members][nearest[:, first:]].mean(axis=1)
         return local
 
     def evaluate(self, points: FloatArray) -> dict[str, FloatArray]:
@@ -209,9 +213,11 @@ class AtlasTable:
 
     def _approach_slope(self, points: FloatArray) -> FloatArray:
         """Slope of the approach over the load, both logarithmic, at constant lengths in metres."""
-        # With the half-width s a the groups are L/(s a), e/(s a) and A R/(s a)**2; the load grows with s**2.
+        # With the half-width s a the groups are L/(s a), e/(s a), A R/(s a)**2, ...; the load grows with s**2.
         lower, higher = (
-            self.interpolate("approach_ratio", self.coordinates(points / np.array([step, step, step**2])))[0]
+            self.interpolate("approach_ratio", self.coordinates(points / np.array([step, step, step**2, step**2, 1])))[
+                0
+            ]
             for step in (1 - LOAD_STEP, 1 + LOAD_STEP)
         )
         return np.asarray(1 + (higher - lower) / RISE)
@@ -219,8 +225,15 @@ class AtlasTable:
 
 def _even(points: FloatArray) -> FloatArray:
     """Transform groups (point, group) so that the quantities vary evenly over them."""
-    length, distance, crown = points.T
-    return np.stack([np.log(length), np.sqrt(distance), np.log(crown)], axis=1)
+    length, distance, crown, tilt, poisson = points.T
+    return np.stack([np.log(length), np.sqrt(distance), np.log(crown), tilt, poisson], axis=1)
+
+
+def points_of(coordinates: FloatArray, ranges: Mapping[str, tuple[float, float]]) -> FloatArray:
+    """Return the groups of points with coordinates from 0 to 1: arrays (point, group)."""
+    low, high = _even(np.array([ranges[name] for name in GROUPS]).T)
+    length, distance, crown, tilt, poisson = (low + coordinates * (high - low)).T
+    return np.stack([np.exp(length), distance**2, np.exp(crown), tilt, poisson], axis=1)
 
 
 @cache

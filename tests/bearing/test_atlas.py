@@ -8,45 +8,53 @@ import xarray as xr
 
 import contactstudy as cs
 
-STEEL = cs.Material(210e9, 0.3)
 RADIUS, PRESSURE = 8e-3, 1.3e9
-HALF_WIDTH = 2 * PRESSURE * RADIUS / STEEL.plane_strain_modulus
-LENGTH, DISTANCE, CROWN = 45 * HALF_WIDTH, 0.8 * HALF_WIDTH, 0.2 * HALF_WIDTH**2 / RADIUS
+GROUPS = {"length_over_a": 45.0, "e_over_a": 0.8, "crown": 0.2}
+TILTED = GROUPS | {"tilt_ratio": 0.6, "poisson": 0.25}
 
 
-def solved(load_factor: float, **options: object) -> xr.Dataset:
+def scales(groups: dict[str, float]) -> tuple[cs.Material, float, float]:
+    """Material, half-width and length of the roller."""
+    material = cs.Material(210e9, groups.get("poisson", 0.3))
+    half_width = 2 * PRESSURE * RADIUS / material.plane_strain_modulus
+    return material, half_width, groups["length_over_a"] * half_width
+
+
+def solved(groups: dict[str, float], load_factor: float = 1.0, **options: object) -> xr.Dataset:
     """Roller at a multiple of the load of the Hertz pressure."""
+    material, a, length = scales(groups)
+    distance = groups["e_over_a"] * a
     case = cs.Case(
-        body=cs.FiniteLengthSpace(length=LENGTH + 2 * DISTANCE, material=STEEL),
-        roller=cs.Roller(radius=RADIUS, length=LENGTH, profile=cs.profiles.Lundberg(CROWN)),
-        end_distance=DISTANCE,
+        body=cs.FiniteLengthSpace(length=length + 2 * distance, material=material),
+        roller=cs.Roller(radius=RADIUS, length=length, profile=cs.profiles.Lundberg(groups["crown"] * a**2 / RADIUS)),
+        end_distance=distance,
         max_pressure=PRESSURE * np.sqrt(load_factor),
+        tilt=2 * groups.get("tilt_ratio", 0.0) * a**2 / (length * RADIUS),
     )
     return cs.solve(case, **options)
 
 
-def roller() -> xr.Dataset:
-    return cs.atlas(LENGTH / HALF_WIDTH, DISTANCE / HALF_WIDTH, CROWN * RADIUS / HALF_WIDTH**2)
-
-
-def test_pressure_stress_and_approach_of_another_roller_lie_within_the_stated_errors() -> None:
-    contact, result = solved(1.0, x=[0.0], y=[0.0], z=[0.0]), roller()
-    mean = contact["normal_load"] * HALF_WIDTH / LENGTH
+@pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
+def test_pressure_stress_and_approach_of_another_roller_lie_within_the_stated_errors(groups) -> None:
+    contact, result = solved(groups, x=[0.0], y=[0.0], z=[0.0]), cs.atlas(**groups)
+    _, half_width, length = scales(groups)
+    mean = contact["normal_load"] * half_width / length
     expected = {
         "peak_pressure_ratio": contact["peak_pressure"] / PRESSURE,
         "peak_von_mises_ratio": contact["peak_von_mises"] / PRESSURE,
-        "approach_ratio": contact["approach"] * RADIUS / HALF_WIDTH**2,
-        "end_load_ratio": contact["end_load_first"] / mean,
+        "approach_ratio": contact["approach"] * RADIUS / half_width**2,
+        "end_load_ratio": contact["end_load_last"] / mean,
     }
     for name, value in expected.items():
         assert abs(float(result[name] - value)) <= float(result[f"{name}_error"]), name
 
 
-def test_stiffness_is_the_slope_of_solved_loads() -> None:
-    low, high = solved(0.95, stresses=False), solved(1.05, stresses=False)
+@pytest.mark.parametrize("groups", [GROUPS, TILTED], ids=["parallel", "tilted"])
+def test_stiffness_is_the_slope_of_solved_loads(groups) -> None:
+    low, high = solved(groups, 0.95, stresses=False), solved(groups, 1.05, stresses=False)
     slope = (high["normal_load"] - low["normal_load"]) / (high["approach"] - low["approach"])
-    result = roller()
-    error = float(result["stiffness_ratio"] - slope / (STEEL.plane_strain_modulus * LENGTH))
+    (material, _, length), result = scales(groups), cs.atlas(**groups)
+    error = float(result["stiffness_ratio"] - slope / (material.plane_strain_modulus * length))
     assert abs(error) <= float(result["stiffness_ratio_error"])
 
 
@@ -59,7 +67,8 @@ def test_arrays_are_broadcast() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "value"), [("length_over_a", 10.0), ("e_over_a", -0.1), ("crown", np.nan), ("crown", "high")]
+    ("name", "value"),
+    [("length_over_a", 10.0), ("e_over_a", -0.1), ("crown", np.nan), ("crown", "high"), ("tilt_ratio", -0.1)],
 )
 def test_values_outside_the_table_raise(name: str, value: object) -> None:
     groups = {"length_over_a": 100.0, "e_over_a": 1.0, "crown": 0.2} | {name: value}
