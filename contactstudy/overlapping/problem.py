@@ -110,10 +110,9 @@ class EndProblem:
 
     def smallest_scale(self, nearest: float) -> float:
         """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
-        # The field of a load near a corner depends on its steps there, at distant positions as well.
-        edges, load = self.column_edges, self.cells[self.cell_of_column]
-        steps = np.diff(load, axis=0).any(axis=1) if load.any() else np.ones(edges.size - 2, bool)
-        inner = edges[1:-1][steps]
+        # The field of a load near a corner depends on its steps there, at distant positions as well. Not only the edges
+        # with a step count: the field would not be additive.
+        inner = self.column_edges[1:-1]
         return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
 
     def from_end(self, x: FloatArray) -> FloatArray:

@@ -124,3 +124,19 @@ def test_points_out_of_reach_are_refused(short_body: FiniteLengthSpace, strip_pr
     points = {"x": [4.0], "y": [0.0], "z": [0.5]} | {axis: [far]}
     with pytest.raises(InvalidInputError, match=f"^{axis} = .* within 10000 times the size"):
         stress_field(short_body, strip_pressure(8.0, (16, 16)), **points)
+
+
+@pytest.mark.parametrize("inside", ["uniform", "pressure"])
+def test_loads_on_different_cells_are_additive_between_free_ends(inside: str) -> None:
+    """The positions on the faces follow from the grid, not from the loaded cells."""
+    body = FiniteLengthSpace(length=10.0, material=Material(1.0, 0.3))
+    grid = Grid(x_range=(0.0, 10.0), y_range=(-2.0, 2.0), cells_x=40, cells_y=16)
+    squared = 1 - ((grid.x[:, None] - 5) / 3) ** 2 - grid.y**2
+    pressure = xr.DataArray(np.sqrt(np.maximum(squared, 0.0)), {"x": grid.x, "y": grid.y}, ("x", "y"))
+    noise = pressure.copy(data=np.random.default_rng(0).random(grid.shape))
+    cells = {"inside_cells": pressure if inside == "pressure" else inside}
+    first, second, both = (
+        stress_field(body, load, friction=0.2, x=[9.0, 2.5], y=[0.5], z=[0.0, 0.9], **cells)[list(STRESSES)].to_array()
+        for load in (pressure, noise, pressure + noise)
+    )
+    np.testing.assert_allclose(first + second, both, rtol=0, atol=1e-10)
