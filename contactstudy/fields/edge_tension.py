@@ -97,18 +97,32 @@ def edge_tension(result: xr.Dataset, x: Positions | None = None) -> xr.Dataset:
     relative = 0.0
     if "peak_pressure_error" in case and np.isfinite(float(case["peak_pressure"])):
         relative = float(case["peak_pressure_error"] / case["peak_pressure"])
-    rows = []
-    for column in columns:
+    sections: dict[int, _Section] = {}
+    for column in columns.tolist():
         limits = float(edges["y_left"][column]), float(edges["y_right"][column])
-        if np.count_nonzero(traction[column]) < FEWEST_CELLS or not np.isfinite(limits).all():
+        if np.count_nonzero(traction[column]) >= FEWEST_CELLS and np.isfinite(limits).all():
+            sections[column] = _section(
+                sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits))
+            )
+    y = {column: sign * (section.edge - section.half_width * DISTANCES) for column, section in sections.items()}
+    if sections:
+        # One field for all sections: the end correction takes most of the time.
+        stresses = stress_field(
+            body,
+            case["pressure"],
+            x=centres[list(sections)],
+            y=np.unique(np.concatenate(list(y.values()))),
+            z=[0.0],
+            traction_y=case["traction_y"],
+        )
+        tension_field = stresses["sigma_yy"].squeeze("z")
+    rows = []
+    for column in columns.tolist():
+        if column not in sections:
             rows.append((np.nan, np.nan, np.nan))
             continue
-        section = _section(sign * case["y"].values, sign * traction[column], sorted(sign * np.array(limits)))
-        y = sign * (section.edge - section.half_width * DISTANCES)
-        field = stress_field(
-            body, case["pressure"], x=[float(centres[column])], y=y, z=[0.0], traction_y=case["traction_y"]
-        )
-        stress = field["sigma_yy"].sel(y=y).values.ravel()
+        section = sections[column]
+        stress = tension_field.sel(x=centres[column], y=y[column]).values
         smooth = stress - section.plane_tension(DISTANCES)
         intercept = float(np.polyfit(DISTANCES, smooth, 1)[1])
         tension = float(section.plane_tension(0.0)) + intercept
