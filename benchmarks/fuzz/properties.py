@@ -199,7 +199,7 @@ def superposition(solved: Solved) -> bool:
 
 
 QUADRATURE = 2e-5
-"""The positions on the ends depend on the loaded cells."""
+"""The positions on the faces depend on the nearest position of the stresses."""
 
 
 def reciprocity(solved: Solved) -> bool:
@@ -381,7 +381,7 @@ def stated_errors(solved: Solved) -> bool:
 
 
 def largest_stress(solved: Solved) -> bool:
-    """The stated largest stress and its error bound the stresses on the top off the rim and below, and occur in it."""
+    """The stated largest stress and its error bound the stresses on the top off the rim and below; the body has it."""
     case, grid, chance = solved.drawn.case, solved.grid, solved.chance
     if solved.drawn.grid is not None:
         return False

@@ -110,8 +110,8 @@ class EndProblem:
 
     def smallest_scale(self, nearest: float) -> float:
         """Smallest distance from a corner that matters, for positions no nearer to it than `nearest`, metres."""
-        # The field of a load near a corner depends on its steps there, at distant positions as well. Not only the edges
-        # with a step count: the field would not be additive.
+        # The field of a load near a corner depends on its steps there, at distant positions as well; every edge counts,
+        # so that the field is additive.
         inner = self.column_edges[1:-1]
         return max(min(nearest, float(self.from_end(inner).min(initial=nearest))), self.corner_offset)
 

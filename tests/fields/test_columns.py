@@ -27,10 +27,10 @@ from contactstudy.fields.stress import end_traction_residual
 STEEL = Material(210e9, 0.3)
 LENGTH, FRICTION = 1e-3, 0.3
 Y_RANGE = (-1.6e-4, 1.6e-4)
-KEPT = [0, 1, 2, 3, 5, 7, 10, 13, 15, 17, 18, 19, 20]
-"""Edges that are kept of twenty uniform cells."""
-UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=20, cells_y=16)
-GRADED = Grid.from_edges(UNIFORM.x_edges[KEPT], Y_RANGE, 16)
+KEPT = [0, 1, 2, 3, 5, 7, 10, 14, 18, 22, 26, 29, 31, 33, 35, 36, 37, 38, 39, 40]
+"""Edges that are kept of forty uniform cells."""
+UNIFORM = Grid(x_range=(0.0, LENGTH), y_range=Y_RANGE, cells_x=40, cells_y=32)
+GRADED = Grid.from_edges(UNIFORM.x_edges[KEPT], Y_RANGE, 32)
 X, Y, Z = [0.0, 1e-5, 3.3e-4, LENGTH], [0.0, 5e-5], [2e-5, 1e-4]
 
 BODIES: dict[str, Body] = {
@@ -51,7 +51,7 @@ def labelled(values: FloatArray, grid: Grid) -> xr.DataArray:
 def loads() -> tuple[xr.DataArray, xr.DataArray]:
     """The same pressure on graded and on uniform cells."""
     values = 1e9 * np.random.default_rng(0).random(GRADED.shape)
-    values[:, :4] = 0
+    values[:, :8] = 0
     return labelled(values, GRADED), labelled(np.repeat(values, np.diff(KEPT), axis=0), UNIFORM)
 
 
@@ -77,27 +77,28 @@ def test_stresses_are_those_of_the_same_load_on_uniform_cells(body: str, loads) 
     assert largest(graded - uniform) < 1e-7 * 1e9
 
 
-def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(smooth_loads) -> None:
-    """The smooth load has two representations that meet at some depths, and differ by up to 4e-3 of the peak there."""
+@pytest.mark.parametrize("body", ["half", "finite"])
+def test_a_rounding_beside_the_edge_of_a_column_stresses_are_those_on_it(body: str, smooth_loads) -> None:
+    """The smooth load has two representations that meet at some depths, and differ by up to 1e-3 of the peak there."""
     edges = GRADED.x_edges[1:-1]
     load, at = smooth_loads[0], {"y": [0.0], "z": [1e-7, 1e-6, 1e-5, 1e-4]}
     places = [np.nextafter(edges, -1.0), edges, np.nextafter(edges, 1.0), edges * (1 - 1e-12)]
     before, on, beyond, near = (
-        stress_field(BODIES["finite"], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in places
+        stress_field(BODIES[body], load, friction=FRICTION, x=x, **at, inside_cells=load) for x in places
     )
     for other in (before, beyond, near):
         for name in on.data_vars:
-            assert np.abs(other[name].values - on[name].values).max() < 4e-3 * 1e9
+            assert np.abs(other[name].values - on[name].values).max() < 1e-3 * 1e9
 
 
-@pytest.mark.parametrize("body", ["quarter", "finite", "mirror-factor"])
+@pytest.mark.parametrize("body", BODIES)
 def test_displacements_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (displacement_field(BODIES[body], load, friction=FRICTION, **points) for load in loads)
     assert largest(graded - uniform) < 1e-6 * largest(uniform)
 
 
-@pytest.mark.parametrize("body", ["half", "finite", "single-mirror"])
+@pytest.mark.parametrize("body", BODIES)
 def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, smooth_loads) -> None:
     points = {"x": X, "y": Y, "z": Z}
     graded, uniform = (
@@ -110,7 +111,7 @@ def test_smooth_loads_make_nearly_the_same_fields_on_uniform_cells(body: str, sm
     assert largest(graded - uniform) < 5e-4 * largest(uniform)
 
 
-@pytest.mark.parametrize("body", ["quarter", "finite", "single-mirror"])
+@pytest.mark.parametrize("body", BODIES)
 def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
     graded, uniform = (surface_displacement(BODIES[body], load, FRICTION) for load in loads)
     owner = np.repeat(np.arange(GRADED.cells_x), np.diff(KEPT))
@@ -119,14 +120,14 @@ def test_top_sinks_on_average_as_on_uniform_cells(body: str, loads) -> None:
     assert np.abs(graded.values - means).max() < 0.02 * np.ptp(means)
 
 
-@pytest.mark.parametrize("body", ["finite", "single-mirror"])
+@pytest.mark.parametrize("body", ["quarter", "finite", "single-mirror"])
 def test_equivalent_loads_are_those_of_the_same_load_on_uniform_cells(body: str, loads) -> None:
     ended = BODIES[body]
     assert isinstance(ended, EndedBody)
     graded, uniform = (equivalent_loads(ended, load, FRICTION, z=[5e-5, 1e-4]) for load in loads)
     assert set(graded.data_vars) == set(uniform.data_vars)
     names = [name for name in uniform.data_vars if name.startswith("P_v")]
-    assert len(names) == 2
+    assert len(names) == 1 + (body != "quarter")
     for name in names:
         assert float(np.abs(graded[name] - uniform[name]).max()) < 1e-9 * float(np.abs(uniform[name]).max())
 
@@ -137,7 +138,7 @@ def test_ends_are_free_of_traction_on_graded_cells(body: str, smooth_loads) -> N
         residual = end_traction_residual(
             BODIES[body], sliding(load.values, FRICTION), grid, np.array([0.0, 5e-5]), np.array([2e-5, 1e-4])
         )
-        assert residual < 2e-5
+        assert residual < 1e-5
 
 
 @st.composite

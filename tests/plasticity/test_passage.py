@@ -75,7 +75,7 @@ def integrated(
 
 @pytest.mark.parametrize(
     ("friction", "part", "hardening"),
-    [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.9, (30.0, 10.0))],
+    [(0.0, 0.95, (0.0, 20.0)), (0.2, 0.97, (0.0, 10.0)), (0.2, 0.9, (30.0, 0.0))],
 )
 def test_one_layer_against_rate_equations(
     passing, friction: float, part: float, hardening: tuple[float, float]
@@ -89,6 +89,6 @@ def test_one_layer_against_rate_equations(
     fine = np.stack([np.interp(at, np.arange(len(coarse)), one) for one in coarse.T], axis=1)
     state = passes_of(fine, least, hardening, 3)
     assert state.converged
-    expected = integrated(coarse, np.sqrt(2) * least, hardening, 3, 20)
+    expected = integrated(coarse, np.sqrt(2) * least, hardening, 3, 40)
     assert np.abs(expected).max() > 0.01
-    assert LAYERS.stresses(state.strain)[:2, 0] == pytest.approx(expected, abs=0.02 * np.abs(expected).max())
+    assert LAYERS.stresses(state.strain)[:2, 0] == pytest.approx(expected, abs=0.01 * np.abs(expected).max())

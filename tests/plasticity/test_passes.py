@@ -63,7 +63,7 @@ def test_flow_bounded_by_the_elastic_body(passing, steel_half_space) -> None:
 def test_between_free_ends(passing, steel_between_ends) -> None:
     """Shear decides as in a half-space; below the limit residual stress along x has built up between the ends."""
     contact = passing(0.0, length=8.0)
-    least = float(fatigue.shakedown(contact.isel(x=[2]), axial=True)["shakedown_stress"].max())
+    least = float(fatigue.shakedown(contact.isel(x=[4]), axial=True)["shakedown_stress"].max())
     alone = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     assert least < 0.9 * alone
     below = residual_stress(contact, steel_between_ends, perfectly_plastic(1.03 * least), passes=8, substeps=1)
@@ -74,18 +74,18 @@ def test_between_free_ends(passing, steel_between_ends) -> None:
     assert float(flow[4]) == pytest.approx(float(flow[3]), rel=3e-2)
     assert float(flow[4]) > 0.1 * float(flow[0])
     last = below.isel(pass_number=-1)
-    assert float(last["sigma_xx"].isel(x=2).min()) < -0.1
+    assert float(last["sigma_xx"].isel(x=4).min()) < -0.1
     # It has no resultant on a plane, whatever the half-space would say.
     heights = np.gradient(last["z"].values)
-    carried = np.abs(last["sigma_xx"].isel(x=2).values) @ heights
-    assert abs(last["sigma_xx"].isel(x=2).values @ heights) < 0.5 * carried
+    carried = np.abs(last["sigma_xx"].isel(x=4).values) @ heights
+    assert abs(last["sigma_xx"].isel(x=4).values @ heights) < 0.5 * carried
 
 
 def test_middle_of_a_long_contact(passing, steel_half_space) -> None:
     """Columns side by side and their difference to the body's answer come to what one column alone does."""
     line = passing(0.2).isel(z=slice(0, None, 2))
-    x = 8.0 * np.arange(-1, 2)
-    wide = xr.concat([line.isel(x=0)] * 3, xr.Variable("x", x)).assign_coords(x=x)
+    x = 6.0 * np.arange(-2, 3)
+    wide = xr.concat([line.isel(x=0)] * 5, xr.Variable("x", x)).assign_coords(x=x)
     least = float(fatigue.shakedown(line, axial=True)["shakedown_stress"].max())
     alone, middle = (
         residual_stress(contact, steel_half_space, perfectly_plastic(1.03 * least), passes=2).isel(pass_number=-1)
@@ -97,7 +97,7 @@ def test_middle_of_a_long_contact(passing, steel_half_space) -> None:
         assert np.abs(middle[name].sel(x=0) - alone[name].isel(x=0)).max() < 0.08 * size, name
 
 
-def test_residual_stress_prevents_yield_and_is_that_of_the_plastic_strain(passing, steel_between_ends) -> None:
+def test_residual_stress_prevents_yield(passing, steel_between_ends) -> None:
     contact = passing(0.1, length=8.0)
     least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.97 * least)
@@ -106,6 +106,12 @@ def test_residual_stress_prevents_yield_and_is_that_of_the_plastic_strain(passin
     again = fatigue.shakedown(total)
     assert float(again["first_yield_stress"].max()) < 0.97 * least * (1 + 1e-3)
     assert float(fatigue.shakedown(contact)["first_yield_stress"].max()) > 1.05 * 0.97 * least
+
+
+def test_residual_stress_of_the_plastic_strain(passing, steel_between_ends) -> None:
+    contact = passing(0.1, length=8.0)
+    least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
+    last = residual_stress(contact, steel_between_ends, perfectly_plastic(0.97 * least), passes=3).isel(pass_number=-1)
     direct = eigenstrain_stress(steel_between_ends, last[list(STRAINS)].drop_vars("pass_number"))
     for name in ("sigma_xx", "sigma_yy"):
         assert np.abs(last[name].values - direct[name].values).max() < 0.1 * np.abs(direct[name].values).max()
@@ -191,19 +197,19 @@ def test_bad_input(passing, steel_half_space, change, message) -> None:
 
 def test_positions_short_of_the_ends(passing, steel_between_ends) -> None:
     contact = passing(0.0, length=8.0)
-    for part in (contact.isel(x=slice(0, 3)), contact.isel(z=slice(4, None)), contact.isel(x=slice(2, None))):
+    for part in (contact.isel(x=slice(0, 6)), contact.isel(z=slice(4, None)), contact.isel(x=slice(3, None))):
         with pytest.raises(InvalidInputError, match="reach to"):
             residual_stress(part, steel_between_ends, perfectly_plastic(0.2))
 
 
 def test_bodies_without_a_second_end(passing, steel_between_ends) -> None:
     """Far from where the body ends the residual stress is nearly the same; a free end is free."""
-    contact = passing(0.0, length=8.0).isel(z=slice(0, None, 2))
+    contact = passing(0.0, length=8.0, positions=5)
     least = float(fatigue.shakedown(contact)["shakedown_stress"].max())
     plastic = perfectly_plastic(0.95 * least)
     endless = (kind(material=steel_between_ends.material) for kind in (HalfSpace, QuarterSpace))
     between, *others = (
-        residual_stress(contact, body, plastic, passes=1).isel(pass_number=-1)["sigma_yy"]
+        residual_stress(contact, body, plastic, passes=2).isel(pass_number=-1)["sigma_yy"]
         for body in (steel_between_ends, *endless)
     )
     middle = between.isel(x=2).values
@@ -220,7 +226,7 @@ def test_stresses_of_another_body(passing, steel_between_ends) -> None:
 
 
 def test_positions_within_rounding_of_the_end(passing, steel_between_ends) -> None:
-    contact = passing(0.0, length=8.0).isel(z=slice(0, None, 2))
+    contact = passing(0.0, length=8.0)
     metric = contact.assign_coords(x=(1e3 * contact["x"]).assign_attrs(units="mm"))
     moved = contact.assign_coords(x=contact["x"] * (1 + 1e-15))
     least = float(fatigue.shakedown(contact)["shakedown_stress"].max())

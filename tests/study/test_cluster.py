@@ -90,14 +90,16 @@ def test_no_worker_at_all(study, tmp_path):
 
 
 @pytest.mark.slow
-def test_a_worker_with_another_version(study, tmp_path):
+def test_a_worker_with_another_version(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=0.0))
     unfit = pytest.raises(StudyFileError, match=r"none of the 1 workers can be used: it has version 0.0.0")
     with cluster(tmp_path, workers=0, lame=1) as address, unfit:
-        run_study(study, tmp_path / "out", scheduler=address, wait=1.0, solver=solve_fake)
+        run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
 
 
 @pytest.mark.slow
-def test_a_fit_worker_beside_an_unfit_one(study, tmp_path):
+def test_a_fit_worker_beside_an_unfit_one(study, tmp_path, monkeypatch):
+    monkeypatch.setattr(engine, "RUN", RunSettings(announce_seconds=100.0))  # workers start slowly on a busy machine
     with cluster(tmp_path, workers=1, lame=1) as address:
         report = run_study(study, tmp_path / "out", scheduler=address, solver=solve_fake)
     assert report.counts == {"ok": 4}

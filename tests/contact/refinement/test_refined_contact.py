@@ -62,7 +62,7 @@ def test_stated_peak_of_a_fillet_is_within_its_error_of_finer_cells() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("fillet", [0.5e-3, 0.05e-3])
+@pytest.mark.parametrize("fillet", KNOWN_FILLETS)
 def test_stated_peak_of_a_fillet_is_within_its_error_of_four_times_finer_cells(fillet: float) -> None:
     case = Case(body=HALF, roller=filleted(fillet), max_pressure=PRESSURE)
     found = settled(case)
@@ -86,12 +86,12 @@ def test_stated_peak_between_free_ends_is_within_its_error_of_finer_cells(
 def test_contact_is_that_on_uniform_cells(name: str) -> None:
     case = CASES[name]
     found = solve(case, stresses=False)
-    uniform = solve(case, choose_grid(case, cells_x=16, cells_y=16, window=3.0), stresses=False)
+    uniform = solve(case, choose_grid(case, cells_x=24, cells_y=16, window=3.0), stresses=False)
     peak, error = float(found.peak_pressure), float(found.peak_pressure_error)
     assert bool(found.converged)
     assert error <= 0.01 * peak
-    # A fillet of 3 a is within one percent on these uniform cells, an edge of the body within three.
-    allowed = 0.03 if case.roller.material is not None else 0.01
+    # A fillet of 3 a is within half a percent on these uniform cells, an edge of the body within three.
+    allowed = 0.03 if case.roller.material is not None else 0.006
     assert peak == pytest.approx(top_of(uniform.pressure.values), rel=allowed)
     assert float(found.approach) == pytest.approx(float(uniform.approach), rel=1e-3)
     assert float(found.tilt) == pytest.approx(float(uniform.tilt), rel=5e-3, abs=1e-9)
