@@ -8,7 +8,7 @@ not depend on the load, and the field is linear in it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -26,7 +26,7 @@ PARTS_Y = 5  # fine cells per cell along y. Accuracy: 3 leave 6e-4 of the pressu
 NEIGHBOURS = 3  # whole cells on either side that carry the moments of a fine cell, up to the order 6. Accuracy.
 WIDE = 0.3  # least width of a resolved column, over its distance. Accuracy.
 FLAT = 3e-3  # neglected deviation of a shape from its mean in the cell, over the largest value. Accuracy.
-SPARE = 1  # cells beyond the grid along y: a shape may extend into the first of them. Accuracy.
+SPARE = 1  # cells beyond the loaded cells along y: a shape may extend into the first of them. Accuracy.
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,42 +38,45 @@ class FineCells:
     grid: Grid
     extent: tuple[float, float] = (-np.inf, np.inf)  # positions of the mirrors; infinite for none
     image: int = 1  # sign of the load's mirror image
+    first: int = field(init=False)
+    """First cell along y in the grid, and number of cells: the cells of load and shape, and `SPARE` beyond."""
+    count: int = field(init=False)
 
-    @property
-    def first(self) -> int:
-        """First cell along y in the grid: `SPARE` beyond the grid's."""
-        return -SPARE
-
-    @property
-    def count(self) -> int:
-        """Number of cells along y; it depends on the grid alone, so that fields are additive."""
-        return self.grid.cells_y + 2 * SPARE
+    def __post_init__(self) -> None:
+        loaded = np.flatnonzero((self.load != 0).any(axis=0) | (self.shape != 0).any(axis=0))
+        object.__setattr__(self, "first", int(loaded[0]) - SPARE)
+        object.__setattr__(self, "count", int(loaded[-1]) + 1 + SPARE - self.first)
 
     @cached_property
     def y_edges(self) -> FloatArray:
         """Edges of the cells along y, metres."""
         return np.asarray(self.grid.y_range[0] + self.grid.dy * np.arange(self.first, self.first + self.count + 1.0))
 
-    def _padded(self, cells: FloatArray) -> FloatArray:
+    def _cropped(self, cells: FloatArray) -> FloatArray:
         """Cells between `y_edges`: array (cell_x, y)."""
-        return np.pad(cells, ((0, 0), (SPARE, SPARE)))
+        stop = self.first + self.count
+        inside = cells[:, max(self.first, 0) : stop]
+        return np.pad(inside, ((0, 0), (max(-self.first, 0), max(stop - self.grid.cells_y, 0))))
 
     @cached_property
     def cells(self) -> FloatArray:
         """Load on the cells between `y_edges`: array (cell_x, y)."""
-        return self._padded(self.load)
+        return self._cropped(self.load)
 
     @cached_property
     def shape_cells(self) -> FineCells:
         """The shape as a load."""
         if np.array_equal(self.load, self.shape):
             return self
-        return FineCells(load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image=self.image)
+        cells = FineCells(load=self.shape, shape=self.shape, grid=self.grid, extent=self.extent, image=self.image)
+        for name in ("first", "count"):
+            object.__setattr__(cells, name, getattr(self, name))
+        return cells
 
     @cached_property
     def _smooth(self) -> SmoothLoad:
         """Smooth shape along x: rows along y."""
-        return SmoothLoad.of(self._padded(self.shape).T, self.grid.x_edges)
+        return SmoothLoad.of(self._cropped(self.shape).T, self.grid.x_edges)
 
     @cached_property
     def _along_x(self) -> ShapedLoad:
@@ -181,7 +184,7 @@ class FineCells:
         return loads, Grid.between(x_edges, grid.y_range, loads.shape[1])
 
     def end_load(self) -> tuple[FloatArray, Grid]:
-        """Load on cells that are split along y, and along x near the ends."""
+        """Load on cells that are split along y, and along x near the ends, over the whole grid."""
         split = np.zeros(self.split.size, bool)
         for end in self.extent:
             if np.isfinite(end):
@@ -197,7 +200,13 @@ class FineCells:
                 self._without_images(moments), np.where(split, PARTS_X, 1), axis=0
             )
 
-        return self._refined(edges, columns(self), columns(self.shape_cells), 0.0)
+        loaded, _ = self._refined(edges, columns(self), columns(self.shape_cells), 0.0)
+        # The positions on the faces follow from the grid, not from the loaded cells: the field is additive.
+        beyond = self.grid.cells_y + SPARE - (self.first + self.count)
+        cells = np.pad(loaded, ((0, 0), (PARTS_Y * (self.first + SPARE), PARTS_Y * beyond)))
+        low, high = self.grid.y_range
+        margin = SPARE * self.grid.dy
+        return cells, Grid.between(edges, (low - margin, high + margin), cells.shape[1])
 
     def fine_load(self, offset: float) -> tuple[FloatArray, Grid]:
         """Load on uniform cells split along y, and along x where the shape is not flat, and the grid."""
