@@ -248,7 +248,7 @@ class FilmOnCells(NamedTuple):
 
 
 def cells_of(
-    film: FilmCase, level: Level, closures: tuple[float, float]
+    film: FilmCase, level: Level, closures: tuple[float, ...]
 ) -> tuple[FilmCells, JoinedCells, tuple[float, float]]:
     """Return the cells of a level, with narrow columns at the `closures` along x, and their window along y."""
     resolution = film.resolution
@@ -286,7 +286,7 @@ def cells_of(
 def film_on_level(
     film: FilmCase,
     level: Level,
-    closures: tuple[float, float],
+    closures: tuple[float, ...],
     settings: FilmSettings,
     start: FilmOnCells | xr.Dataset | None = None,
 ) -> FilmOnCells:

@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from contactstudy import checks
 from contactstudy.analysis.provenance import with_provenance
 from contactstudy.arrays.cells import cell_coordinates
+from contactstudy.arrays.peaks import lagrange
 from contactstudy.arrays.variables import describe, require, without_error
 from contactstudy.case.case import Case
 from contactstudy.checks import BoolArray, FloatArray
@@ -216,7 +217,8 @@ class _Refined(NamedTuple):
 def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.Dataset | None = None) -> _Refined:
     """Film on cells that are refined, in the direction of the larger error, until the errors are below the accuracy."""
     coarse = replace(settings, tolerance=max(settings.tolerance, settings.level_tolerance))
-    level, closures = Level(), film.contact_ends
+    level = Level()
+    closures: tuple[float, ...] = film.contact_ends
     try:
         solutions = [film_on_level(film, level, closures, coarse, start)]
     except StepFailedError as failure:
@@ -234,7 +236,7 @@ def _refined(film: FilmCase, accuracy: float, settings: FilmSettings, start: xr.
         direction = max(refinable, key=lambda name: float(parts[name].max()))
         level = level._replace(**{direction: getattr(level, direction) + 1})
         if direction == "columns":
-            closures = _closures(films[-1], solutions[-1], closures)
+            closures = (*film.contact_ends, *_least_columns(films[-1], solutions[-1]))
         try:
             solutions.append(film_on_level(film, level, closures, coarse, solutions[-1]))
         except StepFailedError as failure:
@@ -263,16 +265,14 @@ def _error(direction: str, changes: list[FloatArray]) -> FloatArray:
     return np.asarray(SAFETY[direction] * np.maximum(changes[-1], DECREASE[direction] * changes[-2]))
 
 
-def _closures(films: Films, solved: FilmOnCells, closures: tuple[float, float]) -> tuple[float, float]:
-    """Columns of the least films at both ends, over the half-width: equal for films of near speeds."""
-    if not films.first_x < films.last_x:
-        return closures
+def _least_columns(films: Films, solved: FilmOnCells) -> tuple[float, float]:
+    """Columns of the least films of both sides, over the half-width: equal for films of near speeds."""
     x = solved.problem.cells.x
     first, last = (float(x[np.abs(x - least).argmin()]) for least in (films.first_x, films.last_x))
     return first, last
 
 
-def _film_error(film: FilmCase, failure: StepFailedError, level: Level, closures: tuple[float, float]) -> FilmError:
+def _film_error(film: FilmCase, failure: StepFailedError, level: Level, closures: tuple[float, ...]) -> FilmError:
     """Return the error of a film that has not been found, with the place where it closes."""
     if failure.closed is None:
         return FilmError(f"the film's iteration does not converge: {failure}; another speed or load may help")
@@ -298,8 +298,8 @@ def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
     sides = [_least(cells.x, cells.x_edges, least, side) for side in (first, ~first)]
     lowest = min(sides)
     return Films(
-        central=float(np.interp(middle, cells.x, centre)),
-        middle=float(np.interp(middle, cells.x, least)),
+        central=_interpolated(cells.x, centre, middle),
+        middle=_interpolated(cells.x, least, middle),
         first=sides[0].value,
         last=sides[1].value,
         least=lowest.value,
@@ -310,6 +310,13 @@ def films_of(film: FilmCase, solved: FilmOnCells) -> Films:
     )
 
 
+def _interpolated(x: FloatArray, values: FloatArray, position: float) -> float:
+    """Value at a position by the parabola through the three nearest columns."""
+    first = min(max(int(np.abs(x - position).argmin()) - 1, 0), x.size - 3)
+    near = slice(first, first + 3)
+    return float(lagrange(x[near], np.array([position]))[0] @ values[near])
+
+
 class _Least(NamedTuple):
     """Least value and its position."""
 
@@ -318,17 +325,15 @@ class _Least(NamedTuple):
 
 
 def _least(centres: FloatArray, edges: FloatArray, values: FloatArray, among: BoolArray) -> _Least:
-    """Least of positive values in the least of some cells, by the parabola of the logarithms through three cells."""
+    """Least of positive values in the least of some cells, by the cubic spline of the logarithms of cells near it."""
     cell = int(np.where(among, values, np.inf).argmin())
-    first = min(max(cell - 1, 0), values.size - 3)
-    near = slice(first, first + 3)
-    scale = centres[first + 2] - centres[first]
-    parabola = np.polyfit((centres[near] - centres[cell]) / scale, np.log(values[near]), 2)
-    low, high = (edges[[cell, cell + 1]] - centres[cell]) / scale
-    offsets = np.array([low, high, *np.clip(np.roots(np.polyder(parabola)), low, high)])
-    logarithms = np.polyval(parabola, offsets)
+    near = slice(max(cell - 3, 0), cell + 4)
+    spline = CubicSpline(centres[near], np.log(values[near]))
+    turns = spline.derivative().roots(extrapolate=True)
+    positions = np.clip(np.append(turns[np.isfinite(turns)], edges[[cell, cell + 1]]), edges[cell], edges[cell + 1])
+    logarithms = spline(positions)
     lowest = int(logarithms.argmin())
-    return _Least(float(np.exp(logarithms[lowest])), float(centres[cell] + scale * offsets[lowest]))
+    return _Least(float(np.exp(logarithms[lowest])), float(positions[lowest]))
 
 
 def _labelled(film: FilmCase, refined: _Refined) -> xr.Dataset:

@@ -102,6 +102,27 @@ def test_the_film_on_the_face_of_a_straight_flush_roller_does_not_follow_the_col
     assert difference < float(film.least_film_first_error) < 0.04 * float(film.central_film)
 
 
+@pytest.mark.slow
+def test_the_least_film_of_a_tilted_roller_is_at_its_end_and_not_in_another_minimum():
+    """On the first columns the film seven half-widths from the end is thinner than at the end."""
+    crown = cs.profiles.PartialCrown(straight_length=2.315e-3, crown_radius=97.95e-3)
+    case = cs.Case(
+        body=cs.FiniteLengthSpace(length=3.623e-3, material=STEEL),
+        roller=cs.Roller(radius=RADIUS, length=3.541e-3, profile=crown, material=STEEL),
+        end_distance=40.966e-6,
+        tilt=-0.1101e-3,
+        max_pressure=1.0003e9,
+        lubricant=cs.Lubricant(
+            viscosity=0.05, pressure_viscosity=19.2e-9, viscosity_law="barus", density_law="constant"
+        ),
+        motion=cs.Sliding(body_speed=0.30132, roller_speed=0.30132),
+    )
+    film = solve_film(case, accuracy=0.02)
+    assert float(film.least_film_x) < 1.2 * float(film.hertz_half_width)
+    # Cells a quarter as wide along y and half as wide in columns compute 93.97 nm.
+    assert float(film.least_film) == pytest.approx(93.97e-9, abs=float(film.least_film_error))
+
+
 def test_slices_of_the_dry_contact_miss_the_closure_at_the_ends(crowned):
     case = replace(film_case(LENGTH, 10.0, 5.0, profile=CROWN), lubricant=None, motion=cs.Sliding())
     dry = cs.solve(case, accuracy=0.05, stresses=False)

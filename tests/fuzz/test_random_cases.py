@@ -21,14 +21,14 @@ def look_at(chance: Random, *, refined: bool) -> None:
 
 
 @pytest.mark.fuzz
-@settings(max_examples=70, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=20, deadline=None, suppress_health_check=SLOW)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_given_cells(chance: Random) -> None:
     look_at(chance, refined=False)
 
 
 @pytest.mark.fuzz
-@settings(max_examples=12, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=6, deadline=None, suppress_health_check=SLOW)
 @given(st.randoms(use_true_random=False))
 def test_cases_on_refined_cells(chance: Random) -> None:
     look_at(chance, refined=True)

@@ -343,8 +343,8 @@ def _complete_tractions(
 def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping[Load, FloatArray]) -> Tractions:
     """Tractions of rolling with the frictional work per distance, and the mean slip of each slipping cell."""
     # Means over cells are central differences: by reciprocity the sum then equals the work of the rigid slip. The slip
-    # is scaled to that work; a cell inside which slip begins counts as sticking; beside a cell without pressure it is
-    # kept.
+    # is scaled to that work (without slip the sum is an error of the differences); a cell inside which slip begins
+    # counts as sticking; beside a cell without pressure the slip is kept.
     grid, traction = surfaces.grid, tractions.traction
     moved = surfaces.operator.displaced(dict(zip(TANGENTIAL, traction, strict=True)), TANGENTIAL)
     total = np.stack([displaced[direction] + moved[direction] for direction in TANGENTIAL])
@@ -360,7 +360,7 @@ def _with_mean_slip(tractions: Tractions, surfaces: Surfaces, displaced: Mapping
     slip = np.where(inner, parallel * direction, tractions.slip)
     cells_work = float((traction * slip * surfaces.areas).sum())
     scale = work / cells_work if min(work, cells_work) > 0 else 1.0
-    return replace(tractions, slip=slip * scale, work=work)
+    return replace(tractions, slip=slip * scale, work=cells_work * scale)
 
 
 def _shift_cells(bound: FloatArray) -> RollingCells:

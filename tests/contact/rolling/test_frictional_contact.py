@@ -199,6 +199,20 @@ def test_like_bodies_that_end_together_do_not_slip_by_pressure_alone() -> None:
     assert float(moved.friction_work) > 0
 
 
+def test_friction_takes_no_work_where_every_cell_sticks() -> None:
+    """The elastic roller overhangs both ends of a body much narrower than its contact."""
+    body = FiniteLengthSpace(length=0.29, material=STEEL, model="mirror")
+    roller = Roller(radius=5e3, length=0.5, material=STEEL)
+    motion = Rolling()
+    case = Case(
+        body=body, roller=roller, end_distance=-0.107, max_pressure=2.5e-5, friction=0.66, coupled=True, motion=motion
+    )
+    result = solve(case, grid=Grid(x_range=(0.0, 0.29), y_range=(-1.0, 1.3), cells_x=6, cells_y=16), stresses=False)
+    assert float(np.abs(result.traction_y).max()) > 0
+    assert not result.slip_x.any()
+    assert float(result.friction_work) == 0.0
+
+
 def test_without_friction_there_is_no_traction() -> None:
     result = rolled(Rolling(longitudinal_creepage=0.1), friction=0.0)
     assert not result.traction_y.any()
