@@ -48,7 +48,9 @@ def to_mat(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     ------
     InvalidInputError
         If the path ends otherwise, a variable is missing, has an invalid name in MATLAB or exceeds the size of the
-        format, or the file cannot be written.
+        format.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------

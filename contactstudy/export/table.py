@@ -144,7 +144,9 @@ def to_csv(
     Raises
     ------
     InvalidInputError
-        As :func:`to_table`, or if the file cannot be written.
+        As :func:`to_table`.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------

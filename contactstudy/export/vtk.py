@@ -51,7 +51,9 @@ def to_vtk(dataset: xr.Dataset, path: str | Path, variables: str | Sequence[str]
     ------
     InvalidInputError
         If the Dataset contains more than one case, the path has another suffix, the variables are missing or lie on
-        different points, or the file cannot be written.
+        different points.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------

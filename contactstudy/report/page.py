@@ -107,8 +107,9 @@ def write(
     Raises
     ------
     InvalidInputError
-        As :func:`html`; if the path is missing for a Dataset in memory or does not end in .html, or the file cannot be
-        written.
+        As :func:`html`; if the path is missing for a Dataset in memory or does not end in .html.
+    StoreError
+        If the file cannot be written.
 
     Examples
     --------

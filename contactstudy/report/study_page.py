@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -105,7 +105,7 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         "number_headings": [(NUMBERS | SINGULAR_NUMBERS)[name] for name in names],
         "intensities": any(name.startswith("end_intensity") for name in names),
         "rows": rows,
-        "reasons": _unsolved(rows),
+        "reasons": _grouped((row for row in rows if row.status != "ok"), lambda row: (row.status, row.note)),
         "answers": _answers(rows),
         "verdict": _verdict(rows),
         "pictures": _pictures(path, selection),
@@ -215,15 +215,20 @@ def _record(entry: Entry) -> xr.Dataset:
     return xr.Dataset(scalars, attrs={RUN_ATTRIBUTE: json.dumps(entry.run)})
 
 
-def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Answers and reasons with their cases, the worst first."""
+def _grouped(rows: Iterable[Row], key: Callable[[Row], tuple[str, str]]) -> list[tuple[str, str, list[Row]]]:
+    """Keys of two texts and the rows of each, in the order of their first row."""
     groups: dict[tuple[str, str], list[Row]] = {}
     for row in rows:
-        if row.answer:
-            # The percentage differs from case to case.
-            groups.setdefault((row.answer, PERCENTAGE.sub("", row.reason)), []).append(row)
-    keys = sorted(groups, key=lambda key: WORST_FIRST.index(key[0]))
-    return [(answer, _with_range(reason, groups[answer, reason]), groups[answer, reason]) for answer, reason in keys]
+        groups.setdefault(key(row), []).append(row)
+    return [(*texts, members) for texts, members in groups.items()]
+
+
+def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
+    """Answers and reasons with their cases, the worst first."""
+    # The percentage differs from case to case.
+    groups = _grouped((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
+    groups.sort(key=lambda group: WORST_FIRST.index(group[0]))
+    return [(answer, _with_range(reason, cases), cases) for answer, reason, cases in groups]
 
 
 def _with_range(reason: str, rows: list[Row]) -> str:
@@ -249,15 +254,6 @@ def _shape(plan: Plan) -> str:
     """Count and dimensions of the study."""
     sizes = zip(plan.cube.dims, plan.cube.shape, strict=True)
     return f"{len(plan)} cases ({', '.join(f'{_heading(dim)}: {size}' for dim, size in sizes)})"
-
-
-def _unsolved(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
-    """Status, reason and cases of all unsolved cases, grouped by reason."""
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        if row.status != "ok":
-            groups.setdefault((row.status, row.note), []).append(row)
-    return [(status, reason, cases) for (status, reason), cases in groups.items()]
 
 
 def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:

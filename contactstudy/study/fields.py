@@ -56,14 +56,20 @@ class Positions:
         """Whether cells have different widths."""
         return any(widths.size for widths in self.widths)
 
-    def edges(self, number: int) -> FloatArray:
-        """Edges of the cells of one case, metres."""
-        middles, widths = self.values[number], self.widths[number]
-        if not widths.size:
-            half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
-            return np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
-        low, high = middles - 0.5 * widths, middles + 0.5 * widths
-        return np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+    def sources(self, *, of_points: bool) -> list[FloatArray]:
+        """Points, or edges of the cells, over the half-width."""
+        if of_points:
+            return self.over_a
+        result = []
+        for middles, widths, scale in zip(self.values, self.widths, self.scales, strict=True):
+            if widths.size:
+                low, high = middles - 0.5 * widths, middles + 0.5 * widths
+                edges = np.concatenate([low[:1], 0.5 * (high[:-1] + low[1:]), high[-1:]])
+            else:
+                half = 0.5 * (middles[-1] - middles[0]) / max(middles.size - 1, 1)
+                edges = np.linspace(middles[0] - half, middles[-1] + half, middles.size + 1)
+            result.append(edges / scale)
+        return result
 
 
 def _equal(arrays: Sequence[FloatArray], first: FloatArray) -> bool:
@@ -184,7 +190,7 @@ class Fields:
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis over the half-width that all cases share along dimensions of one direction."""
         name = f"{dims[0]}_over_a"
-        sources = {dim: self._sources(dim) for dim in dims}
+        sources = {dim: self._positions[dim].sources(of_points=dim not in CELLS) for dim in dims}
         axis, borders = self._joint(sources)
         axes, maps = {}, {}
         for dim in dims:
@@ -197,13 +203,6 @@ class Fields:
             remains = _equal(sources[dim], axis if of_points else borders)
             axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
         return axes, self._common_coordinates(maps, axis, borders)
-
-    def _sources(self, dim: str) -> list[FloatArray]:
-        """Edges of the cells, or points, of all cases over the half-width."""
-        positions = self._positions[dim]
-        if dim in CELLS:
-            return [positions.edges(number) / scale for number, scale in enumerate(positions.scales)]
-        return positions.over_a
 
     def _joint(self, sources: dict[str, list[FloatArray]]) -> tuple[FloatArray, FloatArray]:
         """Positions of a common axis and the borders around each."""
@@ -307,15 +306,11 @@ class CaseArray(BackendArray):
             for index, row, values in zip(indices, rows, flat, strict=True):
                 if values.size:
                     shaped = values.reshape([int(batch.sizes[dim][row]) for dim in self._dims])
-                    yield index, self._on_axes(shaped, int(cases[index]))
-
-    def _on_axes(self, values: npt.NDArray[Any], case: int) -> npt.NDArray[Any]:
-        """Values of one case on the study's axes."""
-        maps = [
-            axis.resamplings[which[case]] if axis.resamplings else None
-            for axis, which in zip(self._axes, self._which, strict=True)
-        ]
-        return resampled(self._name, values, maps) if any(maps) else values
+                    maps = [
+                        axis.resamplings[which[cases[index]]] if axis.resamplings else None
+                        for axis, which in zip(self._axes, self._which, strict=True)
+                    ]
+                    yield index, resampled(self._name, shaped, maps) if any(maps) else shaped
 
 
 def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from types import FrameType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -328,35 +328,18 @@ def _compact(results_folder: Folder, share: Share, log: Progress, *, at_end: boo
         log.log(f"batches are not joined: {error}")
 
 
-def rerun_study(
-    folder: str | Path,
-    *,
-    workers: int | None = None,
-    scheduler: str | Client | None = None,
-    wait: float = WAIT_SECONDS,
-    progress: bool = True,
-    solver: Solver | None = None,
-) -> RunReport:
+def rerun_study(folder: str | Path, **options: Any) -> RunReport:
     """Solve the failed, skipped and stale cases of a folder's study anew, and the missing ones.
 
     Parameters
     ----------
     folder : str or Path
         The study's folder.
-    workers, scheduler, wait, progress, solver
-        As for :func:`run_study`.
+    **options
+        `workers`, `scheduler`, `wait`, `progress` and `solver`, as for :func:`run_study`.
 
     Returns
     -------
     RunReport
     """
-    return run_study(
-        Folder(folder).read_study(),
-        folder,
-        workers=workers,
-        scheduler=scheduler,
-        wait=wait,
-        progress=progress,
-        again=AGAIN,
-        solver=solver,
-    )
+    return run_study(Folder(folder).read_study(), folder, again=AGAIN, **options)

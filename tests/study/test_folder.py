@@ -7,11 +7,12 @@ import sys
 import numpy as np
 import pytest
 
+from contactstudy.checks import PART, writing
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import LockedError, StoreError, load_case, open_study, run_study
 from contactstudy.study import folder as module
 from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
-from contactstudy.study.files import PART, write_atomically, write_text
+from contactstudy.study.files import write_text
 from contactstudy.study.folder import Folder, Share, latest
 from contactstudy.study.settings import RunSettings
 from contactstudy.study.worker import Job, Task, without_result
@@ -135,12 +136,13 @@ def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
     path = tmp_path / "a.txt"
     write_text(path, "before")
 
-    def fails(part):
-        part.write_text("half")
-        raise OSError("no space")
+    def fail():
+        with writing(path) as part:
+            part.write_text("half")
+            raise OSError("no space")
 
     with pytest.raises(StoreError, match="no space"):
-        write_atomically(path, fails)
+        fail()
     assert path.read_text() == "before"
     assert list(tmp_path.iterdir()) == [path]
 
