@@ -157,7 +157,7 @@ def known_name(name: str, value: str, names: Iterable[str]) -> str:
 
 @contextmanager
 def writing(path: Path, name: Callable[[Path], str] | None = None) -> Iterator[Path]:
-    """Yield the path of a new file beside `path`, which it replaces when it is complete, or has the name ``name(part)``.
+    """Yield a new file beside `path`, which it replaces when it is complete, or has the name ``name(part)``.
 
     The previous file stays if writing fails, with a StoreError. A device or pipe is written to directly.
     """

@@ -205,21 +205,18 @@ def _collect(options: argparse.Namespace, solver: Solver | None) -> int:
 
 
 def _export(options: argparse.Namespace, solver: Solver | None) -> int:
-    from contactstudy.export.command import export, export_summaries
+    from contactstudy.export.command import export
     from contactstudy.study.report import shown
 
-    if options.format or options.variable or options.line or options.select or not options.path.is_dir():
-        written = export(
-            options.path,
-            kind=options.format or "csv",
-            variables=options.variable,
-            line=options.line,
-            points=options.points,
-            select=options.select or (),
-            out=options.out,
-        )
-    else:
-        written = export_summaries(options.path, options.out)
+    written = export(
+        options.path,
+        kind=options.format,
+        variables=options.variable,
+        line=options.line,
+        points=options.points,
+        select=options.select or (),
+        out=options.out,
+    )
     if written is not None:
         print(f"wrote {shown(written.resolve())}")
     return ALL_OK

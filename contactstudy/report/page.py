@@ -77,7 +77,19 @@ def html(
         title = title or (f"Study {study}, case {path.stem}" if study else path.stem)
     if selection:
         raise InvalidInputError("selection", dict(selection), "left out: the report of one case shows that case")
-    return _render("case.html", _case_context(source) | {"title": title or "Contact of a roller"})
+    result = single_case(source)
+    case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
+    context = {
+        "title": title or "Contact of a roller",
+        "inputs": case_table(case).subjects if case is not None else {},
+        "drawing": side_view(case) if case is not None else None,
+        "numbers": table.numbers,
+        "assessment": assess_case(result, table),
+        "pictures": case_pictures(result, case),
+        "provenance": provenance(result),
+        "citations": citations(result).entries,
+    }
+    return _render("case.html", context)
 
 
 def write(
@@ -190,18 +202,3 @@ def _render(template: str, context: dict[str, Any]) -> str:
         lstrip_blocks=True,
     )
     return templates.get_template(template).render({"made": date, "version": package_version()} | context)
-
-
-def _case_context(dataset: xr.Dataset) -> dict[str, Any]:
-    """Return the context of a case's page."""
-    result = single_case(dataset)
-    case, table = solved_case(result) if INPUTS_ATTRIBUTE in result.attrs else None, summary(result)
-    return {
-        "inputs": case_table(case).subjects if case is not None else {},
-        "drawing": side_view(case) if case is not None else None,
-        "numbers": table.numbers,
-        "assessment": assess_case(result, table),
-        "pictures": case_pictures(result, case),
-        "provenance": provenance(result),
-        "citations": citations(result).entries,
-    }

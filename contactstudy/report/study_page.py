@@ -91,10 +91,11 @@ def study_context(path: Path, selection: Mapping[str, Any] | None = None) -> dic
         _row(f"case-{number}", entry, _swept_values(plan, case, swept), names)
         for number, (case, entry) in enumerate(zip(plan, entries, strict=True), 1)
     ]
+    sizes = ", ".join(f"{_heading(dim)}: {size}" for dim, size in zip(plan.cube.dims, plan.cube.shape, strict=True))
     return {
         "title": f"Study {study.name}",
         "description": study.description,
-        "shape": _shape(plan),
+        "shape": f"{len(plan)} cases ({sizes})",
         "counts": Counter(entry.status for entry in entries),
         "base": [(_meaning(name), value_text(name, value)) for name, value in study.base.items()],
         "swept": [
@@ -228,16 +229,14 @@ def _answers(rows: list[Row]) -> list[tuple[str, str, list[Row]]]:
     # The percentage differs from case to case.
     groups = _grouped((row for row in rows if row.answer), lambda row: (row.answer, PERCENTAGE.sub("", row.reason)))
     groups.sort(key=lambda group: WORST_FIRST.index(group[0]))
-    return [(answer, _with_range(reason, cases), cases) for answer, reason, cases in groups]
-
-
-def _with_range(reason: str, rows: list[Row]) -> str:
-    """Reason of several cases, with the range of their percentages."""
-    sizes = [float(match[1]) for row in rows if (match := PERCENTAGE.search(row.reason))]
-    if not sizes:
-        return reason
-    low, high = min(sizes), max(sizes)
-    return f"{reason} {high:.1f}%" + (f" in the worst case, {low:.1f}% in the best" if low < high else "")
+    answers = []
+    for answer, reason, cases in groups:
+        sizes = sorted(float(match[1]) for row in cases if (match := PERCENTAGE.search(row.reason)))
+        if sizes:
+            reason += f" {sizes[-1]:.1f}%"
+            reason += f" in the worst case, {sizes[0]:.1f}% in the best" if sizes[0] < sizes[-1] else ""
+        answers.append((answer, reason, cases))
+    return answers
 
 
 def _verdict(rows: list[Row]) -> tuple[str, str]:
@@ -248,12 +247,6 @@ def _verdict(rows: list[Row]) -> tuple[str, str]:
         worst = CARE
     words = {NO: "not to be relied on", CARE: "real with care", UNKNOWN: "not known to be real", YES: "real"}
     return worst, ", ".join(f"{count[answer]} {words[answer]}" for answer in WORST_FIRST if count[answer])
-
-
-def _shape(plan: Plan) -> str:
-    """Count and dimensions of the study."""
-    sizes = zip(plan.cube.dims, plan.cube.shape, strict=True)
-    return f"{len(plan)} cases ({', '.join(f'{_heading(dim)}: {size}' for dim, size in sizes)})"
 
 
 def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:

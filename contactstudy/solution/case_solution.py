@@ -114,7 +114,23 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
         # At an approach the smooth roller determines the cells; the rough one carries another load.
         loaded = case if case.approach is None else contact_at_approach(case, ROUGHLY, ROUGH_TOLERANCE).case
         grid = choose_grid(loaded)
-    contact, tractions = _contact(case, grid, roughness, tolerance), None
+    clearance, tractions = case.gap(grid), None
+    if not np.isfinite(clearance).any():
+        raise InvalidInputError(
+            "grid",
+            grid.shape,
+            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
+            "move the roller by end_distance, or take more cells along x",
+        )
+    gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
+    try:
+        contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
+    except WindowError as error:
+        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
+        if not case.tilt and case.load_position is None:
+            raise WindowError(advice) from error
+        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
+    contact = _checked(case, contact)
     if not isinstance(case.motion, Sliding):
         request = FrictionRequest(
             motion=case.motion,
@@ -131,27 +147,6 @@ def contact_on_cells(case: Case, grid: Grid | None, roughness: xr.DataArray | No
 def _with_load(case: Case, contact: Contact) -> Case:
     """Case with a prescribed load in place of its approach."""
     return case if case.approach is None else replace(case, load=contact.carried, approach=None)
-
-
-def _contact(case: Case, grid: Grid, roughness: xr.DataArray | None, tolerance: float) -> Contact:
-    """Contact of a case on given cells."""
-    clearance = case.gap(grid)
-    if not np.isfinite(clearance).any():
-        raise InvalidInputError(
-            "grid",
-            grid.shape,
-            f"such that a cell's centre lies under the roller, which faces the body over {case.contact_length:.3g} m",
-            "move the roller by end_distance, or take more cells along x",
-        )
-    gap = clearance if roughness is None else clearance - heights_on(grid, roughness)
-    try:
-        contact = contact_of(contact_shape(case, grid, gap=gap), Settings(tolerance))
-    except WindowError as error:
-        advice = f"{error}; choose_grid(case, window=..., margin=...) makes a wider one"
-        if not case.tilt and case.load_position is None:
-            raise WindowError(advice) from error
-        raise WindowError(f"{inclination(case)}, and so deep at the roller's end that {advice}") from error
-    return _checked(case, contact)
 
 
 def _checked(case: Case, contact: Contact) -> Contact:

@@ -330,10 +330,21 @@ class Study:
 
 
 def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keys of a study whose cases are the entries of a table."""
-    columns = {
-        str(name): _column(str(name), array) for name, array in table.variables.items() if _is_parameter(table, name)
-    }
+    """Return the keys of a study whose cases are the entries of a table, in SI."""
+    columns: dict[str, xr.Variable] = {}
+    for name, array in ((str(key), variable) for key, variable in table.variables.items()):
+        if name not in PARAMETERS:
+            # The dimension of a parameter may be numbered.
+            used = any(name in other.dims for key, other in table.variables.items() if key in PARAMETERS)
+            if name not in table.indexes or not used:
+                checks.known_name("variable of the table", name, PARAMETERS)
+            continue
+        if PARAMETERS[name].check is points and array.dims:
+            raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
+        stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
+        equal = stated_unit is None or stated_unit == unit
+        factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
+        columns[name] = array if factor == 1.0 else array * factor
     shared = {name: _plain(array.values[()]) for name, array in columns.items() if not array.dims}
     for name in {*base} & {*columns}:
         raise InvalidInputError("base", name, "a parameter that the table does not have")
@@ -346,26 +357,6 @@ def content_of_table(table: xr.Dataset, base: Mapping[str, Any]) -> dict[str, An
             groups.setdefault(str(array.dims[0]), {})[name] = [_plain(value) for value in array.values]
     alone = {name: values for group in groups.values() if len(group) == 1 for name, values in group.items()}
     return content | {"sweep": alone, "zip": [group for group in groups.values() if len(group) > 1]}
-
-
-def _is_parameter(table: xr.Dataset, name: object) -> bool:
-    """Whether a variable of a table is a parameter; a dimension may be numbered, all else is an error."""
-    if name in PARAMETERS:
-        return True
-    used = any(name in array.dims for other, array in table.variables.items() if other in PARAMETERS)
-    if name not in table.indexes or not used:
-        checks.known_name("variable of the table", str(name), PARAMETERS)
-    return False
-
-
-def _column(name: str, array: xr.Variable) -> xr.Variable:
-    """Values of a parameter, in SI."""
-    stated_unit, unit = array.attrs.get("units"), PARAMETERS[name].units
-    if PARAMETERS[name].check is points and array.dims:
-        raise InvalidInputError(name, array.dims, "a list in base: it is one value of a case")
-    equal = stated_unit is None or stated_unit == unit
-    factor = 1.0 if equal else factor_to(unit, f"{name}.attrs['units']", stated_unit)
-    return array if factor == 1.0 else array * factor
 
 
 def _plain(value: Any) -> Any:

@@ -324,26 +324,19 @@ class Workers:
     def usable(self, busy: bool) -> set[str]:
         """Addresses of the usable workers now; raises if all have another version, or none came for too long."""
         present = set(self._client.nthreads())
-        if present - set(self._faults):
-            self._check(present)
+        if new := present - set(self._faults):
+            versions: Any = self._client.get_versions(packages=["contactstudy"])
+            for worker in new & set(versions["workers"]):
+                version, expected = versions["workers"][worker]["packages"].get("contactstudy"), package_version()
+                self._faults[worker] = ""
+                if version != expected:
+                    self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
         usable = {worker for worker in present if self._faults.get(worker) == ""}
         if usable or busy:
             self._last_present, self._announced = time.monotonic(), False
         else:
             self._wait_for_one(present)
         return usable
-
-    def _check(self, present: set[str]) -> None:
-        """Compare the package's version on new workers with this one."""
-        versions: Any = self._client.get_versions(packages=["contactstudy"])
-        for worker in present - set(self._faults):
-            answer = dict(versions["workers"]).get(worker)
-            if answer is not None:
-                version, expected = answer["packages"].get("contactstudy"), package_version()
-                if version == expected:
-                    self._faults[worker] = ""
-                else:
-                    self.exclude(worker, f"it has version {version} of contactstudy, not {expected}")
 
     def exclude(self, worker: str, reason: str) -> None:
         """Give a worker no further task."""

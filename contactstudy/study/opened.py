@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import numpy.typing as npt
 import xarray as xr
 
 from contactstudy import checks
@@ -134,10 +132,14 @@ def study_dataset(folder: str | Path, *, cells: str | None) -> xr.Dataset:
 def numbers_dataset(states: States) -> xr.Dataset:
     """Status, message and numbers of all cases along the study's dimensions."""
     plan, cube = states.plan, states.plan.cube
-    coordinates: dict[str, Any] = {
-        name: _label_coordinate(name, dim, values) for name, (dim, values) in cube.labels.items()
-    }
-
+    coordinates: dict[str, Any] = {}
+    for name, (dim, values) in cube.labels.items():
+        if any(isinstance(value, str) for value in values):
+            column = np.asarray(["" if value is None else str(value) for value in values])
+        else:
+            column = np.asarray([np.nan if value is None else value for value in values])
+        attributes = PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
+        coordinates[name] = (dim, column, attributes)
     names = np.array(STATES, dtype=np.str_)
     reasons = [states.reasons.get(index, "") for index in range(len(plan))] if states.reasons else [""] * len(plan)
     variables: dict[str, Any] = {
@@ -160,15 +162,6 @@ def numbers_dataset(states: States) -> xr.Dataset:
             attributes = PARAMETERS[name].attrs | {"comment": DERIVED}
             coordinates[name] = ((), label(name, value), attributes)
     return xr.Dataset(variables, coords=coordinates)
-
-
-def _label_coordinate(name: str, dim: str, values: Sequence[Any]) -> tuple[str, npt.NDArray[Any], dict[str, str]]:
-    """Coordinate of a swept parameter; NaN or an empty text where a case lacks it."""
-    if any(isinstance(value, str) for value in values):
-        array = np.asarray(["" if value is None else str(value) for value in values], dtype=np.str_)
-    else:
-        array = np.asarray([np.nan if value is None else value for value in values])
-    return dim, array, PARAMETERS[name].attrs if name in PARAMETERS else labels("case", coordinate=True)
 
 
 def _reduced(dims: tuple[str, ...], table: FloatArray) -> tuple[tuple[str, ...], FloatArray]:

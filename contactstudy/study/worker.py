@@ -104,7 +104,14 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
     A case fails with an error of the package, a lack of memory or a singular system of equations. Any other error is a
     defect of the program, and raised after the cases finished before are written.
     """
-    _check_folder(*task.lock)
+    path, text = task.lock
+    try:
+        lock = Path(path).read_text(encoding="utf-8") if path else ""
+    except (OSError, ValueError) as error:
+        lock = f"{type(error).__name__}: {error}"
+    if lock != text:
+        host = socket.gethostname()
+        raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
     receive(task.profiles)
     writer = _Writer(task)
     try:
@@ -119,17 +126,6 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
         raise
     writer.flush()
     return writer.outcomes
-
-
-def _check_folder(path: str, text: str) -> None:
-    """Raise unless this process reads the lock of the run."""
-    try:
-        lock = Path(path).read_text(encoding="utf-8") if path else ""
-    except (OSError, ValueError) as error:
-        lock = f"{type(error).__name__}: {error}"
-    if lock != text:
-        host = socket.gethostname()
-        raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
 
 
 class _Writer:
