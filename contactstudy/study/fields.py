@@ -42,11 +42,6 @@ class Positions:
     scales: list[float] = field(default_factory=list)  # half-widths, metres
 
     @property
-    def alike(self) -> bool:
-        """Whether all positions are equal, in metres."""
-        return all(np.array_equal(values, self.values[0]) for values in self.values)
-
-    @property
     def over_a(self) -> list[FloatArray]:
         """Different positions over the half-width."""
         return [values / scale for values, scale in zip(self.values, self.scales, strict=True)]
@@ -174,7 +169,8 @@ class Fields:
     def _original_axis(self, dim: str) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
         """Axis of the cases' positions, padded with NaN to the largest case where they differ."""
         positions = self._positions[dim]
-        name = dim if positions.alike else f"{dim}_index"
+        alike = all(np.array_equal(values, positions.values[0]) for values in positions.values)
+        name = dim if alike else f"{dim}_index"
         size = max(values.size for values in positions.values)
 
         def coordinate(rows: list[FloatArray]) -> tuple[Any, ...]:

@@ -11,7 +11,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import repeat
+from itertools import islice, repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -212,11 +212,7 @@ class Plan(Sequence[PlannedCase]):
             for name in axis[0]:
                 table = [fragment(name, entry[name]) for entry in axis]
                 columns[name] = map(table.__getitem__, column.tolist())
-        if product.size and self.axes:
-            ordered = [columns[name] for name in sorted(columns)]
-            yield from zip(*ordered, strict=False)
-        elif product.size:
-            yield tuple(next(iter(columns[name])) for name in sorted(columns))
+        yield from islice(zip(*(columns[name] for name in sorted(columns)), strict=False), product.size)
         for number in self.chosen[len(product) :]:
             values = completed({**self.base, **self.explicit[number - self.products]})
             yield tuple(fragment(name, values[name]) for name in sorted(values))

@@ -12,10 +12,9 @@ import pytest
 from contactstudy import Material, profiles
 from contactstudy.errors import InvalidInputError
 from contactstudy.study import Study, open_study, run_study
-from contactstudy.study.parameters import case_id
 from contactstudy.study.profile_tables import PROFILES, profile_label, profile_table
 from contactstudy.study.setup import build_setup
-from tests.small_study import BASE, as_toml, small_study
+from tests.small_study import BASE, as_toml, case_id, small_study
 from tests.stand_in_solver import solve_fake
 from tests.study.conftest import ROOT
 
