@@ -136,11 +136,6 @@ def to_csv(
     path : str or Path
         File to write.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InvalidInputError

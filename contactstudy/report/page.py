@@ -111,11 +111,6 @@ def write(
     title, selection : optional
         As for :func:`html`.
 
-    Returns
-    -------
-    Path
-        The file.
-
     Raises
     ------
     InvalidInputError

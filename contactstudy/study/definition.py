@@ -281,10 +281,6 @@ class Study:
     def plan(self) -> Plan:
         """Cases of the study, in order; solves nothing.
 
-        Returns
-        -------
-        Plan
-
         Raises
         ------
         StudyFileError

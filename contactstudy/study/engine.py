@@ -87,32 +87,23 @@ class Engine:
         """Client of the scheduler, or of local processes for some `cases`, which end with the block."""
         if self.scheduler is None:
             cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-            with _local_client(min(cores if self.workers is None else self.workers, cases)) as client:
-                yield client
-        elif isinstance(self.scheduler, str):
+            with _local_client(min(cores if self.workers is None else self.workers, cases)) as local_client:
+                yield local_client
+            return
+        from distributed.comm.core import CommClosedError
+
+        if isinstance(self.scheduler, str):
             notify(f"connecting to the dask scheduler at {self.scheduler}, for up to {RUN.start_seconds:g} s")
-            with _silent_libraries():
-                client = _connect(self.scheduler)
-                try:
-                    with _lost_connections():
-                        yield client
-                finally:
+        with _silent_libraries() if isinstance(self.scheduler, str) else contextlib.nullcontext():
+            client = _connect(self.scheduler) if isinstance(self.scheduler, str) else self.scheduler
+            try:
+                yield client
+            except (CommClosedError, TimeoutError) as error:
+                raise StudyFileError(SCHEDULER_LOST) from error
+            finally:
+                if client is not self.scheduler:
                     with contextlib.suppress(Exception):
                         client.close(timeout=RUN.close_seconds)
-        else:
-            with _lost_connections():
-                yield self.scheduler
-
-
-@contextlib.contextmanager
-def _lost_connections() -> Iterator[None]:
-    """Errors of a connection that ends become :class:`StudyFileError`."""
-    from distributed.comm.core import CommClosedError
-
-    try:
-        yield
-    except (CommClosedError, TimeoutError) as error:
-        raise StudyFileError(SCHEDULER_LOST) from error
 
 
 def _connect(scheduler: str) -> Client:
@@ -138,9 +129,8 @@ def _connect(scheduler: str) -> Client:
     if not errors:
         raise StudyFileError(f"no dask scheduler at {scheduler}: the listener did not answer")
     (error,) = errors
-    if isinstance(error, (OSError, ValueError)):
-        raise StudyFileError(f"no dask scheduler answers at {scheduler}: {error}") from error
-    raise StudyFileError(f"no dask scheduler at {scheduler}: {type(error).__name__}") from error
+    reason = error if isinstance(error, (OSError, ValueError)) else type(error).__name__
+    raise StudyFileError(f"no dask scheduler answers at {scheduler}: {reason}") from error
 
 
 @contextlib.contextmanager

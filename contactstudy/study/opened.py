@@ -80,10 +80,6 @@ def collect(folder: str | Path) -> xr.Dataset:
     folder : str or Path
         The study's folder.
 
-    Returns
-    -------
-    Dataset
-
     Raises
     ------
     StudyFileError

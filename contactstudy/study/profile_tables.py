@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, is_dataclass
 from functools import cached_property
 from pathlib import Path
@@ -235,40 +235,25 @@ def check_without_files(content: Any) -> None:
             raise InvalidInputError("profile.file", table["file"], "left out of study.json, which contains the points")
 
 
-def profile_label(table: Mapping[str, Any]) -> str:
-    """Label of a profile on a dimension: its name, or its kind and values."""
-    return _composed(table, " ", lambda key, value: f"{key}={value:g}", lambda length: f"{length:g} m")
-
-
-def describe_profile(table: Mapping[str, Any]) -> str:
-    """Name of a profile, or its kind and values in the units of engineers."""
-    units = UNITS | {"design_pressure": "Pa", "design_load": "N"}
-
-    def item(key: str, value: float) -> str:
-        return f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}"
-
-    return _composed(table, ", ", item, lambda length: quantity(length, "m"))
-
-
-def _composed(
-    table: Mapping[str, Any], separator: str, item: Callable[[str, float], str], length: Callable[[float], str]
-) -> str:
-    """Text of a profile from the texts of its parts, values and effective length."""
+def profile_text(table: Mapping[str, Any], *, in_units: bool = False) -> str:
+    """Name of a profile, or its kind and values: in SI, a label of a dimension, or in the units of engineers."""
     if "name" in table:
         return str(table["name"])
-
-    def part(inner: Mapping[str, Any]) -> str:
-        return _composed(inner, separator, item, length)
-
-    kind = str(table["kind"])
+    kind, units = str(table["kind"]), UNITS | {"design_pressure": "Pa", "design_load": "N"}
     if kind == "sum":
-        return " + ".join(map(part, table["terms"]))
+        return " + ".join(profile_text(term, in_units=in_units) for term in table["terms"])
     if kind == "halves":
-        return f"{part(table['left'])} | {part(table['right'])}"
+        return " | ".join(profile_text(table[side], in_units=in_units) for side in ("left", "right"))
     if kind == "measured":
         return f"measured {hashlib.sha256(json.dumps(table).encode()).hexdigest()[:8]}"
     if kind == user_profiles.KIND:
         return f"{table['class']} {table['content'][:8]}"
     if kind == "effective-length":
-        return f"{part(table['profile'])} over {length(table['effective_length'])}"
-    return separator.join([kind, *(item(key, table[key]) for key in sorted(table) if key != "kind")])
+        length = table["effective_length"]
+        over = quantity(length, "m") if in_units else f"{length:g} m"
+        return f"{profile_text(table['profile'], in_units=in_units)} over {over}"
+    values = {key: table[key] for key in sorted(table) if key != "kind"}
+    if in_units:
+        items = (f"{key.replace('_', ' ')} {quantity(value, units.get(key, 'm'))}" for key, value in values.items())
+        return ", ".join([kind, *items])
+    return " ".join([kind, *(f"{key}={value:g}" for key, value in values.items())])

@@ -155,10 +155,6 @@ def run_study(
     solver : callable, optional
         Called instead of :func:`contactstudy.solve`, with the same arguments.
 
-    Returns
-    -------
-    RunReport
-
     Raises
     ------
     InvalidInputError
@@ -337,9 +333,5 @@ def rerun_study(folder: str | Path, **options: Any) -> RunReport:
         The study's folder.
     **options
         `workers`, `scheduler`, `wait`, `progress` and `solver`, as for :func:`run_study`.
-
-    Returns
-    -------
-    RunReport
     """
     return run_study(Folder(folder).read_study(), folder, again=AGAIN, **options)
