@@ -12,7 +12,6 @@ from contactstudy.bodies.material import Material
 from contactstudy.bodies.models import Body, FiniteLengthSpace
 from contactstudy.case.case import Case
 from contactstudy.case.motion import AxialFriction, Sliding
-from contactstudy.case.roller import Roller
 from contactstudy.profiles import Cylinder, Profile, Shape
 from contactstudy.profiles.base import in_words
 
@@ -50,34 +49,31 @@ def case_table(case: Case) -> CaseTable:
     >>> print(str(table).splitlines()[0])
     Roller: radius R: 5 mm
     """
-    place = [("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
-    if isinstance(case.body, FiniteLengthSpace):
-        distance = case.body.length - case.roller_start - case.roller.length
-        place.append(("from the roller to end II", quantity(distance, "m")))
-    subjects = {
-        "Roller": _roller(case.roller),
-        "Body": [("kind", body_words(case.body)), ("material", material_words(case.body.material))],
-        "Place": place,
-        "Load": _load(case),
-    }
-    return CaseTable(subjects)
-
-
-def _roller(roller: Roller) -> list[Input]:
-    """Rows on a roller: geometry, material, and how far its profile drops."""
-    rows = [
+    roller = case.roller
+    roller_rows = [
         ("radius R", quantity(roller.radius, "m")),
         ("length L", quantity(roller.length, "m")),
         ("profile", _profile(roller.profile)),
         ("material", material_words(roller.material) if roller.material else "rigid"),
     ]
     if roller.material is not None:
-        ends = "its own free ends" if roller.ends == "free" else "a half-space, without ends"
-        rows.append(("elastic as", ends))
+        roller_rows.append(
+            ("elastic as", "its own free ends" if roller.ends == "free" else "a half-space, without ends")
+        )
     drops = roller.profile.drop(np.array([0.45, 0.5]) * roller.length, roller.length).tolist()
-    rows.append((f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
-    rows.append(("drop at the very end", quantity(drops[1], "m")))
-    return rows
+    roller_rows.append((f"drop at {quantity(0.45 * roller.length, 'm')} from mid-length", quantity(drops[0], "m")))
+    roller_rows.append(("drop at the very end", quantity(drops[1], "m")))
+    place = [("from end I of the body to the roller, e", quantity(case.roller_start, "m"))]
+    if isinstance(case.body, FiniteLengthSpace):
+        distance = case.body.length - case.roller_start - case.roller.length
+        place.append(("from the roller to end II", quantity(distance, "m")))
+    subjects = {
+        "Roller": roller_rows,
+        "Body": [("kind", body_words(case.body)), ("material", material_words(case.body.material))],
+        "Place": place,
+        "Load": _load(case),
+    }
+    return CaseTable(subjects)
 
 
 def _load(case: Case) -> list[Input]:

@@ -236,18 +236,14 @@ def solve(
     Returns
     -------
     Dataset
-        Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`;
-        with stick and slip, tractions and slip as from `solve_contact` instead of `traction_y`. Stresses have
-        the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With stresses also
-        `end_traction_residual` and the largest von Mises stress in the body, independent of the positions:
-        `peak_von_mises`, its error and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
-        (and ``_first`` and ``_last``, of either half), `end_pressure_first` and `end_pressure_last`, and the load on
-        the last half-width, `end_load_first` and `end_load_last`, each with its error ``<name>_error``. At a singular
-        end pressures are infinite; `end_intensity_first` or `end_intensity_last` is K of ``p = K d**-m`` with its
-        error, and `end_exponent_first` or `end_exponent_last` is m; `end_intensity` and `end_exponent` belong to the
-        sharper end. With stick and slip, forces, moment, work and the unknown creepages or shifts have errors as well.
-        The attributes contain the case, the settings, the versions, and the seconds of each stage, see
-        `contactstudy.analysis.solved_case`.
+        Everything that `solve_contact` and `stress_field` return, with `hertz_half_width` and `hertz_max_pressure`.
+        Stresses have the dimensions ``(x_field, y_field, z)``; ``(x, y, z)`` at the centres of given cells. With
+        stresses also `end_traction_residual` and the largest von Mises stress in the body, independent of the
+        positions: `peak_von_mises` and its position ``_x``, ``_y``, ``_z``. On refined columns also `peak_pressure`
+        and, for the ends ``_first`` and ``_last``, `end_pressure` and `end_load`, the load on the last half-width. At
+        a singular end pressures are infinite; `end_intensity` is K and `end_exponent` m of ``p = K d**-m``. Estimated
+        errors are ``<name>_error``. The attributes contain the case, the settings, the versions, and the seconds of
+        each stage, see `contactstudy.analysis.solved_case`.
 
     Raises
     ------

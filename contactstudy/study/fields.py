@@ -184,38 +184,33 @@ class Fields:
         return {dim: StudyAxis(name, size)}, coordinates
 
     def _common_axis(self, dims: list[str]) -> tuple[dict[str, StudyAxis], dict[str, Any]]:
-        """Axis over the half-width that all cases share along dimensions of one direction."""
-        name = f"{dims[0]}_over_a"
+        """Axis over the half-width that all cases share along dimensions of one direction, with borders around each."""
+        first, name = dims[0], f"{dims[0]}_over_a"
         sources = {dim: self._positions[dim].sources(of_points=dim not in CELLS) for dim in dims}
-        axis, borders = self._joint(sources)
-        axes, maps = {}, {}
-        for dim in dims:
-            of_points = dim not in CELLS
-            outside = 0.0 if dim == "y" else np.nan
-            maps[dim] = [
-                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
-                for source in sources[dim]
-            ]
-            remains = _equal(sources[dim], axis if of_points else borders)
-            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
-        return axes, self._common_coordinates(maps, axis, borders)
-
-    def _joint(self, sources: dict[str, list[FloatArray]]) -> tuple[FloatArray, FloatArray]:
-        """Positions of a common axis and the borders around each."""
-        dim, first = next(iter(sources.items()))
-        if dim not in CELLS:
-            axis = first[0] if _equal(first, first[0]) else common_columns(first)
-            return axis, np.concatenate([axis[:1], centres(axis), axis[-1:]])
-        union = common_columns if dim == "x" else common_rows
-        borders = first[0] if _equal(first, first[0]) else union(first)
-        if "x_field" in sources:
+        rows = sources[first]
+        union = common_rows if first == "y" else common_columns
+        axis = borders = rows[0] if _equal(rows, rows[0]) else union(rows)
+        if first not in CELLS:
+            borders = np.concatenate([axis[:1], centres(axis), axis[-1:]])
+        elif "x_field" in sources:
             points = common_columns([np.sort(row) for row in sources["x_field"]])
             plan = self._states.plan
-            parameters = [plan.base, *(axis[0] for axis in plan.axes), *plan.explicit]
+            parameters = [plan.base, *(steps[0] for steps in plan.axes), *plan.explicit]
             # Stress points that the study gives are positions of the common axis.
             given = any("field_x_over_a" in entry for entry in parameters)
             borders = centred_cells(borders, points) if given else split_cells(borders, points)
-        return centres(borders), borders
+        if first in CELLS:
+            axis = centres(borders)
+        axes, maps = {}, {}
+        for dim, source_rows in sources.items():
+            of_points, outside = dim not in CELLS, 0.0 if dim == "y" else np.nan
+            maps[dim] = [
+                Resampling(source=source, axis=axis, borders=borders, outside=outside, of_points=of_points)
+                for source in source_rows
+            ]
+            remains = _equal(source_rows, axis if of_points else borders)
+            axes[dim] = StudyAxis(name, axis.size, None if remains else maps[dim])
+        return axes, self._common_coordinates(maps, axis, borders)
 
     def _common_coordinates(
         self, maps: dict[str, list[Resampling]], axis: FloatArray, borders: FloatArray

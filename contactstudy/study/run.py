@@ -273,7 +273,11 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
     order = sorted(members, key=order_of)
     groups = [members[key] for key in order]
     if share.count > 1:
-        pieces = _pieces([key[0] for key in order], max(1, len(groups) // (RUN.turns * share.count)))
+        # A piece contains consecutive groups with one operator, so many at most that every share has several turns.
+        longest, pieces = max(1, len(groups) // (RUN.turns * share.count)), list[int]()
+        for _, members_of_one in groupby(operator for operator, _ in order):
+            first = pieces[-1] + 1 if pieces else 0
+            pieces += [first + number // longest for number, _ in enumerate(members_of_one)]
         groups = [group for group, piece in zip(groups, pieces, strict=True) if piece % share.count == share.number - 1]
     remaining = []
     for group in groups:
@@ -284,15 +288,6 @@ def _groups_to_solve(states: States, again: tuple[str, ...], share: Share, sampl
         else:
             remaining.append([index for index in group if index in missing])
     return [group for group in remaining if group]
-
-
-def _pieces(operators: list[int], longest: int) -> list[int]:
-    """Return the number of each group's piece: consecutive groups with one operator, at most so many."""
-    pieces: list[int] = []
-    for _, members in groupby(operators):
-        first = pieces[-1] + 1 if pieces else 0
-        pieces += [first + number // longest for number, _ in enumerate(members)]
-    return pieces
 
 
 def _collect(results: Results, template: Task, results_folder: Folder, share: Share, log: Progress) -> None:
