@@ -31,19 +31,6 @@ KEYS = ("name", "description", "level", "base", "sweep", "zip", "cases", "exclud
 MOST_CASES = 1_000_000  # Combinations of one study, at most: half a gigabyte of identities and groups
 
 
-def _listed(name: str, values: object) -> list[Any]:
-    """Values of a swept parameter as a list that is not empty."""
-    if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
-        values = points(name, values)
-    if isinstance(values, np.ndarray):
-        values = values.tolist()
-    if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
-        raise InvalidInputError(name, values, "a list of values, or for numbers a table with start, stop and count")
-    if not values:
-        raise InvalidInputError(name, values, "a list of at least one value")
-    return list(values)
-
-
 def _tables(name: str, value: object) -> list[Mapping[str, Any]]:
     """Return a table, or a list of tables, as a list of tables."""
     entries = [value] if isinstance(value, Mapping) else list(value) if isinstance(value, (list, tuple)) else None
@@ -160,12 +147,23 @@ class Study:
 
     @staticmethod
     def _swept(where: str, name: str, values: object) -> list[Any]:
+        """Values of a swept parameter as a list that is not empty."""
         checks.known_name(where, str(name), PARAMETERS)
-        column = [PARAMETERS[name].checked(value) for value in _listed(f"{where}.{name}", values)]
+        argument = f"{where}.{name}"
+        if isinstance(values, Mapping) and set(values) == {"start", "stop", "count"}:
+            values = points(argument, values)
+        if isinstance(values, np.ndarray):
+            values = values.tolist()
+        if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Sequence):
+            allowed = "a list of values, or for numbers a table with start, stop and count"
+            raise InvalidInputError(argument, values, allowed)
+        if not values:
+            raise InvalidInputError(argument, values, "a list of at least one value")
+        column = [PARAMETERS[name].checked(value) for value in values]
         if where == "sweep":
             entries = [label(name, value) for value in column]
             if twice := [entry for entry in entries if entries.count(entry) > 1]:
-                raise InvalidInputError(f"{where}.{name}", twice[0], "a list of different values", "it appears twice")
+                raise InvalidInputError(argument, twice[0], "a list of different values", "it appears twice")
         return column
 
     @staticmethod

@@ -250,7 +250,9 @@ class Tasks:
             task = self._returned.popleft()
         else:
             plan, jobs = self._plan, list[Job]()
-            limit = self._limit(workers)
+            # All workers end at about the same time.
+            cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
+            limit = int(min(cases, self.remaining / (2 * max(workers, 1)))) if self._cases else 1
             while self._groups and (not jobs or len(jobs) + len(self._groups[0]) <= limit):
                 for index in self._groups.popleft():
                     identity, group = plan.ids[index].decode(), int(plan.groups[index])
@@ -259,13 +261,6 @@ class Tasks:
             task = replace(self._template, jobs=tuple(jobs), profiles=profiles)
         self.remaining -= len(task.jobs)
         return task
-
-    def _limit(self, workers: int) -> int:
-        """Largest number of cases of the next task, such that all workers end at about the same time."""
-        if not self._cases:
-            return 1
-        cases = RUN.task_seconds * self._cases / max(self._seconds, 1e-9)
-        return int(min(cases, self.remaining / (2 * max(workers, 1))))
 
     def record(self, cases: int, seconds: float) -> None:
         """Add the time of a finished task."""

@@ -143,7 +143,13 @@ class Fields:
             array = CaseArray(self._states, name, {dim: axes[dim] for dim in dims}, self._positions, dtype)
             variable_dims = (*cube.dims, *(axes[dim].name for dim in dims))
             variable = xr.Variable(variable_dims, indexing.LazilyIndexedArray(array), attributes)
-            variable.encoding = {"preferred_chunks": _preferred_chunks(variable_dims, array, len(cube.dims))}
+            # Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions.
+            size = array.dtype.itemsize * int(np.prod(array.shape[len(cube.dims) :], dtype=np.int64))
+            chunks = dict(zip(variable_dims, array.shape, strict=True))
+            for dim in reversed(cube.dims):
+                chunks[dim] = max(1, min(chunks[dim], 2**24 // max(size, 1)))
+                size *= chunks[dim]
+            variable.encoding = {"preferred_chunks": chunks}
             variables[name] = variable
         return dataset.assign_coords(coordinates).assign(variables)
 
@@ -309,13 +315,3 @@ def _outer(values: npt.NDArray[Any], key: Sequence[Any]) -> npt.NDArray[Any]:
     for axis in range(len(key) - 1, -1, -1):
         values = values[(slice(None),) * axis + (key[axis],)]
     return values
-
-
-def _preferred_chunks(dims: Sequence[str], array: CaseArray, swept: int) -> dict[str, int]:
-    """Chunks of about 16 MiB: whole arrays of some cases along the last swept dimensions."""
-    size = array.dtype.itemsize * int(np.prod(array.shape[swept:], dtype=np.int64))
-    chunks = dict(zip(dims, array.shape, strict=True))
-    for axis in range(swept - 1, -1, -1):
-        chunks[dims[axis]] = max(1, min(array.shape[axis], 2**24 // max(size, 1)))
-        size *= chunks[dims[axis]]
-    return chunks

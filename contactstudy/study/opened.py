@@ -36,15 +36,14 @@ def open_study(folder: str | Path, *, cells: str = "common", chunks: Any = None)
     Returns
     -------
     Dataset
-        * `status` ("ok", "failed", "skipped", "stale", "missing", or "excluded" for combinations that the study leaves
-          out), `message` and `case_id` of every case;
-        * `e_over_a`, `friction`, `gamma` and `profile`, as dimension or as coordinate;
+        * `status` ("ok", "failed", "skipped", "stale", "missing" or, left out by the study, "excluded"), `message` and
+          `case_id` of every case; `e_over_a`, `friction`, `gamma` and `profile`, as dimension or as coordinate;
         * every number of the cases, in memory, NaN where it is absent;
-        * surfaces and stresses, read when their values are needed, on the dimensions ``x_over_a`` (distance from the
-          free end over the half-width), ``y_over_a`` and ``z_over_a``; ``x``, ``y`` and ``z`` contain each case's
-          metres. Pressure and traction are averaged over the common cells, so that loads remain, other variables are
-          interpolated. Stresses at separate rows have ``y_field_over_a``. With ``cells="original"`` different
-          positions are padded with NaN: dimensions ``x_index``, ``x_field_index``, ...
+        * surfaces and stresses, read on demand, along ``x_over_a`` (distance from the free end over the half-width),
+          ``y_over_a`` (``y_field_over_a`` of separate stress points) and ``z_over_a``; ``x``, ``y`` and ``z`` are each
+          case's metres. Pressure and traction are averaged over the common cells, so that loads remain, other
+          variables are interpolated. With ``cells="original"`` different positions are padded with NaN along
+          ``x_index``, ``x_field_index``, ...
 
     Raises
     ------

@@ -113,48 +113,37 @@ def perform(task: Task, solver: Solver | None = None) -> list[Outcome]:
         host = socket.gethostname()
         raise StoreError(f"a worker on {host} reads {lock[:200]!r} at {path}, not this run's lock; share the folder")
     receive(task.profiles)
-    writer = _Writer(task)
+    pending: list[Batch] = []
+    outcomes: list[Outcome] = []
+
+    def flush() -> None:
+        groups = by_structure(pending)
+        pending.clear()
+        for batches in groups:
+            joined = join(batches)
+            write_batch(Path(task.folder), f"{task.prefix}{uuid.uuid4().hex[:12]}", joined)
+            for row, identity in enumerate(joined.ids):
+                status = STATUSES[joined.status[row]]
+                seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
+                outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
+
+    saved = time.monotonic()
     try:
         with single_threaded():
             for _, jobs in groupby(task.jobs, key=lambda job: job.group):
                 for batch in _solve_group(task, list(jobs), solver):
-                    writer.add(batch)
+                    pending.append(batch)
+                    full = bool(batch.arrays) and sum(entry.nbytes for entry in pending) > RUN.buffer_bytes
+                    if full or time.monotonic() - saved > RUN.save_seconds:
+                        flush()
+                        saved = time.monotonic()
     except StoreError:
         raise
     except BaseException:
-        writer.flush()
+        flush()
         raise
-    writer.flush()
-    return writer.outcomes
-
-
-class _Writer:
-    """Accumulates finished cases and writes them in batches."""
-
-    def __init__(self, task: Task) -> None:
-        self._task = task
-        self._pending: list[Batch] = []
-        self._since = time.monotonic()
-        self.outcomes: list[Outcome] = []
-
-    def add(self, batch: Batch) -> None:
-        """Add one finished case."""
-        self._pending.append(batch)
-        full = sum(pending.nbytes for pending in self._pending) > RUN.buffer_bytes if batch.arrays else False
-        if full or time.monotonic() - self._since > RUN.save_seconds:
-            self.flush()
-
-    def flush(self) -> None:
-        """Write one batch for each structure of arrays."""
-        pending, self._pending = self._pending, []
-        for batches in by_structure(pending):
-            joined = join(batches)
-            write_batch(Path(self._task.folder), f"{self._task.prefix}{uuid.uuid4().hex[:12]}", joined)
-            for row, identity in enumerate(joined.ids):
-                status = STATUSES[joined.status[row]]
-                seconds = float(joined.numbers["seconds"][row]) if "seconds" in joined.numbers else 0.0
-                self.outcomes.append(Outcome(identity.decode(), status, seconds, joined.texts["message"][row]))
-        self._since = time.monotonic()
+    flush()
+    return outcomes
 
 
 def by_structure(batches: Iterable[Batch]) -> list[list[Batch]]:
