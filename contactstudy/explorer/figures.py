@@ -182,14 +182,9 @@ class StudyFigure:
                 "color": [color for _, _, color in cases],
             }
         self.figure.y_range.update(start=low, end=high)
-        self._set_ticks(ticks or {})
+        if (ticks or {}) != self._ticks:  # a new ticker is slow
+            axis, self._ticks = self.figure.xaxis[0], ticks or {}
+            axis.ticker = list(self._ticks) if ticks else self._ticker
+            axis.major_label_overrides = self._ticks
+            axis.major_label_orientation = 0.5 if ticks else "horizontal"
         self.figure.xaxis.axis_label, self.figure.yaxis.axis_label = labels
-
-    def _set_ticks(self, ticks: dict[float, str]) -> None:
-        """Replace numbers by texts, only if the texts change: a new ticker is slow."""
-        if ticks == self._ticks:
-            return
-        axis, self._ticks = self.figure.xaxis[0], ticks
-        axis.ticker = list(ticks) if ticks else self._ticker
-        axis.major_label_overrides = ticks
-        axis.major_label_orientation = 0.5 if ticks else "horizontal"

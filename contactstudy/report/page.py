@@ -22,6 +22,7 @@ from contactstudy.report.sources import citations
 from contactstudy.report.study_page import study_context
 from contactstudy.report.summary_table import summary
 from contactstudy.study.files import load_result
+from contactstudy.versions import PACKAGES
 
 CELLS = {
     "refined": "columns refined along the axis until the accuracy was reached",
@@ -29,8 +30,6 @@ CELLS = {
     "given": "given by the user",
 }
 """Cells of a result by the setting of `solve`."""
-
-VERSIONS = ("contactstudy", "commit", "python", "numpy", "scipy", "xarray", "netCDF4", "pyfftw")
 
 
 def html(
@@ -167,7 +166,8 @@ def provenance(dataset: xr.Dataset) -> list[tuple[str, str]]:
         rows.append(("solved", datetime.fromisoformat(run["time"]).strftime("%Y-%m-%d %H:%M UTC")))
     if run.get("study"):
         rows.append(("study", str(run["study"])))
-    versions = ", ".join(f"{name} {run[name]}" for name in VERSIONS if name in run)
+    names = ("contactstudy", "commit", "python", *PACKAGES)
+    versions = ", ".join(f"{name} {run[name]}" for name in names if name in run)
     rows.append(("versions", versions or str(dataset.attrs.get("source", "not known"))))
     if "cells" in settings:
         rows.append(("cells", CELLS.get(str(settings["cells"]), str(settings["cells"]))))

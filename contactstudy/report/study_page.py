@@ -24,6 +24,7 @@ from contactstudy.study import collect
 from contactstudy.study.folder import Entry, Folder
 from contactstudy.study.parameters import PARAMETERS, with_defaults
 from contactstudy.study.plan import Plan, PlannedCase, label, listed, value_text
+from contactstudy.versions import PACKAGES
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -61,8 +62,6 @@ CAPTIONS = {
 FIELDS = ("pressure", "initial_gap", "von_mises")  # Variables of a case in the figures of a study
 PERCENTAGE = re.compile(r" ([0-9.]+)%$")  # Size of an error at the end of a reason
 WORST_FIRST = (NO, CARE, UNKNOWN, YES)
-
-VERSIONS = ("contactstudy", "commit", "python", "numpy", "scipy")
 
 
 class Row(NamedTuple):
@@ -255,22 +254,17 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
 
     pictures = []
     for name, (figure, fixed) in figures_of_folder(path, selection).items():
-        caption = f"{CAPTIONS.get(name, name.replace('_', ' '))}{_selection_hint(fixed)}"
+        caption = CAPTIONS.get(name, name.replace("_", " "))
+        for parameter, value in list(fixed.items())[:1]:
+            option = f"{parameter}={value}"
+            option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
+            caption += (
+                f" Of {' and '.join(map(_heading, fixed))} the figure has the value in its title. Another value: "
+            )
+            caption += f"contactstudy report FOLDER --select {option}"
         pictures.append(Picture(as_address(figure), caption, round(PIXELS * figure.get_figwidth())))
         pyplot.close(figure)
     return pictures
-
-
-def _selection_hint(fixed: dict[str, str]) -> str:
-    """Parameters with one value in a figure, and the command that draws another value."""
-    if not fixed:
-        return ""
-    name, value = next(iter(fixed.items()))
-    option = f"{name}={value}" if not set(f"{name}{value}") & set(" $\\'\"()&;|<>*?#`!") else f'"{name}={value}"'
-    return (
-        f" Of {' and '.join(map(_heading, fixed))} the figure has the value in its title. Another value: "
-        f"contactstudy report FOLDER --select {option}"
-    )
 
 
 def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
@@ -279,7 +273,7 @@ def _provenance(runs: list[dict[str, Any]]) -> list[tuple[str, str]]:
         return []
     dates = sorted(str(run["time"])[:10] for run in runs if "time" in run)
     rows = [("solved", dates[0] if dates[0] == dates[-1] else f"{dates[0]} to {dates[-1]}")] if dates else []
-    for name in VERSIONS:
+    for name in ("contactstudy", "commit", "python", *PACKAGES):
         versions = sorted({str(run[name]) for run in runs if name in run})
         if versions:
             rows.append((name, ", ".join(versions)))

@@ -92,15 +92,15 @@ class Study:
     description: str = ""
 
     def __repr__(self) -> str:
-        lines = [f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"]
-        if self.description:
-            lines.append(f"  {self.description}")
-        lines += [f"  {meaning}: {text}" for meaning, text in self._rows()]
-        return "\n".join(lines)
+        lines = [self._head, self.description, *(f"{meaning}: {text}" for meaning, text in self._rows())]
+        return "\n  ".join(filter(None, lines))
 
     def _repr_html_(self) -> str:
-        head = escape(f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}")
-        return f"<b>{head}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
+        return f"<b>{escape(self._head)}</b><br>{escape(self.description)}{html_table([('', self._rows())])}"
+
+    @property
+    def _head(self) -> str:
+        return f"Study {self.name}: {self.size} cases before exclusions, keeping {self.level}"
 
     def _rows(self) -> Iterator[tuple[str, str]]:
         """Parameters, the swept ones first, in the units of engineers."""
