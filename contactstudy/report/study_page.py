@@ -258,9 +258,8 @@ def _pictures(path: Path, selection: Mapping[str, Any] | None) -> list[Picture]:
         for parameter, value in list(fixed.items())[:1]:
             option = f"{parameter}={value}"
             option = f'"{option}"' if set(option) & set(" $\\'\"()&;|<>*?#`!") else option
-            caption += (
-                f" Of {' and '.join(map(_heading, fixed))} the figure has the value in its title. Another value: "
-            )
+            headings = " and ".join(map(_heading, fixed))
+            caption += f" Of {headings} the figure has the value in its title. Another value: "
             caption += f"contactstudy report FOLDER --select {option}"
         pictures.append(Picture(as_address(figure), caption, round(PIXELS * figure.get_figwidth())))
         pyplot.close(figure)

@@ -1,5 +1,6 @@
 """Locks, states and joined batches of a study's folder."""
 
+import json
 import os
 import subprocess
 import sys
@@ -9,7 +10,7 @@ import pytest
 
 from contactstudy.checks import PART, writing
 from contactstudy.errors import InvalidInputError
-from contactstudy.study import LockedError, StoreError, load_case, open_study, run_study
+from contactstudy.study import LockedError, StoreError, StudyFileError, load_case, open_study, run_study
 from contactstudy.study import folder as module
 from contactstudy.study.batches import batch_paths, damage, join, read_batch, write_batch
 from contactstudy.study.files import write_text
@@ -133,6 +134,15 @@ def test_joined_batches_have_equal_results(tmp_path, monkeypatch):
     one, many = (open_study(tmp_path / name).drop_vars("seconds").load() for name in ("one", "many"))
     assert len(batch_paths(tmp_path / "one" / "batches")) == 1 < len(batch_paths(tmp_path / "many" / "batches"))
     assert one.identical(many)
+
+
+@pytest.mark.parametrize("schema", [1, None])
+def test_a_folder_of_another_schema_is_refused(study, tmp_path, schema):
+    run(study, tmp_path)
+    content = json.loads((tmp_path / "study.json").read_text())
+    (tmp_path / "study.json").write_text(json.dumps(content | {"schema": schema}))
+    with pytest.raises(StudyFileError, match=f"schema = {schema}: must be 2"):
+        open_study(tmp_path)
 
 
 def test_a_failed_write_leaves_the_file_as_it_was(tmp_path):
